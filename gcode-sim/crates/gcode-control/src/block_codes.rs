@@ -1,17 +1,26 @@
 //! Codes of a block: modal G codes, F S T D H, M codes, and the letters that need a code.
 use super::functions::ExecResult;
 use super::notes::Note;
-use super::plan::{BlockFlow, BlockPlan};
+use super::plan::{BlockFlow, BlockPlan, TableWrite};
 use super::planner::Planner;
+use super::variables::Value;
 use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
 use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
-use gcode_lang::program::g_codes::{Effect, GCodeRow, spelled};
+use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
 use gcode_lang::program::modes::{CutterSide, Polar, Rotation, Scaling, StrokeCheck};
 use gcode_lang::units::Rpm;
+
+/// Variable of output 0 of a Haas, and the number of the last output.
+const FIRST_OUTPUT: u32 = 12_000;
+const LAST_OUTPUT: u32 = 255;
+
+fn is_skip(effect: Effect) -> bool {
+    effect == Effect::OneShot(OneShot::Skip)
+}
 
 impl Planner<'_> {
     /// 1. Applies the modal G codes in their order; returns the use of the axis words instead of a move.
@@ -193,7 +202,8 @@ impl Planner<'_> {
         }
         let repeats_cycle =
             self.data.settings.cycle_repeat_letter == b'L' && plan.state.modal.cycle.is_some();
-        if self.words.has_letters(Letters::of(b"L").bits() & !owned) && !repeats_cycle {
+        let repeats_move = self.data.settings.repeats_moves && self.repeats_move(&plan.state);
+        if self.words.has_letters(Letters::of(b"L").bits() & !owned) && !repeats_cycle && !repeats_move {
             return Err(self.improper_address(b'L'));
         }
         let axes = Letters::of(b"ABCUVWXYZ").bits() & !owned;
@@ -260,12 +270,21 @@ impl Planner<'_> {
                     plan.state.is_coolant_on = false;
                     plan.events_after_motion.push((EventKind::Coolant { is_on: false, code }, 0.0));
                 }
+                MCodeEffect::Output { is_on } => {
+                    plan.push_event(EventKind::Auxiliary { code });
+                    let output = self.words.count(b'P')?;
+                    let known = output.filter(|output| *output <= LAST_OUTPUT);
+                    let number = known.ok_or_else(|| self.not_simulated(format!("M{code:02} without P0 to P255")))?;
+                    let value = Value::Number(f64::from(u8::from(is_on)));
+                    plan.writes.push(TableWrite::Variable { number: FIRST_OUTPUT + number, value });
+                }
+                MCodeEffect::SkipAlarm(_) if self.words.has_non_motion_code(is_skip) => {}
                 MCodeEffect::InterruptOn => {
                     self.words.mark_read(Letters::of(b"P"));
                     plan.notes.push(Note::InterruptNotSimulated);
                 }
                 MCodeEffect::InterruptOff => {}
-                MCodeEffect::Call | MCodeEffect::NotSimulated => {
+                MCodeEffect::Call | MCodeEffect::NotSimulated | MCodeEffect::SkipAlarm(_) => {
                     return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.located_at(span));
                 }
             }

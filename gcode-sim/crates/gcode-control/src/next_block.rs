@@ -240,6 +240,8 @@ impl Registers {
                         unsimulated.m_codes.push(text(Letters::NONE))
                     }
                     Some(MCodeEffect::Orient) => unsimulated.m_codes.push(text(Letters::of(b"PR"))),
+                    Some(MCodeEffect::Output { .. }) => unsimulated.m_codes.push(text(Letters::of(b"P"))),
+                    Some(MCodeEffect::SkipAlarm(_)) => unsimulated.m_codes.push(text(Letters::NONE)),
                     Some(MCodeEffect::End) => unsimulated.end_code = Some(code),
                     Some(
                         MCodeEffect::Stop

@@ -23,6 +23,7 @@ gcode_lang::finding_kinds! {
     LONG_M_CODE = "long-m-code", Warning, "an M code with more than four digits";
     LOWER_CASE = "lower-case", Note, "lower-case letters are read as capitals";
     M_CODE_LOST = "m-code-lost", Warning, "only the last M code of a block counts";
+    MACHINE_VALUE = "machine-value", Warning, "a value of the machine that nothing states";
     MIRROR_ENDED = "mirror-ended", Note, "G50.1 without an axis";
     NO_ANGLE = "no-angle", Warning, "G68 without R";
     NO_AXIS = "no-axis", Warning, "a code without an axis";
@@ -98,6 +99,13 @@ pub enum Note {
     CutterRadiusZero(u32),
     /// G50.1 without an axis ends the mirror images of all axes.
     MirrorEnded,
+    /// A value of the machine, such as a setting of a Haas, is read as 0 because nothing states it.
+    MachineValueUnknown {
+        /// Variable.
+        number: u32,
+        /// Number behind its point.
+        item: Option<u32>,
+    },
     /// A comment extends to the end of its block.
     UnclosedComment,
     /// A block, or the rest of one, after `/`, which depends on a switch of block skip.
@@ -149,6 +157,7 @@ impl Note {
             Self::LengthOffsetZero(code) => (&LENGTH_OF_NOTHING, format!("G{} with H0 applies no tool length compensation", spelled(code)), "write H with the number of the tool's offset"),
             Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
+            Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as 0: nothing states its value on the machine"), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
             Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),
             Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
             Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),

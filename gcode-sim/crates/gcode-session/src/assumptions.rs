@@ -33,7 +33,7 @@ pub(super) fn dependencies(request: &Request, run: &Run, metal: &Metal, has_hole
     let Ok(mut control) = set_up_control(request, causes::reload(run)) else {
         return HoleDependencies::default();
     };
-    let mut slice = Slice::new(stated_values(request), request.settings.offset_variables, &request.variables);
+    let mut slice = Slice::new(stated_values(request), &request.settings, &request.variables);
     let mut sink = MarkedEvents {
         extractor: super::extractor(request, metal.clone()),
         motion: slice.motion(),

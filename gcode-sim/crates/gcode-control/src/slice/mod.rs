@@ -25,7 +25,7 @@ use super::control::{Control, Observer};
 use super::data::system_index;
 use super::flow::ProgramFlow;
 use super::registers::Registers;
-use gcode_lang::control::OffsetVariables;
+use gcode_lang::control::Settings;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::g_codes::name;
 use gcode_lang::program::modes::WorkSystem;
@@ -143,13 +143,13 @@ impl Slice {
     /// Returns the observer of a run. `variables` are set before its start; an offset that they set is not stated.
     pub fn new(
         mut stated: StatedValues,
-        offset_variables: OffsetVariables,
+        settings: &Settings,
         variables: &[(u32, f64)],
     ) -> Self {
         let mut set_systems: BTreeSet<usize> =
             stated.work_systems.iter().copied().map(system_index).collect();
         for (number, _) in variables {
-            match reads::offset_of(*number, offset_variables) {
+            match reads::offset_of(*number, settings) {
                 Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
                 Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
                 Some(OffsetEntry::Work(system)) => _ = set_systems.remove(&system),

@@ -205,6 +205,16 @@ impl Slice {
                 }
                 Some(MCodeEffect::RigidTapping) => self.machine.spindle |= control | marked.marks,
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
+                // An output may drive anything.
+                Some(MCodeEffect::Output { .. }) => {
+                    let output = list.iter().find(|word| word.letter == b'P');
+                    if let Some(number) = output.and_then(|word| word.value) {
+                        let marks = control | output.map_or(Marks::NONE, |word| word.marks) | marked.marks;
+                        self.variables.set_system(12_000 + number as u32, marks);
+                    }
+                    let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
+                    self.machine.rest |= marks;
+                }
                 None if settings.code_calls.find_call(b'M', 10 * code).is_none()
                     && !self.stated.codes.contains(&code) =>
                 {

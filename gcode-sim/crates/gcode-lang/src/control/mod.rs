@@ -1,6 +1,8 @@
 //! Settings of a control that the meaning of a program depends on, in one struct.
 mod code_calls;
+mod common_ranges;
 mod dialect;
+mod machine_values;
 mod parameters;
 mod table;
 
@@ -10,6 +12,7 @@ use crate::units::{MmPerMin, round_scaled};
 pub use code_calls::{
     ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
 };
+pub use machine_values::{MachineValue, MachineValues, has_items};
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
 
@@ -186,6 +189,8 @@ with_defaults! {
         pub converts_arguments: bool = false,
         /// FXY 5101#0: cycles drill along the normal of the plane or the axis in their block, not always Z.
         pub drills_by_plane: bool = false,
+        /// D15 6004#5: #2401 to #2800 are the offsets of D, not work offsets.
+        pub has_diameter_variables: bool = false,
         /// V15 6000#3: geometry and wear are exchanged in the tool offset variables.
         pub series_15_offsets: bool = false,
         /// AD2 3403#6: a repeated address in a block raises PS5074.
@@ -200,10 +205,12 @@ with_defaults! {
         pub macro_alarm_max: u16 = 200,
         /// `IF[…]` accepts an assignment or words without THEN.
         pub allows_plain_if: bool = false,
+        /// IF and WHILE accept a value as their condition, true unless it is 0 or vacant.
+        pub allows_value_conditions: bool = false,
         /// `IF[…]THEN` accepts words.
         pub then_takes_words: bool = false,
-        /// First and last common variable beyond #999; `None` without any.
-        pub extra_commons: Option<(u32, u32)> = Some((98_000, 98_499)),
+        /// First and last of each range of common variables beyond those of every control, in ascending order.
+        pub extra_commons: Vec<(u32, u32)> = vec![(98_000, 98_499)],
         /// Numbering of the tool offset variables.
         pub offset_variables: OffsetVariables = Default::default(),
         /// PRT 6001#1: DPRNT omits the blanks before a number.
@@ -230,6 +237,8 @@ with_defaults! {
         pub stops_at_m01: bool = true,
         /// Inputs #1000 to #1031 that are 1, as bits.
         pub inputs: u32 = 0,
+        /// Other values of the machine that a program can read.
+        pub machine_values: MachineValues = Default::default(),
         /// Fraction of a G31 path after which the skip signal comes; `None` for no signal.
         pub skip_signal: Option<f64> = None,
         /// A G31 that ends without its signal raises an alarm.
@@ -262,7 +271,7 @@ with_defaults! {
         pub work_systems: usize = 300,
         /// `#10100` is `#100`; `#10500` to `#10999` are `#500` to `#999`.
         pub aliases_commons: bool = false,
-        /// `#n.m` is bit m of #n.
+        /// `#n.m` is item m of the parameter #n, or bit m of any other variable #n.
         pub has_variable_bits: bool = false,
         /// Programs and variables may have names; PRM, AX and AXNUM are available.
         pub has_named_variables: bool = true,
@@ -274,6 +283,8 @@ with_defaults! {
         pub reads_repeats_in_p: bool = true,
         /// Letter for the number of repeats of a canned cycle, K or L.
         pub cycle_repeat_letter: u8 = b'K',
+        /// L repeats an incremental straight move.
+        pub repeats_moves: bool = false,
         /// G28 without an axis moves all axes to the reference position.
         pub homes_all_axes: bool = false,
         /// P of a dwell with a point is seconds.

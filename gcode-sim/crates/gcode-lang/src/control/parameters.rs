@@ -98,6 +98,7 @@ const ROWS: &[ParameterRow] = &[
     bit_row(6001, 5, ParameterAccess::Key("TCS", |s| f64::from(s.code_calls.t_calls_program))),
     bit_row(6004, 0, ParameterAccess::Key("NAT", |s| f64::from(s.returns_signed_angles))),
     bit_row(6004, 1, ParameterAccess::Key("MFZ", |s| f64::from(s.zeroes_residues))),
+    bit_row(6004, 5, ParameterAccess::Key("D15", |s| f64::from(s.has_diameter_variables))),
     bit_row(6007, 3, ParameterAccess::Key("MGE", |s| f64::from(s.code_calls.modal_is_every_block))),
     bit_row(6007, 4, ParameterAccess::Key("CVA", |s| f64::from(s.converts_arguments))),
     bit_row(6008, 1, ParameterAccess::Key("MCA", |s| f64::from(s.macro_alarm_base == 0))),

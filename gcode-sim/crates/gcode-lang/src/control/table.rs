@@ -1,4 +1,6 @@
 //! Named settings: the parameter in the manual, the key on the command line, and how the value is read.
+use super::common_ranges;
+use super::machine_values::MachineValues;
 use super::{ArgumentScale, Dialect, Increment, OffsetVariables, Settings};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
@@ -49,6 +51,18 @@ pub enum SettingValues {
     Number(f64, f64, &'static str),
     /// Text that matches a regular expression, with its description.
     Text(&'static str, &'static str),
+    /// Ranges of common variables that match a regular expression.
+    Ranges(&'static str),
+}
+
+impl SettingValues {
+    /// Returns the reason why a value is refused, or the permitted values.
+    fn refusal(&self, value: &str) -> String {
+        match self {
+            Self::Ranges(_) => common_ranges::read(value).err().unwrap_or_else(|| self.to_string()),
+            _ => self.to_string(),
+        }
+    }
 }
 
 impl SettingRow {
@@ -70,6 +84,7 @@ impl std::fmt::Display for SettingValues {
             },
             Self::Whole(min, max) => write!(f, "{min} to {max}"),
             Self::Number(_, _, wording) | Self::Text(_, wording) => f.write_str(wording),
+            Self::Ranges(_) => f.write_str(common_ranges::ALLOWED),
         }
     }
 }
@@ -165,6 +180,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("BCS", "B, unless it is an axis, calls O9028 with its number in #146", code_calls.b_calls_program),
     switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has no effect", converts_arguments),
     switch!("FXY", "5101#0: canned cycles drill along the normal of the plane, not always Z", drills_by_plane),
+    switch!("D15", "6004#5: #2401 to #2800 are the offsets of D, and #2500 to #2806 no work offsets", has_diameter_variables),
     switch!("V15", "6000#3: geometry and wear are exchanged in tool offset variables", series_15_offsets),
     switch!("AD2", "3403#6: a repeated address in a block raises an alarm", alarms_on_repeated_address),
     switch!("M3B", "3404#7: up to three M codes in a block", allows_three_m_codes),
@@ -177,9 +193,10 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("MCA", "6008#1: #3000=n shows MC n", |s, on| (s.macro_alarm_base, s.macro_alarm_max) = if on { (0, 4095) } else { (3000, 200) }),
     whole!("ALARM-BASE", "the number that #3000=n adds to n", 0, 9000, |s, v| s.macro_alarm_base = v as u16),
     whole!("ALARM-MOST", "the largest n that the manual gives for #3000=n", 1, 4095, |s, v| s.macro_alarm_max = v as u16),
-    row!("MORE-COMMONS", "common variables beyond #999", SettingValues::Text("^(0|[0-9]{4,5} *- *[0-9]{4,6})$", "a range as 98000-98499, or 0"), |s, v| s.extra_commons = range(v)?),
+    row!("MORE-COMMONS", "common variables beyond #100 to #199 and #500 to #999", SettingValues::Ranges(common_ranges::PATTERN), |s, v| s.extra_commons = common_ranges::read(v).ok()?),
     choice!("OFFSET-VARIABLES", "numbering of the tool offset variables", OffsetVariables::ALL, |s, v| s.offset_variables = v),
     switch!("PLAIN-IF", "IF[..] accepts an assignment or words without THEN", allows_plain_if),
+    switch!("VALUE-CONDITIONS", "IF[#1] and WHILE[#1] are true unless #1 is 0 or vacant", allows_value_conditions),
     switch!("THEN-WORDS", "IF[..]THEN accepts words", then_takes_words),
     switch!("PRT", "6001#1: DPRNT omits the blanks before a number", omits_print_blanks),
     switch!("PRINT-EXPANDS", "DPRNT prints all digits of a number, also beyond its format", print_expands),
@@ -208,12 +225,13 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("FEED-INCREMENTS", "setting 77 of a Haas: F without a decimal point counts 0.001 mm/min", feed_in_increments),
     whole!("WORK-SYSTEMS", "additional work coordinate systems, G54.1 P or G154 P", 1, 300, |s, v| s.work_systems = v),
     switch!("ALIASED-COMMONS", "#10100.. and #10500.. are #100.. and #500..", aliases_commons),
-    switch!("VARIABLE-BITS", "#n.m is bit m of #n", has_variable_bits),
+    switch!("VARIABLE-BITS", "#n.m is item m of the parameter #30000 to #39999, or bit m of any other variable", has_variable_bits),
     switch!("NEW-WORDS", "<NAME>, SETVN, [#NAME], [#_NAME], PRM, AX, AXNUM are available", has_named_variables),
     switch!("MORE-FUNCTIONS", "FUP, LN, EXP, BIN, BCD, POW, ADP, ATAN[a,b] are available", has_extended_functions),
     switch!("G10-PARAMETERS", "G10 accepts L3, L14, L50, L52 and L85", allows_parameter_input),
     switch!("REPEATS-IN-P", "M98 P with more than four digits is repeats and program", reads_repeats_in_p),
     choice!("CYCLE-REPEATS", "the address for the number of repeats of a canned cycle", REPEAT_LETTERS, |s, v| s.cycle_repeat_letter = v),
+    switch!("MOVE-REPEATS", "L repeats an incremental straight move", repeats_moves),
     switch!("HOME-ALL", "G28 without an axis moves all axes to the reference position", homes_all_axes),
     switch!("DWELL-SECONDS", "P of a dwell with a decimal point is seconds; G04 takes no X and U", dwell_in_seconds),
     switch!("G84-RIGID", "5200#0: G84 and G74 turn the spindle without M29 as well", taps_rigidly),
@@ -283,6 +301,8 @@ undocumented_choices! {
     "LOWER-CASE" reads_lower_case = true, "lower case is read as capitals instead of raising PS0004";
     "LARGE-ALARMS" shows_large_alarm_numbers = true, "#3000=n shows a number that is too large instead of raising PS0119";
     "M98-NO-P-311" missing_p_is_311 = false, "M98 without P is PS0311, not PS0076";
+    "DWELL-COMPUTED" computed_dwell_is_seconds = true, "with DWELL-SECONDS a computed P of a dwell is seconds, not milliseconds";
+    "CODES-BEFORE-CALL" allows_codes_before_call = true, "modal codes, F, S, T, D, H and M before G65, G66 or G66.1 act first; otherwise PS0125";
     "M06-STOPS-SPINDLE" tool_change_stops_spindle = true, "M06 stops the spindle";
     "M00-STOPS-SPINDLE" stop_stops_spindle = false, "M00 and M01 stop the spindle";
     "M06-HOMES-Z" tool_change_homes_z = false, "M06 sends Z to machine zero before the tool changes";
@@ -299,9 +319,13 @@ impl Settings {
             SettingError::Value { key: key.to_owned(), value: value.to_owned(), allowed }
         };
         if let Some(row) = ROWS.iter().find(|row| row.key.eq_ignore_ascii_case(key)) {
-            return (row.set)(self, value.trim()).ok_or_else(|| bad(&row.values));
+            return (row.set)(self, value.trim()).ok_or_else(|| bad(&row.values.refusal(value.trim())));
         }
         if let Some(number) = key.strip_prefix('#') {
+            if let Some(stated) = MachineValues::key(number) {
+                let set = self.machine_values.set(stated, value);
+                return set.ok_or_else(|| bad(&MachineValues::ALLOWED));
+            }
             let bit = number.parse().ok().filter(|n| (1000..=1031).contains(n)).map(|n: u32| n - 1000);
             let bit = bit.ok_or_else(|| SettingError::Unknown { key: key.to_owned() })?;
             let on = switch(value).ok_or_else(|| bad(&SettingValues::Switch))?;
@@ -355,17 +379,6 @@ fn limits(axes: &Axes, value: &str) -> Option<[Option<f64>; MAX_AXES]> {
         limits[axes.find(letter)?] = Some(between(word.get(1..)?, -1e6, 1e6)?);
     }
     Some(limits)
-}
-
-/// Reads a range, `98000-98499`; `0` is no range.
-fn range(value: &str) -> Option<Option<(u32, u32)>> {
-    if value == "0" {
-        return Some(None);
-    }
-    let (from, to) = value.split_once('-')?;
-    let from = whole(from.trim(), 1000, 99_999)? as u32;
-    let to = whole(to.trim(), from as usize, from as usize + 9_999)? as u32;
-    Some(Some((from, to)))
 }
 
 fn roll_over(settings: &mut Settings, letters: &str) -> Option<()> {

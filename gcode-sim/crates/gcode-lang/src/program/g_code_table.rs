@@ -230,7 +230,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     haas(2340, Effect::NotSimulated, "tool centre point control"),
     haas(2530, Effect::NotSimulated, "orient spindle normal to feature coordinate system"),
     haas(2540, Effect::NotSimulated, "dynamic work offset"),
-    haas(2550, Effect::NotSimulated, "dynamic work offset cancel"),
+    haas(2550, Effect::NoEffect, "dynamic work offset cancel").with(facts::WITHOUT_EFFECT),
     haas(2660, Effect::NotSimulated, "linear rapid motion of all axes"),
     haas(2680, Effect::NotSimulated, "feature coordinate system on"),
     haas(2690, Effect::NotSimulated, "feature coordinate system off"),

@@ -73,6 +73,10 @@ impl JsonSchema for ControlFile {
             "properties": properties,
             "patternProperties": {
                 "^#10([0-2][0-9]|3[01])$": described("An input signal.", switch()),
+                "^#[0-9]{4,5}([.][0-9]+)?$": described(
+                    "A setting, parameter, input or tool table of the machine: its value, or the output that an input follows.",
+                    json!({ "type": ["number", "string"] }),
+                ),
                 "^[GM]-?[0-9]+([.][0-9])?$": described("A code that calls this program; G-201 is a modal call.", program),
             },
             "additionalProperties": false,
@@ -88,7 +92,7 @@ fn setting(row: &SettingRow) -> serde_json::Value {
         SettingValues::Number(least, most, _) => {
             json!({ "type": "number", "minimum": least, "maximum": most })
         }
-        SettingValues::Text(pattern, _) => json!({ "type": "string", "pattern": pattern }),
+        SettingValues::Text(pattern, _) | SettingValues::Ranges(pattern) => json!({ "type": "string", "pattern": pattern }),
     };
     schema["description"] = format!("{} [{}]", row.meaning, row.values).into();
     schema
