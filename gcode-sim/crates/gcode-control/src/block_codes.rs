@@ -1,9 +1,10 @@
 //! Codes of a block: modal G codes, F S T D H, M codes, and the letters that need a code.
-use super::functions::ExecResult;
+use super::functions::{ExecResult, locate};
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan, TableWrite};
 use super::planner::Planner;
 use super::variables::Value;
+use super::words::{WordNumber, count};
 use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
@@ -11,12 +12,32 @@ use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
-use gcode_lang::program::modes::{CutterSide, Polar, Rotation, Scaling, StrokeCheck};
+use gcode_lang::program::modes::{CutterSide, Distance, Polar, Rotation, Scaling, StrokeCheck};
 use gcode_lang::units::Rpm;
 
 /// Variable of output 0 of a Haas, and the number of the last output.
 const FIRST_OUTPUT: u32 = 12_000;
 const LAST_OUTPUT: u32 = 255;
+
+/// Different uses that the codes of a block make of its axis words.
+#[derive(Default)]
+struct AxisWordUses {
+    first: Option<AxisWordUse>,
+    second: Option<AxisWordUse>,
+    has_third: bool,
+}
+
+impl AxisWordUses {
+    fn add(&mut self, new: Option<AxisWordUse>) {
+        let Some(new) = new else { return };
+        match (self.first, self.second) {
+            (None, _) => self.first = Some(new),
+            (Some(first), None) if first != new => self.second = Some(new),
+            (Some(first), Some(second)) => self.has_third |= first != new && second != new,
+            (Some(_), None) => {}
+        }
+    }
+}
 
 fn is_skip(effect: Effect) -> bool {
     effect == Effect::OneShot(OneShot::Skip)
@@ -60,7 +81,7 @@ impl Planner<'_> {
     /// Applies the G codes in their order; returns the use of the axis words, and true if a cycle stays active that was
     /// active before.
     fn apply_each_code(&self, state: &mut State) -> ExecResult<(Option<AxisWordUse>, bool)> {
-        let mut axis_word_use = None;
+        let mut uses = AxisWordUses::default();
         let mut is_cycle_active = state.modal.cycle.is_some();
         for row in self.words.g_codes() {
             if let Effect::Motion(motion) = row.effect {
@@ -71,23 +92,49 @@ impl Planner<'_> {
             if row.facts.lookahead == LookaheadUse::Alarms && state.modal.cutter != CutterSide::Off {
                 return Err(Alarm::ToolOffsetInCompensation.located_at(self.block));
             }
+            if row.effect == Effect::Declared && self.names_axis() {
+                return Err(self.not_simulated("an axis in a block with a declared code"));
+            }
             self.words.mark_read(row.facts.words.without_effect);
             if matches!(row.effect, Effect::NotSimulated | Effect::Call) {
                 return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.description)));
             }
-            let new = state.modal.apply(row.effect);
-            if new.is_some() && axis_word_use.is_some() && new != axis_word_use {
-                return Err(self
-                    .not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68) in one block"));
-            }
-            axis_word_use = new.or(axis_word_use);
+            uses.add(state.modal.apply(row.effect));
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
                 state.is_tapping_rigid = false;
                 is_cycle_active = false;
             }
         }
-        Ok((axis_word_use, is_cycle_active))
+        Ok((self.single_use(&uses, state)?, is_cycle_active))
+    }
+
+    /// Returns the one use that the codes of a block make of its axis words.
+    fn single_use(&self, uses: &AxisWordUses, state: &mut State) -> ExecResult<Option<AxisWordUse>> {
+        use AxisWordUse::{AdditionalWork, OneShot as Single};
+        let (skip, machine) = (Single(OneShot::Skip), Single(OneShot::MachineCoordinateSystem));
+        match (uses.first, uses.second) {
+            (first, None) => Ok(first),
+            _ if uses.has_third => self.several_uses(),
+            // G53 is ignored in G91.
+            (Some(first), Some(second))
+                if first.is_pair_with(second, [skip, machine])
+                    && state.modal.distance == Distance::Incremental
+                    && !self.data.settings.undocumented.g53_moves_in_g91 =>
+            {
+                Ok(Some(skip))
+            }
+            // P is that of the work coordinate system.
+            (Some(AdditionalWork), Some(other)) | (Some(other), Some(AdditionalWork)) if other.leaves_p() => {
+                self.select_additional_work(state)?;
+                Ok(Some(other))
+            }
+            _ => self.several_uses(),
+        }
+    }
+
+    fn several_uses<T>(&self) -> ExecResult<T> {
+        Err(self.not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68) in one block"))
     }
 
     /// Raises the alarm of modes that exclude one another or the codes of the block.
@@ -146,7 +193,7 @@ impl Planner<'_> {
         if let Some(f) = self.feed_word(&plan.state)? {
             plan.state.modal_words.f = f;
         }
-        if let Some(s) = self.words.count(b'S')? {
+        if let Some(s) = self.speed_word()? {
             plan.state.modal_words.s = f64::from(s);
         }
         if let Some(t) = self.words.count(b'T')? {
@@ -178,6 +225,16 @@ impl Planner<'_> {
             plan.state.cutter_radius = self.data.offset_radius(plan.state.modal_words.d).unwrap_or(0.0);
         }
         Ok(())
+    }
+
+    /// Returns S, which a Haas takes with a point.
+    fn speed_word(&self) -> ExecResult<Option<u32>> {
+        match self.words.get(b'S') {
+            Some((WordNumber::Literal(number), span)) if self.data.settings.speed_takes_point => {
+                locate(count(WordNumber::Computed(number.value()), b'S'), span).map(Some)
+            }
+            _ => self.words.count(b'S'),
+        }
     }
 
     /// Raises the alarm of a word that needs a code which the block lacks, or excludes one that it has.
@@ -223,7 +280,12 @@ impl Planner<'_> {
         for (code, span) in self.words.m_codes.iter().copied() {
             plan.state.modal_words.m = code;
             let speed = Rpm(plan.state.modal_words.s);
+            let is_declared = || self.data.settings.declared_codes.find(b'M', 10 * code).is_some();
             let Some(effect) = m_codes::find(code, self.data.settings.codes) else {
+                if is_declared() {
+                    self.words.mark_read(Letters::of(b"EIJKPQR"));
+                    continue;
+                }
                 plan.builder_m_codes.push(code);
                 plan.push_event(EventKind::Auxiliary { code });
                 if code > 9999 {

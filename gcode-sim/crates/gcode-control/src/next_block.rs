@@ -181,7 +181,7 @@ impl Registers {
         let mut axis_words = AxisWords::Move;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
             let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
-            let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
+            let Ok(row) = computed_row(raw, &self.data.settings) else { continue };
             if let Effect::Distance(new) = row.effect {
                 distance = new;
             }
@@ -261,8 +261,10 @@ impl Registers {
                 }
                 continue;
             }
-            let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
-            let text = |letters| self.with_words(words, g_codes::name(row.code), letters);
+            let Ok(row) = computed_row(raw, &self.data.settings) else { continue };
+            // A declared code has no number of its own.
+            let code = if row.effect == Effect::Declared { (raw.value() * 10.0).round() as u32 } else { row.code };
+            let text = |letters| self.with_words(words, g_codes::name(code), letters);
             match row.facts.unsimulated {
                 Unsimulated::No => {}
                 Unsimulated::Path(letters) => unsimulated.path_codes.push(text(letters)),

@@ -25,11 +25,7 @@ impl Planner<'_> {
         match axis_word_use {
             AxisWordUse::OneShot(one) => self.execute_one_shot(one, plan),
             AxisWordUse::AdditionalWork => {
-                let number = self.words.count(b'P')?.unwrap_or(1);
-                if number == 0 || number as usize > self.data.offsets.work.len() - STANDARD_SYSTEMS {
-                    return Err(Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block));
-                }
-                plan.state.modal.work = WorkSystem::Additional(number as u16);
+                self.select_additional_work(&mut plan.state)?;
                 self.data.recompute_position(&mut plan.state);
                 self.plan_motion(plan, false)
             }
@@ -38,6 +34,16 @@ impl Planner<'_> {
             AxisWordUse::Tilt => self.plan_tilt(plan),
             AxisWordUse::Mirror { is_on } => self.plan_mirror(is_on, plan),
         }
+    }
+
+    /// Selects the additional work coordinate system P.
+    pub(super) fn select_additional_work(&self, state: &mut State) -> ExecResult<()> {
+        let number = self.words.count(b'P')?.unwrap_or(1);
+        if number == 0 || number as usize > self.data.offsets.work.len() - STANDARD_SYSTEMS {
+            return Err(Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block));
+        }
+        state.modal.work = WorkSystem::Additional(number as u16);
+        Ok(())
     }
 
     /// Returns the note of a code in a block that names no axis.

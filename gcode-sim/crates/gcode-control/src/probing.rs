@@ -6,6 +6,8 @@ use super::planner::Planner;
 use super::registers::Registers;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, EventSink, Position, SkipMove, SkipSignal};
+use gcode_lang::program::code_facts::Letters;
+use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::m_codes::{self, MCodeEffect, SkipAlarm};
 use gcode_lang::program::modes::CutterSide;
 use gcode_lang::units::Seconds;
@@ -17,12 +19,18 @@ impl Planner<'_> {
         if plan.state.modal.cutter != CutterSide::Off || self.registers.lookahead.is_offset() {
             return Err(Alarm::SkipInCompensation.located_at(self.block));
         }
-        self.check_skip_signal_set(b'P')?;
+        // P selects the skip signals, but beside G54.1 or G154 the work coordinate system.
+        if !self.words.has_non_motion_code(|effect| effect == Effect::AdditionalWork) {
+            self.check_skip_signal_set(b'P')?;
+        }
+        if self.data.settings.undocumented.skip_takes_r {
+            self.words.mark_read(Letters::of(b"R"));
+        }
         if self.words.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
             return Err(Alarm::SkipTorque.located_at(self.words.span(b'Q')));
         }
-        if self.words.has_any(b"PQ") {
-            return Err(self.not_simulated("G31 (multi-step and torque limit skip)"));
+        if self.words.has(b'Q') {
+            return Err(self.not_simulated("G31 (torque limit skip)"));
         }
         let endpoint = self.resolve_endpoint(plan)?;
         let (from, to) = (plan.state.machine_position, endpoint.machine);

@@ -218,6 +218,29 @@ pub struct Modal {
     pub(super) mirror: Mirror,
 }
 
+impl AxisWordUse {
+    /// Returns true if two uses are these, in any order.
+    pub(super) fn is_pair_with(self, other: Self, pair: [Self; 2]) -> bool {
+        [self, other] == pair || [other, self] == pair
+    }
+
+    /// Returns true if the block's P can be that of a work coordinate system.
+    pub(super) fn leaves_p(self) -> bool {
+        match self {
+            Self::Rotate | Self::Mirror { .. } => true,
+            Self::OneShot(one) => matches!(
+                one,
+                OneShot::Skip
+                    | OneShot::MachineCoordinateSystem
+                    | OneShot::Reference
+                    | OneShot::CheckReference
+                    | OneShot::FromReference
+            ),
+            Self::AdditionalWork | Self::Scale | Self::Tilt => false,
+        }
+    }
+}
+
 impl Modal {
     /// Applies a G code and returns the use that it makes of the axis words of its block, if any. Codes of group 01 are
     /// applied by [`State::set_motion_mode`].
@@ -259,6 +282,7 @@ impl Modal {
             | Effect::NoEffect
             | Effect::LookAhead
             | Effect::Smoothness
+            | Effect::Declared
             | Effect::Call
             | Effect::NotSimulated => {}
         }

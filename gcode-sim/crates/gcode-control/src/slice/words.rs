@@ -2,7 +2,7 @@
 use super::super::words::{computed_row, count};
 use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
-use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
+use gcode_lang::program::g_codes::{self, Effect, GCodeRow, OneShot};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::modes::{
     CutterSide, Distance, Length, ModalGroup, Motion, Plane, Polar, WorkSystem,
@@ -99,7 +99,7 @@ impl Slice {
     }
 
     fn follow_g_codes(&mut self, block: &Block<'_>, words: &Words, list: &[MarkedWord]) -> BlockModes {
-        let (state, codes) = (&block.registers.state, block.registers.data.settings.codes);
+        let state = &block.registers.state;
         let control = self.branches.marks();
         let mut modes = BlockModes {
             motion: state.modal.motion,
@@ -114,7 +114,7 @@ impl Slice {
             one_shot: None,
         };
         for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'G') {
-            let Some(row) = row_of(block, words, word, codes) else { continue };
+            let Some(row) = row_of(block, words, word) else { continue };
             // G#5 with a code that #4003 had before is one of the same group.
             let is_restored = matches!(word.value, WordOperand::Variable { .. })
                 && marked.marks.is_within(self.power_on_modes)
@@ -215,6 +215,7 @@ impl Slice {
                     let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
                     self.machine.rest |= marks;
                 }
+                None if settings.declared_codes.find(b'M', 10 * code).is_some() => {}
                 None if settings.code_calls.find_call(b'M', 10 * code).is_none()
                     && !self.stated.codes.contains(&code) =>
                 {
@@ -301,17 +302,13 @@ impl Slice {
 }
 
 /// Returns the row of a G word.
-fn row_of(
-    block: &Block<'_>,
-    words: &Words,
-    word: &LoweredWord,
-    dialect: gcode_lang::control::Dialect,
-) -> Option<&'static GCodeRow> {
+fn row_of(block: &Block<'_>, words: &Words, word: &LoweredWord) -> Option<&'static GCodeRow> {
+    let settings = &block.registers.data.settings;
     match &word.value {
-        WordOperand::G(_, found) => found.row_for(dialect),
+        WordOperand::G(code, found) => g_codes::row_on(*code, *found, settings),
         _ => {
             let raw = block.registers.without_side_effects(|registers| registers.evaluate_word(words, word));
-            computed_row(raw.ok().flatten()?, dialect).ok()
+            computed_row(raw.ok().flatten()?, settings).ok()
         }
     }
 }

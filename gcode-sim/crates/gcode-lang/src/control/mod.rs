@@ -1,6 +1,7 @@
 //! Settings of a control that the meaning of a program depends on, in one struct.
 mod code_calls;
 mod common_ranges;
+mod declared_codes;
 mod dialect;
 mod machine_values;
 mod parameters;
@@ -12,6 +13,7 @@ use crate::units::{MmPerMin, round_scaled};
 pub use code_calls::{
     ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
 };
+pub use declared_codes::{DeclaredCodes, DeclaredEffect};
 pub use machine_values::{MachineValue, MachineValues, has_items};
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
@@ -247,6 +249,8 @@ with_defaults! {
         pub main_program_cycles: Option<u32> = None,
         /// Codes and addresses that call programs.
         pub code_calls: CodeCalls = Default::default(),
+        /// Codes of the machine builder with a declared effect.
+        pub declared_codes: DeclaredCodes = Default::default(),
         /// 1401#1: a rapid is a straight line; otherwise each axis moves at its own rate.
         pub rapids_are_straight: bool = false,
         /// 1420: rapid rate of the linear axes.
@@ -283,6 +287,8 @@ with_defaults! {
         pub reads_repeats_in_p: bool = true,
         /// Letter for the number of repeats of a canned cycle, K or L.
         pub cycle_repeat_letter: u8 = b'K',
+        /// S may have a decimal point.
+        pub speed_takes_point: bool = false,
         /// L repeats an incremental straight move.
         pub repeats_moves: bool = false,
         /// G28 without an axis moves all axes to the reference position.

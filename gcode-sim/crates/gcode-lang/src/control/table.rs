@@ -1,7 +1,7 @@
 //! Named settings: the parameter in the manual, the key on the command line, and how the value is read.
 use super::common_ranges;
 use super::machine_values::MachineValues;
-use super::{ArgumentScale, Dialect, Increment, OffsetVariables, Settings};
+use super::{ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetVariables, Settings};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
@@ -232,6 +232,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("REPEATS-IN-P", "M98 P with more than four digits is repeats and program", reads_repeats_in_p),
     choice!("CYCLE-REPEATS", "the address for the number of repeats of a canned cycle", REPEAT_LETTERS, |s, v| s.cycle_repeat_letter = v),
     switch!("MOVE-REPEATS", "L repeats an incremental straight move", repeats_moves),
+    switch!("S-POINT", "S may have a decimal point", speed_takes_point),
     switch!("HOME-ALL", "G28 without an axis moves all axes to the reference position", homes_all_axes),
     switch!("DWELL-SECONDS", "P of a dwell with a decimal point is seconds; G04 takes no X and U", dwell_in_seconds),
     switch!("G84-RIGID", "5200#0: G84 and G74 turn the spindle without M29 as well", taps_rigidly),
@@ -291,6 +292,7 @@ undocumented_choices! {
     "G53-IN-G91" g53_moves_in_g91 = false, "G53 in G91 moves by the increment instead of not moving";
     "K0-MOVES" k0_positions = false, "a canned cycle with K0 moves in the plane";
     "SKIP-KEEPS-END" skip_keeps_end = false, "#5001.. after a skipped G31 are the commanded end, not the position of the signal";
+    "G31-R" skip_takes_r = true, "R beside G31 selects a skip signal, as P does; otherwise SIM0001";
     "G43-MOVES" length_moves_at_once = true, "G43 H without an axis moves by the offset at once";
     "TAP-DWELL-R" tap_dwells_at_r = true, "G84 and G74 dwell at the R point level as well";
     "G67-ALARM" g67_alarms = true, "G67 without G66 raises PS1100";
@@ -340,9 +342,13 @@ impl Settings {
         if !key.starts_with(|c: char| c.is_ascii_alphabetic()) {
             return Err(unknown());
         }
-        let program = whole(value, 1, 99_999_999).ok_or_else(|| bad(&"a program number"))? as u32;
-        self.code_calls.set_code(key, program).ok_or_else(unknown)?;
-        Ok(())
+        if let Some(effect) = choice(value.trim(), &DeclaredEffect::ALL) {
+            return self.declared_codes.set(key, effect).ok_or_else(unknown);
+        }
+        let number = value.trim().trim_start_matches(['O', 'o']);
+        let allowed = "a program number, nothing or wait";
+        let program = whole(number, 1, 99_999_999).ok_or_else(|| bad(&allowed))? as u32;
+        self.code_calls.set_code(key, program).ok_or_else(unknown)
     }
 }
 
@@ -407,6 +413,9 @@ mod tests {
     #[test]
     fn settings_are_set_by_key() {
         let mut settings = Settings::default();
+        assert!(settings.set("G120.1", "nothing").is_ok() && settings.set("M77", "wait").is_ok());
+        assert_eq!(settings.declared_codes.find(b'G', 1201), Some(DeclaredEffect::Nothing));
+        assert!(settings.set("X5", "nothing").is_err() && settings.set("M7.5", "wait").is_err());
         for (key, value) in
             [("NAT", "1"), ("BDT", "1+3"), ("ROA", "A"), ("5115", "0.2"), ("#1005", "1"), ("G201", "9010")]
         {

@@ -115,6 +115,8 @@ pub enum LookaheadUse {
     Dwell,
     /// Arc at the corner before the next move.
     CornerArc,
+    /// The block waits for the end of the moves before it, as M00 does.
+    Blocks,
 }
 
 /// Transforms of coordinates under which a code is permitted.
@@ -174,7 +176,7 @@ pub struct CodeFacts {
 
 use AxisWords::{Hole, Move, Other, Position, PositionInAbsolute, Tables};
 use CoordinateUse::{Free, NotScaled, NotTransformed};
-use LookaheadUse::{Alarms, CornerArc, Dwell, Path, Refused, Suspends};
+use LookaheadUse::{Alarms, Blocks, CornerArc, Dwell, Path, Refused, Suspends};
 use Timing::{MovesNothing, ReadAhead, Waits};
 use WithoutAxes::{AllOrNothing, CentreDefaulted, Nothing, Same};
 
@@ -231,6 +233,17 @@ pub(super) const SMOOTHNESS: CodeFacts = CodeFacts {
     words: CodeWords { own: Letters::of(b"E"), without_effect: Letters::of(b"EP"), ..CodeWords::NONE },
     ..LOOK_AHEAD
 };
+/// Code that the user declares to be without effect, with all its words.
+pub(super) const DECLARED: CodeFacts = CodeFacts {
+    words: CodeWords {
+        own: Letters::of(b"ABCELOUVW"),
+        without_effect: Letters::of(b"ABCEIJKLOPQRUVW"),
+        ..CodeWords::NONE
+    },
+    unsimulated: Unsimulated::Code(Letters::of(b"IJKPQR")),
+    ..MODAL
+};
+pub(super) const DECLARED_WAIT: CodeFacts = CodeFacts { lookahead: Blocks, timing: Waits, ..DECLARED };
 pub(super) const TOOL_OFFSET: CodeFacts = CodeFacts { lookahead: Alarms, ..MODAL };
 
 /// Code of group 00: axis words are not a move.

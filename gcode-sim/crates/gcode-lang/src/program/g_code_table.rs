@@ -43,6 +43,14 @@ const fn fanuc_cycle(of: &'static Cycle) -> GCodeRow {
     GCodeRow { dialects: Dialect::FANUC, ..cycle(of) }
 }
 
+/// Rows of all codes that the user declares; their code is that of no table.
+pub(super) const DECLARED: GCodeRow = declared(facts::DECLARED);
+pub(super) const DECLARED_WAIT: GCodeRow = declared(facts::DECLARED_WAIT);
+
+const fn declared(facts: facts::CodeFacts) -> GCodeRow {
+    row(u32::MAX, Effect::Declared, "code of the machine builder, declared").with(facts)
+}
+
 /// All codes in ascending order; a code with several meanings has one row per meaning.
 #[rustfmt::skip]
 pub(super) const CODES: &[GCodeRow] = &[

@@ -368,13 +368,19 @@ fn macro_call<'a>(
 
 /// Raises the alarm of a word before a macro call that is no code: G other than a call, F, S, T, D, H or M.
 fn check_codes_before_call(before: &[LoweredWord]) -> Result<(), LocatedAlarm> {
-    let is_code = |word: &LoweredWord| match word.value {
-        WordOperand::G(code, _) => !is_call(code),
-        _ => matches!(word.letter, b'F' | b'S' | b'T' | b'D' | b'H' | b'M') && !word.comma,
-    };
-    let what = || "words before the macro call".into();
-    let first = before.iter().find(|word| !is_code(word));
-    first.map_or(Ok(()), |word| Err(Alarm::MacroFormat { what: what() }.located_at(word.span)))
+    for word in before {
+        match (word.letter, word.value) {
+            (_, WordOperand::G(code, _)) if is_call(code) => {
+                return Err(Alarm::TwoMacroCalls.located_at(word.span));
+            }
+            (b'G' | b'F' | b'S' | b'T' | b'D' | b'H' | b'M', _) => {}
+            _ => {
+                let what = "words before the macro call".into();
+                return Err(Alarm::MacroFormat { what }.located_at(word.span));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Separates the call of M97 P, M98, M99 or M198 with its P, L and Q; the other words act first.

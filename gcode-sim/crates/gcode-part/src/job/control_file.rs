@@ -18,7 +18,7 @@ use toml::Value;
 use super::FileError;
 use crate::reader::{Located, Reader};
 use gcode_lang::control::{
-    ADDRESSES, CODE_RANGES, CodeCalls, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues, Settings,
+    ADDRESSES, CODE_RANGES, CodeCalls, DeclaredEffect, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues, Settings,
 };
 
 /// Applies the text of a control file to the settings, the dialect first and the rest in the order of the
@@ -33,6 +33,13 @@ pub fn apply(text: &str, settings: &mut Settings) -> Result<(), FileError> {
     entries.sort_by_key(|(key, _)| (!key.as_ref().eq_ignore_ascii_case("DIALECT"), key.span().start));
     for (key, value) in entries {
         let name = key.as_ref();
+        if let (CODES, Value::Table(codes)) = (name.as_str(), &value) {
+            for (code, value) in codes {
+                let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                settings.set(code, &text).map_err(|error| reader.error(&key, error.to_string()))?;
+            }
+            continue;
+        }
         let value = match value {
             Value::String(text) => text,
             Value::Integer(number) => number.to_string(),
@@ -46,6 +53,12 @@ pub fn apply(text: &str, settings: &mut Settings) -> Result<(), FileError> {
     }
     Ok(())
 }
+
+/// Regular expression of a code.
+const CODE: &str = "^[GM]-?[0-9]+([.][0-9])?$";
+
+/// Table of the codes that call a program or have a declared effect.
+const CODES: &str = "codes";
 
 fn is_switch(key: &str) -> bool {
     key.starts_with('#') || ROWS.iter().any(|row| row.key.eq_ignore_ascii_case(key) && row.is_switch())
@@ -66,7 +79,16 @@ impl JsonSchema for ControlFile {
             schema["description"] = text.into();
             schema
         };
-        let program = json!({ "type": "integer", "minimum": 1, "maximum": 99_999_999 });
+        let effects: Vec<&str> = DeclaredEffect::ALL.iter().map(|(name, _)| *name).collect();
+        let program = json!({ "anyOf": [
+            { "type": "integer", "minimum": 1, "maximum": 99_999_999 },
+            { "type": "string", "pattern": "^O?[0-9]{1,8}$" },
+            { "enum": effects },
+        ] });
+        let code = described("A code that calls this program, or its declared effect; G-201 is a modal call.", program);
+        let mut properties = properties;
+        let codes = json!({ "type": "object", "patternProperties": { CODE: code.clone() }, "additionalProperties": false });
+        properties.insert(CODES.to_owned(), described("Codes that call programs or have a declared effect.", codes));
         json_schema!({
             "description": "Settings of the control by their names or parameter numbers.",
             "type": "object",
@@ -77,7 +99,7 @@ impl JsonSchema for ControlFile {
                     "A setting, parameter, input or tool table of the machine: its value, or the output that an input follows.",
                     json!({ "type": ["number", "string"] }),
                 ),
-                "^[GM]-?[0-9]+([.][0-9])?$": described("A code that calls this program; G-201 is a modal call.", program),
+                CODE: code,
             },
             "additionalProperties": false,
         })
