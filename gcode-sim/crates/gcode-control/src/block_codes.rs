@@ -3,9 +3,9 @@ use super::functions::{ExecResult, locate};
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan, TableWrite};
 use super::planner::Planner;
+use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
 use super::variables::Value;
 use super::words::{WordNumber, count};
-use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
 use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
@@ -336,7 +336,8 @@ impl Planner<'_> {
                     plan.push_event(EventKind::Auxiliary { code });
                     let output = self.words.count(b'P')?;
                     let known = output.filter(|output| *output <= LAST_OUTPUT);
-                    let number = known.ok_or_else(|| self.not_simulated(format!("M{code:02} without P0 to P255")))?;
+                    let number =
+                        known.ok_or_else(|| self.not_simulated(format!("M{code:02} without P0 to P255")))?;
                     let value = Value::Number(f64::from(u8::from(is_on)));
                     plan.writes.push(TableWrite::Variable { number: FIRST_OUTPUT + number, value });
                 }

@@ -24,7 +24,10 @@ impl Planner<'_> {
     /// Returns true if an M code is declared to wait for the end of the moves before it.
     fn waits_for_m_code(&self) -> bool {
         let declared = &self.data.settings.declared_codes;
-        self.words.m_codes.iter().any(|(code, _)| declared.find(b'M', 10 * code) == Some(DeclaredEffect::Wait))
+        self.words
+            .m_codes
+            .iter()
+            .any(|(code, _)| declared.find(b'M', 10 * code) == Some(DeclaredEffect::Wait))
     }
 
     /// Passes the events of a plan through the lookahead if compensation or a corner word is active.

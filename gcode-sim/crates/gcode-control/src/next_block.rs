@@ -263,7 +263,8 @@ impl Registers {
             }
             let Ok(row) = computed_row(raw, &self.data.settings) else { continue };
             // A declared code has no number of its own.
-            let code = if row.effect == Effect::Declared { (raw.value() * 10.0).round() as u32 } else { row.code };
+            let code =
+                if row.effect == Effect::Declared { (raw.value() * 10.0).round() as u32 } else { row.code };
             let text = |letters| self.with_words(words, g_codes::name(code), letters);
             match row.facts.unsimulated {
                 Unsimulated::No => {}

@@ -86,7 +86,11 @@ impl Registers {
                     // Without a source of signals nothing is known of this one.
                     None => {
                         plan.notes.push(Note::NoSkipSignal);
-                        return self.data.settings.missed_skip_alarms.then(|| Alarm::SkipMissed.located_at(span));
+                        return self
+                            .data
+                            .settings
+                            .missed_skip_alarms
+                            .then(|| Alarm::SkipMissed.located_at(span));
                     }
                 }
             }

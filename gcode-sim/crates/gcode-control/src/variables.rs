@@ -343,11 +343,11 @@ impl Vars {
             |local| self.outer_locals.first().map_or_else(|| self.get(local), |level| level.get(local));
         let locals = (0..LOCALS).map(move |index| (index as u32, local(index)));
         let direct = (LOCALS..DIRECT_COUNT).map(|index| (index as u32, self.get(index)));
-        let extra = self.extra_numbers().zip(&self.extra_values).map(|(number, stored)| (number, Value::from(*stored)));
-        locals
-            .chain(direct)
-            .chain(extra)
-            .filter_map(|(number, value)| Some((number, value.as_number()?)))
+        let extra = self
+            .extra_numbers()
+            .zip(&self.extra_values)
+            .map(|(number, stored)| (number, Value::from(*stored)));
+        locals.chain(direct).chain(extra).filter_map(|(number, value)| Some((number, value.as_number()?)))
     }
 }
 
@@ -427,7 +427,10 @@ mod tests {
         }
         let numbers: Vec<_> = vars.nonvacant().map(|(number, _)| number).collect();
         assert_eq!(numbers, [33, 100, 999, 400, 409, 98_000, 98_499]);
-        assert!(numbers.iter().all(|number| matches!(vars.classify(*number), VariableClass::Local(_) | VariableClass::Common(_))));
+        assert!(numbers.iter().all(|number| matches!(
+            vars.classify(*number),
+            VariableClass::Local(_) | VariableClass::Common(_)
+        )));
         assert_eq!(vars.classify(410), VariableClass::System);
     }
 }

@@ -141,11 +141,7 @@ pub struct Slice {
 
 impl Slice {
     /// Returns the observer of a run. `variables` are set before its start; an offset that they set is not stated.
-    pub fn new(
-        mut stated: StatedValues,
-        settings: &Settings,
-        variables: &[(u32, f64)],
-    ) -> Self {
+    pub fn new(mut stated: StatedValues, settings: &Settings, variables: &[(u32, f64)]) -> Self {
         let mut set_systems: BTreeSet<usize> =
             stated.work_systems.iter().copied().map(system_index).collect();
         for (number, _) in variables {

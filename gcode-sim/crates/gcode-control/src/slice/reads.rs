@@ -31,7 +31,9 @@ pub(super) fn offset_of(number: u32, settings: &Settings) -> Option<OffsetEntry>
         |first: u32, system: usize| OffsetEntry::Work(system + ((number - first) / POSITIONS) as usize);
     Some(match number {
         2001..=2400 => OffsetEntry::Length((number - 2001) % 200 + 1),
-        2401..=2800 if is_haas || settings.has_diameter_variables => OffsetEntry::Radius((number - 2401) % 200 + 1),
+        2401..=2800 if is_haas || settings.has_diameter_variables => {
+            OffsetEntry::Radius((number - 2401) % 200 + 1)
+        }
         2500..=2806 => OffsetEntry::Work((number % 100) as usize),
         5201..=5220 if is_haas => return None,
         5201..=5340 => work(5201, 0),
@@ -211,7 +213,8 @@ impl Slice {
     /// Returns true if the machine file states an offset or a block has set it, by its variable.
     fn is_offset_set(&self, data: &ControlData, number: u32) -> bool {
         let settings = &data.settings;
-        let is_stated = |tools: &BTreeSet<u32>, tool: u32| tools.contains(&tool) && !is_wear(number, settings);
+        let is_stated =
+            |tools: &BTreeSet<u32>, tool: u32| tools.contains(&tool) && !is_wear(number, settings);
         match offset_of(number, settings) {
             Some(OffsetEntry::Length(tool)) => {
                 self.set_lengths.contains(&tool) || is_stated(&self.stated.lengths, tool)

@@ -99,11 +99,9 @@ impl Effect {
     /// A mode that only the final state shows is not shown: a program can switch it on and off again.
     pub(super) const fn is_shown(self) -> bool {
         match self {
-            Self::NoEffect
-            | Self::LookAhead
-            | Self::Smoothness
-            | Self::Declared
-            | Self::StrokeCheck(_) => false,
+            Self::NoEffect | Self::LookAhead | Self::Smoothness | Self::Declared | Self::StrokeCheck(_) => {
+                false
+            }
             Self::Motion(_)
             | Self::Plane(_)
             | Self::Distance(_)

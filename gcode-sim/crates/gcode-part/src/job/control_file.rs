@@ -18,7 +18,8 @@ use toml::Value;
 use super::FileError;
 use crate::reader::{Located, Reader};
 use gcode_lang::control::{
-    ADDRESSES, CODE_RANGES, CodeCalls, DeclaredEffect, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues, Settings,
+    ADDRESSES, CODE_RANGES, CodeCalls, DeclaredEffect, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues,
+    Settings,
 };
 
 /// Applies the text of a control file to the settings, the dialect first and the rest in the order of the
@@ -85,10 +86,16 @@ impl JsonSchema for ControlFile {
             { "type": "string", "pattern": "^O?[0-9]{1,8}$" },
             { "enum": effects },
         ] });
-        let code = described("A code that calls this program, or its declared effect; G-201 is a modal call.", program);
+        let code = described(
+            "A code that calls this program, or its declared effect; G-201 is a modal call.",
+            program,
+        );
         let mut properties = properties;
         let codes = json!({ "type": "object", "patternProperties": { CODE: code.clone() }, "additionalProperties": false });
-        properties.insert(CODES.to_owned(), described("Codes that call programs or have a declared effect.", codes));
+        properties.insert(
+            CODES.to_owned(),
+            described("Codes that call programs or have a declared effect.", codes),
+        );
         json_schema!({
             "description": "Settings of the control by their names or parameter numbers.",
             "type": "object",
@@ -114,7 +121,9 @@ fn setting(row: &SettingRow) -> serde_json::Value {
         SettingValues::Number(least, most, _) => {
             json!({ "type": "number", "minimum": least, "maximum": most })
         }
-        SettingValues::Text(pattern, _) | SettingValues::Ranges(pattern) => json!({ "type": "string", "pattern": pattern }),
+        SettingValues::Text(pattern, _) | SettingValues::Ranges(pattern) => {
+            json!({ "type": "string", "pattern": pattern })
+        }
     };
     schema["description"] = format!("{} [{}]", row.meaning, row.values).into();
     schema
