@@ -1,9 +1,10 @@
 //! Codes of a block: modal G codes, F S T D H, M codes, and the letters that need a code.
+use super::axis_word_use::{AxisWordUse, AxisWordUses};
 use super::functions::{ExecResult, locate};
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan, TableWrite};
 use super::planner::Planner;
-use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
+use super::state::{CycleState, Modal, PolarPoint, State};
 use super::variables::Value;
 use super::words::{WordNumber, count};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
@@ -18,26 +19,6 @@ use gcode_lang::units::Rpm;
 /// Variable of output 0 of a Haas, and the number of the last output.
 const FIRST_OUTPUT: u32 = 12_000;
 const LAST_OUTPUT: u32 = 255;
-
-/// Different uses that the codes of a block make of its axis words.
-#[derive(Default)]
-struct AxisWordUses {
-    first: Option<AxisWordUse>,
-    second: Option<AxisWordUse>,
-    has_third: bool,
-}
-
-impl AxisWordUses {
-    fn add(&mut self, new: Option<AxisWordUse>) {
-        let Some(new) = new else { return };
-        match (self.first, self.second) {
-            (None, _) => self.first = Some(new),
-            (Some(first), None) if first != new => self.second = Some(new),
-            (Some(first), Some(second)) => self.has_third |= first != new && second != new,
-            (Some(_), None) => {}
-        }
-    }
-}
 
 fn is_skip(effect: Effect) -> bool {
     effect == Effect::OneShot(OneShot::Skip)

@@ -1,10 +1,11 @@
 //! Compensation and corner words that a planned block commands, and its way through the lookahead.
+use super::axis_word_use::AxisWordUse;
 use super::functions::ExecResult;
 use super::lookahead::{CornerArc, LookaheadRequest};
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
-use super::state::{AxisWordUse, State};
+use super::state::State;
 use crate::contour::Point;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::DeclaredEffect;

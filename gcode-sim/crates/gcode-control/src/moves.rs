@@ -13,9 +13,6 @@ use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::{CutterSide, Distance, Length, Motion, Plane, Polar, Unit};
 use gcode_lang::units::{Deg, MmPerMin};
 
-/// Most moves of one block with L.
-const MOST_MOVE_REPEATS: u32 = 9999;
-
 impl Planner<'_> {
     /// 3. Plans G43, G44, G49 and a new H; returns true if the offset has changed.
     #[inline]
@@ -86,13 +83,8 @@ impl Planner<'_> {
             let what = format!("{} in a block with a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.located_at(self.words.span(letter)));
         }
-        for _ in 1..self.move_repeats(plan)? {
-            let endpoint = self.resolve_endpoint(plan)?;
-            match motion {
-                Motion::Rapid => self.push_rapid(plan, &endpoint.machine),
-                _ => self.locate(self.push_feed(plan, &endpoint.machine))?,
-            }
-            plan.state.programmed_position = endpoint.programmed;
+        if self.words.has(b'L') {
+            self.plan_repeated_moves(plan)?;
         }
         let endpoint = self.resolve_endpoint(plan)?;
         if motion == Motion::Thread && self.words.corner.is_some() {
@@ -110,27 +102,6 @@ impl Planner<'_> {
         plan.state.programmed_position = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
-    }
-
-    /// Returns true for a straight move, which L may repeat.
-    pub(super) fn repeats_move(&self, state: &State) -> bool {
-        matches!(state.modal.motion, Motion::Rapid | Motion::Linear)
-            && state.modal.cycle.is_none()
-            && self.names_axis()
-    }
-
-    /// Returns the number of times that the block's move is executed: L in G91.
-    fn move_repeats(&self, plan: &BlockPlan) -> ExecResult<u32> {
-        if !self.data.settings.repeats_moves || !self.words.has(b'L') {
-            return Ok(1);
-        }
-        let repeats = self.words.count(b'L')?.unwrap_or(1);
-        let is_lookahead = plan.state.modal.cutter != CutterSide::Off || self.words.corner.is_some();
-        if repeats == 0 || repeats > MOST_MOVE_REPEATS || is_lookahead && repeats > 1 {
-            return Err(self.not_simulated(format!("L{repeats} of a move")));
-        }
-        // An absolute move repeated goes nowhere.
-        Ok(if plan.state.modal.distance == Distance::Incremental { repeats } else { 1 })
     }
 
     /// Plans a new tool length in a block without an axis: the axis moves by the offset at once, or not at all.
@@ -273,6 +244,12 @@ impl Planner<'_> {
         let start = (state.programmed_position[plane.0], state.programmed_position[plane.1]);
         let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
+        if !self.data.settings.alarms_without_centre && !self.words.has_any(b"IJKR") {
+            if state.modal.cutter != CutterSide::Off {
+                return Err(self.not_simulated("an arc without R and I J K in cutter compensation"));
+            }
+            return self.locate(self.push_feed(plan, &endpoint.machine));
+        }
         let centre = if let Some(radius) = self.dimension(b'R', state)? {
             // R overrides I J K.
             self.words.mark_read(Letters::of(b"IJK"));

@@ -267,6 +267,26 @@ impl Slice {
         }
     }
 
+    /// Returns the marks of the offset of G45 to G48.
+    pub(super) fn tool_offset_marks(&mut self, block: &Block<'_>, list: &[MarkedWord]) -> Marks {
+        let data = &block.registers.data;
+        let modal = &block.registers.state.modal_words;
+        let is_h = data.settings.tool_offset_is_h;
+        let (letter, modal) = if is_h { (b'H', modal.h) } else { (b'D', modal.d) };
+        let word = list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
+        let number = word.map_or(modal, |value| value as u32);
+        let marks = self.machine.code(letter) | self.machine.tool_table;
+        let is_set = if is_h { self.is_length_set(number) } else { self.is_radius_set(number) };
+        if number == 0 || is_set {
+            return marks;
+        }
+        let (source, value) = match is_h {
+            true => (OutsideValue::ToolLength(number), data.offsets.length(number).ok()),
+            false => (OutsideValue::CutterRadius(number), data.offset_radius(number)),
+        };
+        marks | self.outside(source, value, block.flow, block.op)
+    }
+
     fn follow_call(&mut self, block: &Block<'_>, words: &Words, call: &CallOp) {
         let control = self.branches.marks();
         let mut marks_of = |word: &LoweredWord| self.marked_word(block, words, word, Marks::NONE).marks;

@@ -225,6 +225,8 @@ with_defaults! {
         pub print_digits: usize = 8,
         /// ODI 5004#2: the offsets of D are diameters.
         pub offsets_are_diameters: bool = false,
+        /// OFH 5001#2: the offset of G45 to G48 is that of H, not of D.
+        pub tool_offset_is_h: bool = false,
         /// EVR 5001#4: a changed offset of D applies from the next block, not from the next D.
         pub applies_radius_at_once: bool = false,
         /// SUP 5003#0: cutter compensation starts and ends by type B.
@@ -259,6 +261,8 @@ with_defaults! {
         pub rapid_rotary: f64 = 3_600.0,
         /// 3410: largest difference between the radii at start and end of an arc, mm.
         pub arc_tolerance: f64 = 0.02,
+        /// CIR 3403#5: an arc without R, I, J and K raises PS0022; otherwise it is a straight cut.
+        pub alarms_without_centre: bool = true,
         /// 5440: final approach of G60 with its direction, mm or degrees.
         pub single_direction_overrun: Position = Default::default(),
         /// M97 P calls the subprogram at a sequence number of its own program.

@@ -203,6 +203,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("PRINT-NEEDS-POPEN", "DPRNT and BPRNT without POPEN raise an alarm", print_needs_open),
     whole!("PRINT-DIGITS", "the most digits that DPRNT's format allows", 1, 15, |s, v| s.print_digits = v),
     switch!("ODI", "5004#2: the offsets of D are diameters", offsets_are_diameters),
+    switch!("OFH", "5001#2: the offset of G45 to G48 is that of H, not of D", tool_offset_is_h),
     switch!("EVR", "5001#4: a changed offset of D applies from the next block", applies_radius_at_once),
     switch!("SUP", "5003#0: cutter compensation starts and ends by type B", starts_up_by_type_b),
     whole!("19625", "blocks of lookahead in cutter compensation", 3, 8, |s, v| s.lookahead_blocks = v),
@@ -217,6 +218,7 @@ const DOCUMENTED: &[SettingRow] = &[
     number!("RAPID", "1420: rapid rate of linear axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
     number!("RAPID-ROTARY", "1420: rapid rate of rotary axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
     number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
+    switch!("CIR", "3403#5: an arc without R, I, J and K raises PS0022, otherwise it is a straight cut", alarms_without_centre),
     row!("5440", "overrun of G60 single direction positioning, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.single_direction_overrun = point(s, v)?),
     switch!("M97-CALLS", "M97 P calls the subprogram at N of the same program", has_local_calls),
     number!("5114", "retract of G73; setting 22 of a Haas", 0.0, 1e6, LENGTH, |s, v| s.g73_retract = v),
@@ -345,8 +347,11 @@ impl Settings {
         if let Some(effect) = choice(value.trim(), &DeclaredEffect::ALL) {
             return self.declared_codes.set(key, effect).ok_or_else(unknown);
         }
+        if value.trim().eq_ignore_ascii_case("P") {
+            return self.code_calls.set_code_with_p(key).ok_or_else(unknown);
+        }
         let number = value.trim().trim_start_matches(['O', 'o']);
-        let allowed = "a program number, nothing or wait";
+        let allowed = "a program number, P, nothing or wait";
         let program = whole(number, 1, 99_999_999).ok_or_else(|| bad(&allowed))? as u32;
         self.code_calls.set_code(key, program).ok_or_else(unknown)
     }

@@ -244,11 +244,13 @@ pub(super) const DECLARED: CodeFacts = CodeFacts {
     ..MODAL
 };
 pub(super) const DECLARED_WAIT: CodeFacts = CodeFacts { lookahead: Blocks, timing: Waits, ..DECLARED };
-pub(super) const TOOL_OFFSET: CodeFacts = CodeFacts { lookahead: Alarms, ..MODAL };
 
 /// Code of group 00: axis words are not a move.
 const ONE_SHOT: CodeFacts = CodeFacts { axis_words: Other, ..MODAL };
 
+/// G45 to G48.
+pub(super) const TOOL_OFFSET: CodeFacts =
+    CodeFacts { without_axes: Nothing, lookahead: Alarms, coordinates: NotTransformed, ..ONE_SHOT };
 pub(super) const DWELL: CodeFacts = CodeFacts {
     words: CodeWords {
         own: Letters::of(b"U"),
@@ -291,6 +293,7 @@ pub(super) const FROM_REFERENCE: CodeFacts = CodeFacts { axis_words: Other, ..CH
 pub(super) const SKIP: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     without_axes: Nothing,
+    words: CodeWords { measured: Measured::Axes, ..CodeWords::NONE },
     lookahead: Suspends,
     timing: Waits,
     ..ONE_SHOT

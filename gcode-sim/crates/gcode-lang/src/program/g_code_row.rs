@@ -159,6 +159,8 @@ pub enum OneShot {
     PresetWorkCoordinateSystem,
     /// G60: single direction positioning.
     SingleDirection,
+    /// G45 to G48: travel extended by 1, −1, 2 or −2 tool offsets.
+    ToolOffset(i8),
     /// G12 and G13 of a Haas.
     CirclePocket(Motion),
     /// G70 and G71 of a Haas.

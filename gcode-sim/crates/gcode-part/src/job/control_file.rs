@@ -85,6 +85,7 @@ impl JsonSchema for ControlFile {
             { "type": "integer", "minimum": 1, "maximum": 99_999_999 },
             { "type": "string", "pattern": "^O?[0-9]{1,8}$" },
             { "enum": effects },
+            { "const": "P" },
         ] });
         let code = described(
             "A code that calls this program, or its declared effect; G-201 is a modal call.",
@@ -102,7 +103,7 @@ impl JsonSchema for ControlFile {
             "properties": properties,
             "patternProperties": {
                 "^#10([0-2][0-9]|3[01])$": described("An input signal.", switch()),
-                "^#[0-9]{4,5}([.][0-9]+)?$": described(
+                "^#(103[2-9]|10[4-9][0-9]|1[1-9][0-9]{2}|[2-9][0-9]{3}|[1-5][0-9]{4})([.][0-9]+)?$": described(
                     "A setting, parameter, input or tool table of the machine: its value, or the output that an input follows.",
                     json!({ "type": ["number", "string"] }),
                 ),
