@@ -12,6 +12,7 @@ use super::variables::{OperandStack, Vars};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::UnknownAxes;
+use gcode_lang::program::modes::Unit;
 
 /// Values from which expressions, words and system variables are evaluated, and which blocks change.
 #[derive(Clone, Debug)]
@@ -34,8 +35,11 @@ impl Registers {
     pub(super) fn new(settings: Settings) -> Self {
         let variables = Vars::new(&settings.extra_commons, settings.aliases_commons);
         let uncommanded = (0..settings.axes.len()).fold(0, |axes, axis| axes | 1 << axis);
-        let state =
+        let mut state =
             State { unknown: UnknownAxes { uncommanded, ..UnknownAxes::default() }, ..State::default() };
+        if settings.is_inch_at_power_on == Some(true) {
+            state.modal.unit = Unit::Inch;
+        }
         Self {
             data: ControlData::new(settings),
             variables,

@@ -94,7 +94,11 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     };
     let takes_power_on_modes = || {
         KEPT_GROUPS.into_iter().any(|group| {
-            let is_used = group != ModalGroup::Work || !stated.work_systems.is_empty();
+            let is_used = match group {
+                ModalGroup::Work => !stated.work_systems.is_empty(),
+                ModalGroup::Unit => !stated.has_unit,
+                _ => true,
+            };
             is_used && !control.is_commanded_before_use(group)
         })
     };
@@ -125,6 +129,7 @@ fn stated_values(request: &Request) -> StatedValues {
         work_systems: offsets.map(|offset| offset.system).collect(),
         codes: clamp.collect(),
         has_part: request.part.is_some(),
+        has_unit: request.settings.is_inch_at_power_on.is_some(),
     }
 }
 

@@ -28,7 +28,7 @@ use super::registers::Registers;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::g_codes::name;
-use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::modes::{ModalGroup, WorkSystem};
 use gcode_lang::program::{Assign, AssignmentTarget, Op, OpKind, Statement};
 
 /// Value that comes from outside the program.
@@ -102,6 +102,8 @@ pub struct StatedValues {
     pub codes: BTreeSet<u32>,
     /// A part decides where G31 stops.
     pub has_part: bool,
+    /// The unit at power-on.
+    pub has_unit: bool,
 }
 
 /// Observer that follows outside values through a run.
@@ -152,7 +154,11 @@ impl Slice {
                 None => {}
             }
         }
-        Self { stated, set_systems, ..Self::default() }
+        let mut slice = Self { stated, set_systems, ..Self::default() };
+        if slice.stated.has_unit {
+            slice.machine.settle_group(ModalGroup::Unit, Marks::NONE);
+        }
+        slice
     }
 
     /// Returns the marks of the current block's motion, shared with the sink of the run.

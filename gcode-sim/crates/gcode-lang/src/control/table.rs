@@ -169,6 +169,7 @@ const DOCUMENTED: &[SettingRow] = &[
     choice!("DIALECT", "the family of controls", Dialect::ALL, |s, v| s.apply_dialect(v)),
     choice!("CODES", "the set of G and M codes", Dialect::ALL, |s, v| s.codes = v),
     choice!("INCREMENT", "1013: the least input increment", Increment::ALL, |s, v| s.increment = v),
+    switch!("INI", "the unit at power-on is inch: INI of the setting data, setting 9 of a Haas", |s, on| s.is_inch_at_power_on = Some(on)),
     switch!("DPI", "3401#0, setting 162 of a Haas: numbers without a decimal point are mm, degrees, seconds", uses_calculator_input),
     switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", returns_signed_angles),
     switch!("MFZ", "6004#1: SIN, COS, TAN below 1e-8 become 0", zeroes_residues),
