@@ -85,7 +85,7 @@ impl JsonSchema for ControlFile {
             { "type": "integer", "minimum": 1, "maximum": 99_999_999 },
             { "type": "string", "pattern": "^O?[0-9]{1,8}$" },
             { "enum": effects },
-            { "const": "P" },
+            { "enum": ["P"] },
         ] });
         let code = described(
             "A code that calls this program, or its declared effect; G-201 is a modal call.",
