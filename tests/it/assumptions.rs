@@ -94,6 +94,27 @@ fn a_value_that_the_program_sets_or_the_user_states_is_named_as_it_is() {
     );
 }
 
+/// The holes are 25.4 times too far in inches.
+#[test]
+fn the_unit_of_power_on_is_an_assumption_unless_it_is_stated() {
+    let program = PROGRAM.replace(" G21", "").replace("S1000 M03", "S1000 M03 \n#510=20.");
+    let place = folder(&program);
+    let verify = |flags: &str| {
+        let line = format!("gcode-sim verify O1.nc --reference r.csv --format json{flags}");
+        let (verdict, code) = run_json(&line, place.path());
+        let assumed: Vec<_> = verdict["assumptions"].as_array().unwrap().iter().collect();
+        (assumed.iter().map(|one| one["what"].as_str().unwrap().to_owned()).collect::<Vec<_>>(), code)
+    };
+    assert_eq!(verify(""), (vec!["G21".to_owned()], 0));
+    assert_eq!(verify(" --control INI=0"), (vec![], 0));
+    assert_eq!(verify(" --control INI=1"), (vec![], 1));
+    for (unit, code) in [("metric", 0), ("inch", 1)] {
+        let machine = format!("[control]\nunit = \"{unit}\"\n");
+        std::fs::write(place.path().join("m.toml"), machine).unwrap();
+        assert_eq!(verify(" --machine m.toml"), (vec![], code), "{unit}");
+    }
+}
+
 #[test]
 fn a_denied_assumption_fails_everywhere() {
     let place = folder(PROGRAM);

@@ -171,5 +171,6 @@ fn condition(value: &Condition) -> String {
             format!("({} {}{} {})", condition(left), operator(*op), sign(*written), condition(right))
         }
         Condition::Bracket(inner) => format!("[{}]", condition(inner)),
+        Condition::Value { value, .. } => expr(value),
     }
 }

@@ -50,6 +50,11 @@ impl SettingsReport {
         }
         let meaning = "the address that calls O9004 with #146, O9005 with #147";
         settings.push(SettingReport::new("6090, 6091", meaning, "its character code"));
+        let meaning = "a code of the machine builder, also in the table [codes] of a control file: the program it calls, P for that of its word P, or its effect";
+        settings.push(SettingReport::new("G120.1, M77", meaning, "O9010, P, nothing or wait"));
+        let meaning =
+            "a value of the machine that a program for a Haas reads, or the output that an input follows";
+        settings.push(SettingReport::new("#20255, #11017", meaning, "a number, #12003 or !#12003"));
         Self { settings }
     }
 
@@ -64,7 +69,7 @@ impl SettingsReport {
 
 fn word(kind: CodeCallKind) -> &'static str {
     match kind {
-        CodeCallKind::Macro | CodeCallKind::Modal => "macro",
+        CodeCallKind::Macro | CodeCallKind::MacroInP | CodeCallKind::Modal => "macro",
         CodeCallKind::Subprogram => "subprogram",
     }
 }

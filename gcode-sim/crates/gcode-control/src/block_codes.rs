@@ -1,18 +1,29 @@
 //! Codes of a block: modal G codes, F S T D H, M codes, and the letters that need a code.
-use super::functions::ExecResult;
+use super::axis_word_use::{AxisWordUse, AxisWordUses};
+use super::functions::{ExecResult, locate};
 use super::notes::Note;
-use super::plan::{BlockFlow, BlockPlan};
+use super::plan::{BlockFlow, BlockPlan, TableWrite};
 use super::planner::Planner;
-use super::state::{AxisWordUse, CycleState, Modal, PolarPoint, State};
+use super::state::{CycleState, Modal, PolarPoint, State};
+use super::variables::Value;
+use super::words::{WordNumber, count};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Dialect;
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
 use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
-use gcode_lang::program::g_codes::{Effect, GCodeRow, spelled};
+use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
-use gcode_lang::program::modes::{CutterSide, Polar, Rotation, Scaling, StrokeCheck};
+use gcode_lang::program::modes::{CutterSide, Distance, Polar, Rotation, Scaling, StrokeCheck};
 use gcode_lang::units::Rpm;
+
+/// Variable of output 0 of a Haas, and the number of the last output.
+const FIRST_OUTPUT: u32 = 12_000;
+const LAST_OUTPUT: u32 = 255;
+
+fn is_skip(effect: Effect) -> bool {
+    effect == Effect::OneShot(OneShot::Skip)
+}
 
 impl Planner<'_> {
     /// 1. Applies the modal G codes in their order; returns the use of the axis words instead of a move.
@@ -52,7 +63,7 @@ impl Planner<'_> {
     /// Applies the G codes in their order; returns the use of the axis words, and true if a cycle stays active that was
     /// active before.
     fn apply_each_code(&self, state: &mut State) -> ExecResult<(Option<AxisWordUse>, bool)> {
-        let mut axis_word_use = None;
+        let mut uses = AxisWordUses::default();
         let mut is_cycle_active = state.modal.cycle.is_some();
         for row in self.words.g_codes() {
             if let Effect::Motion(motion) = row.effect {
@@ -63,23 +74,49 @@ impl Planner<'_> {
             if row.facts.lookahead == LookaheadUse::Alarms && state.modal.cutter != CutterSide::Off {
                 return Err(Alarm::ToolOffsetInCompensation.located_at(self.block));
             }
+            if row.effect == Effect::Declared && self.names_axis() {
+                return Err(self.not_simulated("an axis in a block with a declared code"));
+            }
             self.words.mark_read(row.facts.words.without_effect);
             if matches!(row.effect, Effect::NotSimulated | Effect::Call) {
                 return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.description)));
             }
-            let new = state.modal.apply(row.effect);
-            if new.is_some() && axis_word_use.is_some() && new != axis_word_use {
-                return Err(self
-                    .not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68) in one block"));
-            }
-            axis_word_use = new.or(axis_word_use);
+            uses.add(state.modal.apply(row.effect));
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
                 state.is_tapping_rigid = false;
                 is_cycle_active = false;
             }
         }
-        Ok((axis_word_use, is_cycle_active))
+        Ok((self.single_use(&uses, state)?, is_cycle_active))
+    }
+
+    /// Returns the one use that the codes of a block make of its axis words.
+    fn single_use(&self, uses: &AxisWordUses, state: &mut State) -> ExecResult<Option<AxisWordUse>> {
+        use AxisWordUse::{AdditionalWork, OneShot as Single};
+        let (skip, machine) = (Single(OneShot::Skip), Single(OneShot::MachineCoordinateSystem));
+        match (uses.first, uses.second) {
+            (first, None) => Ok(first),
+            _ if uses.has_third => self.several_uses(),
+            // G53 is ignored in G91.
+            (Some(first), Some(second))
+                if first.is_pair_with(second, [skip, machine])
+                    && state.modal.distance == Distance::Incremental
+                    && !self.data.settings.undocumented.g53_moves_in_g91 =>
+            {
+                Ok(Some(skip))
+            }
+            // P is that of the work coordinate system.
+            (Some(AdditionalWork), Some(other)) | (Some(other), Some(AdditionalWork)) if other.leaves_p() => {
+                self.select_additional_work(state)?;
+                Ok(Some(other))
+            }
+            _ => self.several_uses(),
+        }
+    }
+
+    fn several_uses<T>(&self) -> ExecResult<T> {
+        Err(self.not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68) in one block"))
     }
 
     /// Raises the alarm of modes that exclude one another or the codes of the block.
@@ -146,7 +183,7 @@ impl Planner<'_> {
         if let Some(f) = self.feed_word(&plan.state)? {
             plan.state.modal_words.f = f;
         }
-        if let Some(s) = self.words.count(b'S')? {
+        if let Some(s) = self.speed_word()? {
             plan.state.modal_words.s = f64::from(s);
         }
         if let Some(t) = self.words.count(b'T')? {
@@ -180,6 +217,16 @@ impl Planner<'_> {
         Ok(())
     }
 
+    /// Returns S, which a Haas takes with a point.
+    fn speed_word(&self) -> ExecResult<Option<u32>> {
+        match self.words.get(b'S') {
+            Some((WordNumber::Literal(number), span)) if self.data.settings.speed_takes_point => {
+                locate(count(WordNumber::Computed(number.value()), b'S'), span).map(Some)
+            }
+            _ => self.words.count(b'S'),
+        }
+    }
+
     /// Raises the alarm of a word that needs a code which the block lacks, or excludes one that it has.
     fn check_misplaced_words(&self, plan: &BlockPlan) -> ExecResult<()> {
         let owned = self.words.letters_of_codes();
@@ -202,7 +249,8 @@ impl Planner<'_> {
         }
         let repeats_cycle =
             self.data.settings.cycle_repeat_letter == b'L' && plan.state.modal.cycle.is_some();
-        if self.words.has_letters(Letters::of(b"L").bits() & !owned) && !repeats_cycle {
+        let repeats_move = self.data.settings.repeats_moves && self.repeats_move(&plan.state);
+        if self.words.has_letters(Letters::of(b"L").bits() & !owned) && !repeats_cycle && !repeats_move {
             return Err(self.improper_address(b'L'));
         }
         let axes = Letters::of(b"ABCUVWXYZ").bits() & !owned;
@@ -222,7 +270,12 @@ impl Planner<'_> {
         for (code, span) in self.words.m_codes.iter().copied() {
             plan.state.modal_words.m = code;
             let speed = Rpm(plan.state.modal_words.s);
+            let is_declared = || self.data.settings.declared_codes.find(b'M', 10 * code).is_some();
             let Some(effect) = m_codes::find(code, self.data.settings.codes) else {
+                if is_declared() {
+                    self.words.mark_read(Letters::of(b"EIJKPQR"));
+                    continue;
+                }
                 plan.builder_m_codes.push(code);
                 plan.push_event(EventKind::Auxiliary { code });
                 if code > 9999 {
@@ -269,12 +322,22 @@ impl Planner<'_> {
                     plan.state.is_coolant_on = false;
                     plan.events_after_motion.push((EventKind::Coolant { is_on: false, code }, 0.0));
                 }
+                MCodeEffect::Output { is_on } => {
+                    plan.push_event(EventKind::Auxiliary { code });
+                    let output = self.words.count(b'P')?;
+                    let known = output.filter(|output| *output <= LAST_OUTPUT);
+                    let number =
+                        known.ok_or_else(|| self.not_simulated(format!("M{code:02} without P0 to P255")))?;
+                    let value = Value::Number(f64::from(u8::from(is_on)));
+                    plan.writes.push(TableWrite::Variable { number: FIRST_OUTPUT + number, value });
+                }
+                MCodeEffect::SkipAlarm(_) if self.words.has_non_motion_code(is_skip) => {}
                 MCodeEffect::InterruptOn => {
                     self.words.mark_read(Letters::of(b"P"));
                     plan.notes.push(Note::InterruptNotSimulated);
                 }
                 MCodeEffect::InterruptOff => {}
-                MCodeEffect::Call | MCodeEffect::NotSimulated => {
+                MCodeEffect::Call | MCodeEffect::NotSimulated | MCodeEffect::SkipAlarm(_) => {
                     return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.located_at(span));
                 }
             }

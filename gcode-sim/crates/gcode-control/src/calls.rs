@@ -175,7 +175,7 @@ impl Planner<'_> {
             match word.letter {
                 b'G' => return Err(Alarm::GAsArgument.located_at(word.span)),
                 // An option of some controls makes an argument of it.
-                b'P' => {
+                b'P' if called.kind != CodeCallKind::MacroInP => {
                     let what = "P as an argument of a code that calls a macro".into();
                     return Err(Alarm::NotSimulated { what }.located_at(word.span));
                 }
@@ -183,15 +183,23 @@ impl Planner<'_> {
             }
         }
         let repeats = arguments.iter().find(|word| word.letter == b'L');
+        let program = match called.kind {
+            CodeCallKind::MacroInP => {
+                let p = arguments.iter().find(|word| word.letter == b'P');
+                let number = self.registers.count_of_word(self.lowered_words, p)?;
+                number.ok_or_else(|| Alarm::ProgramNotNamed.located_at(code.span))?
+            }
+            CodeCallKind::Macro | CodeCallKind::Modal | CodeCallKind::Subprogram => called.program,
+        };
         let has_own_arguments =
             self.data.settings.undocumented.every_block_calls_itself && !arguments.is_empty();
         Ok(CallPlan {
             kind: match called.kind {
                 CodeCallKind::Modal if is_every_block => CallKind::EveryBlock,
                 CodeCallKind::Modal => CallKind::Modal,
-                CodeCallKind::Macro | CodeCallKind::Subprogram => CallKind::Macro,
+                CodeCallKind::Macro | CodeCallKind::MacroInP | CodeCallKind::Subprogram => CallKind::Macro,
             },
-            target: ProgramRef::Number(called.program),
+            target: ProgramRef::Number(program),
             repeats: self.registers.count_of_word(self.lowered_words, repeats)?.unwrap_or(1),
             start: None,
             locals: self.registers.evaluate_arguments(self.lowered_words, arguments, is_every_block)?,

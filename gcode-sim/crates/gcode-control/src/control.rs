@@ -128,6 +128,14 @@ impl Control {
         self.executor.write(slot, value, None, Span::default(), &mut ()).map_err(|alarm| alarm.node)
     }
 
+    /// Sets a variable whose value is in mm, whatever the unit at power-on.
+    pub fn set_metric_variable(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
+        let unit = std::mem::replace(&mut self.executor.registers.state.modal.unit, Unit::Metric);
+        let result = self.set_variable(number, value);
+        self.executor.registers.state.modal.unit = unit;
+        result
+    }
+
     /// Runs to the end, to an alarm, or to a limit.
     pub fn run<S: EventSink>(&mut self, limits: Limits, library: &mut impl Library, sink: &mut S) -> Outcome {
         self.run_observed(limits, library, sink, &mut ())

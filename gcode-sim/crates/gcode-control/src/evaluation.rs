@@ -211,6 +211,10 @@ impl Registers {
                 last
             }
             UncommonOp::Read(number) => self.read_variable(number)?,
+            UncommonOp::ReadItem { number, item, .. } if self.data.settings.has_variable_bits => {
+                self.read_item(number, item)?
+            }
+            UncommonOp::ReadItem { rounded, .. } => self.read_variable(rounded)?,
             UncommonOp::LoadIndirect => self.read_variable(variable_number(last)?)?,
             UncommonOp::Negate => match last {
                 Value::Vacant if undocumented.minus_keeps_vacancy => Value::Vacant,

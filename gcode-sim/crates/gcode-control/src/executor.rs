@@ -83,7 +83,7 @@ impl Executor {
         for (kind, seconds) in &plan.events_after_motion {
             self.emit(kind, *seconds, sink);
         }
-        let Registers { data, variables, .. } = &mut self.registers;
+        let Registers { data, variables, panel, .. } = &mut self.registers;
         for write in &plan.writes {
             match *write {
                 TableWrite::Work { system, axis, value } => data.set_work_offset(system, axis, value),
@@ -93,11 +93,12 @@ impl Executor {
                 TableWrite::Parameter { id, value, has_no_effect } => {
                     data.set_parameter(id, value, has_no_effect)
                 }
-                TableWrite::Variable { number, value } => {
-                    if let VariableClass::Common(index) = variables.classify(number) {
-                        variables.set(index, value);
-                    }
-                }
+                TableWrite::Variable { number, value } => match variables.classify(number) {
+                    VariableClass::Common(index) => variables.set(index, value),
+                    // An output.
+                    VariableClass::System => panel.store(number, value.number()),
+                    VariableClass::Local(_) | VariableClass::Vacant => {}
+                },
             }
         }
         if !plan.writes.is_empty() {

@@ -75,6 +75,7 @@ mod calls;
 mod cycles;
 mod data_input;
 mod lookahead_request;
+mod move_repeats;
 mod moves;
 mod one_shot_codes;
 mod probing;
@@ -88,6 +89,7 @@ mod statements;
 
 mod control;
 
+mod axis_word_use;
 mod block;
 mod call_execution;
 mod next_block;

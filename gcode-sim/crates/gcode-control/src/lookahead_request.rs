@@ -1,12 +1,14 @@
 //! Compensation and corner words that a planned block commands, and its way through the lookahead.
+use super::axis_word_use::AxisWordUse;
 use super::functions::ExecResult;
 use super::lookahead::{CornerArc, LookaheadRequest};
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
-use super::state::{AxisWordUse, State};
+use super::state::State;
 use crate::contour::Point;
 use gcode_lang::alarm::Alarm;
+use gcode_lang::control::DeclaredEffect;
 use gcode_lang::program::code_facts::LookaheadUse;
 use gcode_lang::program::g_codes;
 use gcode_lang::program::g_codes::Effect;
@@ -18,6 +20,15 @@ impl Planner<'_> {
     pub(super) fn needs_lookahead(&self, state: &State) -> bool {
         let is_commanded = state.modal.cutter != CutterSide::Off || self.words.corner.is_some();
         is_commanded || self.words.has_any(b"IJK") || !self.registers.lookahead.is_idle()
+    }
+
+    /// Returns true if an M code is declared to wait for the end of the moves before it.
+    fn waits_for_m_code(&self) -> bool {
+        let declared = &self.data.settings.declared_codes;
+        self.words
+            .m_codes
+            .iter()
+            .any(|(code, _)| declared.find(b'M', 10 * code) == Some(DeclaredEffect::Wait))
     }
 
     /// Passes the events of a plan through the lookahead if compensation or a corner word is active.
@@ -67,7 +78,10 @@ impl Planner<'_> {
             suspends_compensation: plan.cycle_plan.is_some()
                 || uses(LookaheadUse::Suspends).is_some()
                 || plan.commands_axes && plan.state.modal.cycle.is_some(),
-            blocks_lookahead: !plan.stops.is_empty() || matches!(plan.flow, BlockFlow::End),
+            blocks_lookahead: !plan.stops.is_empty()
+                || matches!(plan.flow, BlockFlow::End)
+                || uses(LookaheadUse::Blocks).is_some()
+                || self.waits_for_m_code(),
             counts_as_block: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
             has_zero_length: axis_word_use.is_none() && (self.names(plane.0) || self.names(plane.1)),
             is_cut: axis_word_use.is_none()

@@ -83,6 +83,9 @@ impl Planner<'_> {
             let what = format!("{} in a block with a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.located_at(self.words.span(letter)));
         }
+        if self.words.has(b'L') {
+            self.plan_repeated_moves(plan)?;
+        }
         let endpoint = self.resolve_endpoint(plan)?;
         if motion == Motion::Thread && self.words.corner.is_some() {
             return Err(Alarm::CornerInThread.located_at(self.block));
@@ -241,6 +244,12 @@ impl Planner<'_> {
         let start = (state.programmed_position[plane.0], state.programmed_position[plane.1]);
         let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
+        if !self.data.settings.alarms_without_centre && !self.words.has_any(b"IJKR") {
+            if state.modal.cutter != CutterSide::Off {
+                return Err(self.not_simulated("an arc without R and I J K in cutter compensation"));
+            }
+            return self.locate(self.push_feed(plan, &endpoint.machine));
+        }
         let centre = if let Some(radius) = self.dimension(b'R', state)? {
             // R overrides I J K.
             self.words.mark_read(Letters::of(b"IJK"));

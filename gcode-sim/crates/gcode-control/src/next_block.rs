@@ -181,7 +181,7 @@ impl Registers {
         let mut axis_words = AxisWords::Move;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
             let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
-            let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
+            let Ok(row) = computed_row(raw, &self.data.settings) else { continue };
             if let Effect::Distance(new) = row.effect {
                 distance = new;
             }
@@ -240,6 +240,8 @@ impl Registers {
                         unsimulated.m_codes.push(text(Letters::NONE))
                     }
                     Some(MCodeEffect::Orient) => unsimulated.m_codes.push(text(Letters::of(b"PR"))),
+                    Some(MCodeEffect::Output { .. }) => unsimulated.m_codes.push(text(Letters::of(b"P"))),
+                    Some(MCodeEffect::SkipAlarm(_)) => unsimulated.m_codes.push(text(Letters::NONE)),
                     Some(MCodeEffect::End) => unsimulated.end_code = Some(code),
                     Some(
                         MCodeEffect::Stop
@@ -259,8 +261,11 @@ impl Registers {
                 }
                 continue;
             }
-            let Ok(row) = computed_row(raw, self.data.settings.codes) else { continue };
-            let text = |letters| self.with_words(words, g_codes::name(row.code), letters);
+            let Ok(row) = computed_row(raw, &self.data.settings) else { continue };
+            // A declared code has no number of its own.
+            let code =
+                if row.effect == Effect::Declared { (raw.value() * 10.0).round() as u32 } else { row.code };
+            let text = |letters| self.with_words(words, g_codes::name(code), letters);
             match row.facts.unsimulated {
                 Unsimulated::No => {}
                 Unsimulated::Path(letters) => unsimulated.path_codes.push(text(letters)),

@@ -23,6 +23,7 @@ gcode_lang::finding_kinds! {
     LONG_M_CODE = "long-m-code", Warning, "an M code with more than four digits";
     LOWER_CASE = "lower-case", Note, "lower-case letters are read as capitals";
     M_CODE_LOST = "m-code-lost", Warning, "only the last M code of a block counts";
+    MACHINE_VALUE = "machine-value", Warning, "a value of the machine that nothing states";
     MIRROR_ENDED = "mirror-ended", Note, "G50.1 without an axis";
     NO_ANGLE = "no-angle", Warning, "G68 without R";
     NO_AXIS = "no-axis", Warning, "a code without an axis";
@@ -32,7 +33,7 @@ gcode_lang::finding_kinds! {
     NO_SIGNAL = "no-signal", Warning, "G31 goes to its end";
     OTHER_FOLDER = "other-folder", Warning, "a called program in a folder that a control does not search";
     PARAMETER_WITHOUT_EFFECT = "parameter-without-effect", Warning, "a written parameter has no effect here";
-    RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41 or G42 without D";
+    RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41, G42 or G45 to G48 without D";
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
     UNCLOSED_COMMENT = "unclosed-comment", Note, "a comment without its closing bracket";
     WORDS_PASSED_ON = "words-passed-on", Warning, "a word beside an M code of the machine builder";
@@ -97,10 +98,17 @@ pub enum Note {
     CycleLevelMissing(char),
     /// G43 or G44, × 10, with H0, which is no offset.
     LengthOffsetZero(u32),
-    /// G41 or G42, × 10, with D0, which is no radius.
+    /// G41, G42 or G45 to G48, × 10, with offset 0, which is no radius.
     CutterRadiusZero(u32),
     /// G50.1 without an axis ends the mirror images of all axes.
     MirrorEnded,
+    /// A value of the machine, such as a setting of a Haas, is read as 0 because nothing states it.
+    MachineValueUnknown {
+        /// Variable.
+        number: u32,
+        /// Number behind its point.
+        item: Option<u32>,
+    },
     /// A comment extends to the end of its block.
     UnclosedComment,
     /// A block, or the rest of one, after `/`, which depends on a switch of block skip.
@@ -151,8 +159,10 @@ impl Note {
             Self::DigitsLost => (&DIGITS_LOST, "DPRNT prints only the lower digits: the format has too few places".into(), "give the format more places, or --control PRINT-EXPANDS=1 for a control that prints all digits"),
             Self::CycleLevelMissing(letter) => (&LEVEL_MISSING, format!("the cycle drills with {letter} at 0: no value was commanded"), "write R and the depth in the block that begins the cycle"),
             Self::LengthOffsetZero(code) => (&LENGTH_OF_NOTHING, format!("G{} with H0 applies no tool length compensation", spelled(code)), "write H with the number of the tool's offset"),
+            Self::CutterRadiusZero(code @ 450..=480) => (&RADIUS_OF_NOTHING, format!("G{} with offset 0 moves to the end as written", spelled(code)), "write D with the number of the tool's offset; G43 H compensates a tool length"),
             Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
+            Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as 0: nothing states its value on the machine"), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
             Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),
             Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
             Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),

@@ -1,15 +1,17 @@
 //! Codes of group 00: dwell, coordinate systems, G53, G60, and the reference position of G27 to G30.
+use super::axis_word_use::AxisWordUse;
 use super::data::{STANDARD_SYSTEMS, system_index};
 use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::state::{AxisWordUse, State};
+use super::state::State;
+use super::words::WordNumber;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, LengthCompensation, Position, UnknownAxes};
 use gcode_lang::program::code_facts::{Letters, WithoutAxes};
-use gcode_lang::program::g_codes::{GCodeRow, OneShot};
-use gcode_lang::program::modes::{Distance, Length, WorkSystem};
+use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
+use gcode_lang::program::modes::{Distance, Length, Motion, Polar, WorkSystem};
 use gcode_lang::units::Seconds;
 
 impl Planner<'_> {
@@ -25,11 +27,7 @@ impl Planner<'_> {
         match axis_word_use {
             AxisWordUse::OneShot(one) => self.execute_one_shot(one, plan),
             AxisWordUse::AdditionalWork => {
-                let number = self.words.count(b'P')?.unwrap_or(1);
-                if number == 0 || number as usize > self.data.offsets.work.len() - STANDARD_SYSTEMS {
-                    return Err(Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block));
-                }
-                plan.state.modal.work = WorkSystem::Additional(number as u16);
+                self.select_additional_work(&mut plan.state)?;
                 self.data.recompute_position(&mut plan.state);
                 self.plan_motion(plan, false)
             }
@@ -38,6 +36,16 @@ impl Planner<'_> {
             AxisWordUse::Tilt => self.plan_tilt(plan),
             AxisWordUse::Mirror { is_on } => self.plan_mirror(is_on, plan),
         }
+    }
+
+    /// Selects the additional work coordinate system P.
+    pub(super) fn select_additional_work(&self, state: &mut State) -> ExecResult<()> {
+        let number = self.words.count(b'P')?.unwrap_or(1);
+        if number == 0 || number as usize > self.data.offsets.work.len() - STANDARD_SYSTEMS {
+            return Err(Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block));
+        }
+        state.modal.work = WorkSystem::Additional(number as u16);
+        Ok(())
     }
 
     /// Returns the note of a code in a block that names no axis.
@@ -103,6 +111,7 @@ impl Planner<'_> {
             }),
             OneShot::SingleDirection if cycle => Err(self.not_simulated("G60 (in a canned cycle)")),
             OneShot::SingleDirection => self.plan_single_direction(plan),
+            OneShot::ToolOffset(factor) => self.plan_tool_offset_move(f64::from(factor), plan),
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
             OneShot::MachineCoordinateSystem => self.plan_machine_move(plan),
@@ -156,6 +165,60 @@ impl Planner<'_> {
         }
         self.push_rapid(plan, &before);
         self.push_rapid(plan, &endpoint.machine);
+        plan.state.programmed_position = endpoint.programmed;
+        plan.commands_axes = self.names_axis();
+        Ok(())
+    }
+
+    /// G45 to G48: a straight move whose travel along each named axis is longer by `factor` tool offsets. A travel of 0 has the
+    /// sign of its word in G91, and stays 0 in G90 (operator's manual, tool offset).
+    fn plan_tool_offset_move(&self, factor: f64, plan: &mut BlockPlan) -> ExecResult<()> {
+        let modal = &plan.state.modal;
+        let refuse = |what: &str| Err(self.not_simulated(format!("G45 to G48 {what}")));
+        if modal.cycle.is_some() {
+            return refuse("in a canned cycle");
+        }
+        if !matches!(modal.motion, Motion::Rapid | Motion::Linear) {
+            return refuse("with an arc or a thread");
+        }
+        if modal.polar == Polar::On || !plan.state.transform.is_identity() {
+            return refuse("in G16, or in mirror image, scaling or rotation");
+        }
+        if self.data.settings.has_diameter_offsets() {
+            return refuse("with ODI");
+        }
+        let words = &plan.state.modal_words;
+        let is_incremental = modal.distance == Distance::Incremental;
+        let number = if self.data.settings.tool_offset_is_h { words.h } else { words.d };
+        if number == 0
+            && let Some(row) =
+                self.words.g_codes().find(|row| matches!(row.effect, Effect::OneShot(OneShot::ToolOffset(_))))
+        {
+            plan.notes.push(Note::CutterRadiusZero(row.code));
+        }
+        let offset = match self.data.settings.tool_offset_is_h {
+            true => self.locate(self.data.offsets.length(number))?,
+            false => self.data.offset_radius(number).unwrap_or(0.0),
+        };
+        let start = plan.state.programmed_position;
+        let mut endpoint = self.resolve_endpoint(plan)?;
+        for axis in self.named_axes() {
+            let travel = endpoint.programmed[axis] - start[axis];
+            let is_negative = match self.words.get(self.data.axis_letter(axis)) {
+                Some((WordNumber::Literal(number), _)) if travel == 0.0 => number.negative,
+                _ => travel < 0.0,
+            };
+            if travel == 0.0 && !is_incremental {
+                continue;
+            }
+            let shift = if is_negative { -factor * offset } else { factor * offset };
+            endpoint.programmed[axis] = self.data.remove_residue(endpoint.programmed[axis] + shift);
+            endpoint.machine[axis] = self.data.remove_residue(endpoint.machine[axis] + shift);
+        }
+        match plan.state.modal.motion {
+            Motion::Rapid => self.push_rapid(plan, &endpoint.machine),
+            _ => self.locate(self.push_feed(plan, &endpoint.machine))?,
+        }
         plan.state.programmed_position = endpoint.programmed;
         plan.commands_axes = self.names_axis();
         Ok(())

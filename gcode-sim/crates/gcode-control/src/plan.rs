@@ -9,6 +9,7 @@ use super::variables::{Locals, Value};
 use crate::contour::Blend;
 use gcode_lang::control::ParameterId;
 use gcode_lang::motion::{EventKind, Position, StopKind};
+use gcode_lang::program::m_codes::SkipAlarm;
 use gcode_lang::program::modes::GroupSet;
 use gcode_lang::program::{OpIndex, ProgramId};
 use gcode_lang::source::Span;
@@ -65,7 +66,7 @@ pub(super) enum TableWrite {
         value: f64,
         has_no_effect: bool,
     },
-    /// Number of a code that calls a subprogram, or G10 L85.
+    /// Number of a code that calls a subprogram, G10 L85, or an output of M59 and M69.
     Variable {
         number: u32,
         value: Value,
@@ -81,6 +82,8 @@ pub(super) struct SkipPlan {
     pub(super) to: Position,
     pub(super) rate: MmPerMin,
     pub(super) seconds: f64,
+    /// Alarm that the block commands after the motion.
+    pub(super) alarm: Option<SkipAlarm>,
     pub(super) span: Span,
 }
 

@@ -115,8 +115,14 @@ impl Planner<'_> {
                 }
                 Ok(Some(number.value()))
             }
-            WordNumber::Computed(_) if self.data.settings.dwell_in_seconds => {
-                Err(Alarm::NotSimulated { what: "a computed P of a dwell".into() }.located_at(span))
+            WordNumber::Computed(seconds)
+                if self.data.settings.dwell_in_seconds
+                    && self.data.settings.undocumented.computed_dwell_is_seconds =>
+            {
+                if seconds < 0.0 {
+                    return Err(Alarm::IllegalMinus { letter: 'P' }.located_at(span));
+                }
+                Ok(Some(seconds))
             }
             _ => Ok(self.words.count(b'P')?.map(|milliseconds| f64::from(milliseconds) / 1000.0)),
         }

@@ -6,6 +6,9 @@ use super::planner::Planner;
 use super::registers::Registers;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{EventKind, EventSink, Position, SkipMove, SkipSignal};
+use gcode_lang::program::code_facts::Letters;
+use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::m_codes::{self, MCodeEffect, SkipAlarm};
 use gcode_lang::program::modes::CutterSide;
 use gcode_lang::units::Seconds;
 
@@ -16,24 +19,40 @@ impl Planner<'_> {
         if plan.state.modal.cutter != CutterSide::Off || self.registers.lookahead.is_offset() {
             return Err(Alarm::SkipInCompensation.located_at(self.block));
         }
-        self.check_skip_signal_set(b'P')?;
+        // P selects the skip signals, but beside G54.1 or G154 the work coordinate system.
+        if !self.words.has_non_motion_code(|effect| effect == Effect::AdditionalWork) {
+            self.check_skip_signal_set(b'P')?;
+        }
+        if self.data.settings.undocumented.skip_takes_r {
+            self.words.mark_read(Letters::of(b"R"));
+        }
         if self.words.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
             return Err(Alarm::SkipTorque.located_at(self.words.span(b'Q')));
         }
-        if self.words.has_any(b"PQ") {
-            return Err(self.not_simulated("G31 (multi-step and torque limit skip)"));
+        if self.words.has(b'Q') {
+            return Err(self.not_simulated("G31 (torque limit skip)"));
         }
         let endpoint = self.resolve_endpoint(plan)?;
         let (from, to) = (plan.state.machine_position, endpoint.machine);
         let (rate, seconds) =
             self.locate(self.data.feed_seconds(&plan.state, &from, &to, self.words.has(b'F')))?;
+        let alarm = self.commanded_skip_alarm();
         plan.skip_plan =
-            Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, span: self.block });
+            Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, alarm, span: self.block });
         plan.push_move(EventKind::Skip { to, rate, has_signal: false }, seconds);
         plan.state.skip_position = to;
         plan.state.programmed_position = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
+    }
+
+    /// Returns the alarm that M78 or M79 of the block commands.
+    fn commanded_skip_alarm(&self) -> Option<SkipAlarm> {
+        let effect = |(code, _): &(u32, _)| m_codes::find(*code, self.data.settings.codes);
+        self.words.m_codes.iter().filter_map(effect).find_map(|effect| match effect {
+            MCodeEffect::SkipAlarm(alarm) => Some(alarm),
+            _ => None,
+        })
     }
 
     /// Checks the set of skip signals that G31 P or G04 Q names.
@@ -54,7 +73,7 @@ impl Registers {
         plan: &mut BlockPlan,
         sink: &mut S,
     ) -> Option<LocatedAlarm> {
-        let SkipPlan { event, from, to, rate, seconds, span } = plan.skip_plan.take()?;
+        let SkipPlan { event, from, to, rate, seconds, alarm, span } = plan.skip_plan.take()?;
         let signal = match self.data.settings.skip_signal {
             Some(fraction) => SkipSignal::Received { latched: fraction, stop_fraction: fraction },
             None => {
@@ -64,17 +83,26 @@ impl Registers {
                         self.clock.has_been_read.set(true);
                         signal
                     }
+                    // Without a source of signals nothing is known of this one.
                     None => {
                         plan.notes.push(Note::NoSkipSignal);
-                        SkipSignal::Missed
+                        return self
+                            .data
+                            .settings
+                            .missed_skip_alarms
+                            .then(|| Alarm::SkipMissed.located_at(span));
                     }
                 }
             }
         };
         let (latched, stopped, alarm) = match signal {
-            SkipSignal::Received { latched, stop_fraction } => (latched, stop_fraction, None),
+            SkipSignal::Received { latched, stop_fraction } => {
+                let refused = alarm == Some(SkipAlarm::OnSignal);
+                (latched, stop_fraction, refused.then(|| Alarm::SkipReceived.located_at(span)))
+            }
             SkipSignal::Missed => {
-                return self.data.settings.missed_skip_alarms.then(|| Alarm::SkipMissed.located_at(span));
+                let alarms = self.data.settings.missed_skip_alarms || alarm == Some(SkipAlarm::OnMiss);
+                return alarms.then(|| Alarm::SkipMissed.located_at(span));
             }
             SkipSignal::StylusBroken { stopped, deflection, overtravel_limit } => {
                 let alarm = Alarm::StylusBroken { deflection, overtravel_limit }.located_at(span);

@@ -1,5 +1,6 @@
 //! Everything that a program can read: variables, modes, positions, tables, signals and clocks.
 use std::cell::Cell;
+use std::collections::BTreeMap;
 
 use super::data::ControlData;
 use super::functions::integer;
@@ -11,6 +12,7 @@ use super::variables::{OperandStack, Vars};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::UnknownAxes;
+use gcode_lang::program::modes::Unit;
 
 /// Values from which expressions, words and system variables are evaluated, and which blocks change.
 #[derive(Clone, Debug)]
@@ -31,10 +33,13 @@ pub(super) struct Registers {
 
 impl Registers {
     pub(super) fn new(settings: Settings) -> Self {
-        let variables = Vars::new(settings.extra_commons, settings.aliases_commons);
+        let variables = Vars::new(&settings.extra_commons, settings.aliases_commons);
         let uncommanded = (0..settings.axes.len()).fold(0, |axes, axis| axes | 1 << axis);
-        let state =
+        let mut state =
             State { unknown: UnknownAxes { uncommanded, ..UnknownAxes::default() }, ..State::default() };
+        if settings.is_inch_at_power_on == Some(true) {
+            state.modal.unit = Unit::Inch;
+        }
         Self {
             data: ControlData::new(settings),
             variables,
@@ -81,6 +86,8 @@ pub(super) struct Panel {
     pub(super) control_switches: [f64; 2],
     /// #3901 and #3902: parts made, parts required.
     pub(super) part_counters: [f64; 2],
+    /// Outputs and tables of a Haas that the program has written, by their variables.
+    stored_values: BTreeMap<u32, f64>,
     /// Output device open: between POPEN and PCLOS.
     pub(super) is_output_open: bool,
 }
@@ -94,6 +101,16 @@ pub(super) fn check_signal_word(word: u32) -> Result<(), Alarm> {
 }
 
 impl Panel {
+    /// Returns an output or an entry of a table that the program has written.
+    pub(super) fn stored(&self, number: u32) -> Option<f64> {
+        self.stored_values.get(&number).copied()
+    }
+
+    /// Writes an output or an entry of a table.
+    pub(super) fn store(&mut self, number: u32, value: f64) {
+        self.stored_values.insert(number, value);
+    }
+
     pub(super) fn set_output(&mut self, bit: u32, on: bool) {
         self.outputs = if on { self.outputs | 1 << bit } else { self.outputs & !(1 << bit) };
     }

@@ -1,8 +1,9 @@
 //! State that one block can change besides variables and offset tables: modes, positions, codes with a number, the transform
 //! of coordinates. It is small enough to copy, so that a block that raises an alarm leaves no trace.
+use super::axis_word_use::AxisWordUse;
 use gcode_lang::motion::{AxisIndex, LengthCompensation, MAX_AXES, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::program::cycles::Cycle;
-use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::{
     CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, ModalGroup, Motion, Plane, Polar,
     ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
@@ -182,17 +183,6 @@ impl CycleState {
     }
 }
 
-/// Use of the axis words of a block by a code instead of a move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum AxisWordUse {
-    OneShot(OneShot),
-    AdditionalWork,
-    Scale,
-    Mirror { is_on: bool },
-    Rotate,
-    Tilt,
-}
-
 /// Modal codes: one typed field per group, so that they can't contradict one another; `Default` is power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Modal {
@@ -259,6 +249,7 @@ impl Modal {
             | Effect::NoEffect
             | Effect::LookAhead
             | Effect::Smoothness
+            | Effect::Declared
             | Effect::Call
             | Effect::NotSimulated => {}
         }

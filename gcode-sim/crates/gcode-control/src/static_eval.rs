@@ -16,13 +16,13 @@ pub struct VariableTable<'a> {
 impl<'a> VariableTable<'a> {
     /// Returns the variables of a control with these settings.
     pub fn new(settings: &'a Settings) -> Self {
-        Self { settings, vars: Vars::new(settings.extra_commons, settings.aliases_commons) }
+        Self { settings, vars: Vars::new(&settings.extra_commons, settings.aliases_commons) }
     }
 
     /// Raises the alarm of reading a variable, whatever its value.
     pub fn read(&self, number: u32) -> Result<(), Alarm> {
         match self.vars.classify(number) {
-            VariableClass::System => system_variables::check_readable(number, self.settings.offset_variables),
+            VariableClass::System => system_variables::check_readable(number, self.settings),
             VariableClass::Vacant | VariableClass::Local(_) | VariableClass::Common(_) => Ok(()),
         }
     }
@@ -33,7 +33,7 @@ impl<'a> VariableTable<'a> {
             VariableClass::Vacant => Err(Alarm::WriteProtected { number }),
             VariableClass::Local(_) | VariableClass::Common(_) => Ok(()),
             VariableClass::System if matches!(number, 3000 | 3006) => Ok(()),
-            VariableClass::System => system_variables::check_writable(number, self.settings.offset_variables),
+            VariableClass::System => system_variables::check_writable(number, self.settings),
         }
     }
 }

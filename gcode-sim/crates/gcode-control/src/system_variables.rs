@@ -1,11 +1,12 @@
 //! System variables: one row per range, with its functions to read and write.
 use super::data::Register;
+use super::functions::integer;
 use super::notes::Note;
 use super::registers::{Registers, check_signal_word};
 use super::variables::Value;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::{Dialect, OffsetVariables};
-use gcode_lang::motion::{AxisIndex, Position};
+use gcode_lang::control::{Dialect, MachineValue, OffsetVariables, Settings, has_items};
+use gcode_lang::motion::{AxisIndex, Position, SpindleDirection};
 use gcode_lang::program::modes::{Unit, WorkSystem};
 
 type ReadVariable = fn(&Registers, u32) -> Result<f64, Alarm>;
@@ -103,32 +104,61 @@ const NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (100_001, 100_200, "positions of more than 20 axes"),
 ];
 
-/// Ranges that differ on a Haas: tool offsets and the offset of G52; and #3100, which its
-/// other timers and switches surround.
+/// Ranges that differ with D15 6004#5: the offsets of D replace work offsets by axis.
+#[rustfmt::skip]
+const DIAMETER_ROWS: &[VariableRow] = &[
+    row(2401, 2600, Some(|r, n| r.tool_offset(Register::DWear, n)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v))),
+    row(2601, 2800, Some(|r, n| r.tool_offset(Register::DGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v))),
+];
+
+/// Range of values of the machine that a program reads.
+macro_rules! stated {
+    ($from:literal, $to:literal) => {
+        row($from, $to, Some(|r, n| Ok(r.machine_value($from + n, None))), None)
+    };
+}
+
+/// Range of entries of a table of the machine, which a program reads and writes.
+macro_rules! stored {
+    ($from:literal, $to:literal) => {
+        row($from, $to, Some(|r, n| Ok(r.stored_value($from + n))), Some(|r, n, v| r.store($from + n, v)))
+    };
+}
+
+/// Ranges that differ on a Haas: tool offsets, the offset of G52, and what its machine and
+/// its tables state.
 #[rustfmt::skip]
 const HAAS: &[VariableRow] = &[
     row(2001, 2200, Some(|r, n| r.tool_offset(Register::HGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::HGeometry, n, v))),
     row(2201, 2400, Some(|r, n| r.tool_offset(Register::HWear, n)), Some(|r, n, v| r.set_tool_offset(Register::HWear, n, v))),
     row(2401, 2600, Some(|r, n| r.tool_offset(Register::DGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v))),
     row(2601, 2800, Some(|r, n| r.tool_offset(Register::DWear, n)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v))),
+    stated!(1032, 1099),
+    stored!(1601, 2000),
+    stored!(3020, 3025),
+    row(3026, 3026, Some(|r, _| Ok(f64::from(r.state.tool))), None),
+    row(3027, 3027, Some(|r, _| Ok(if r.state.spindle == SpindleDirection::Off { 0.0 } else { r.state.modal_words.s })), None),
+    stated!(3028, 3028),
+    stored!(3030, 3031),
+    row(3032, 3032, Some(|r, _| Ok(f64::from(u8::from(r.data.is_skip_on(1))))), None),
+    row(3033, 3033, Some(|r, _| Ok(f64::from(u8::from(r.data.settings.stops_at_m01)))), None),
+    stated!(3034, 3034),
     vacant(3100),
+    stored!(3196, 3196),
+    stored!(3201, 3600),
     row(5201, 5220, Some(|r, n| r.position(n, |r, axis| r.state.g52_shift[axis])), Some(|r, n, v| r.set_local(n, v))),
+    stored!(5401, 6999),
+    stored!(7401, 7960),
+    stored!(8500, 8599),
+    stated!(11_000, 11_255),
+    row(12_000, 12_255, Some(|r, n| Ok(r.panel.stored(12_000 + n).unwrap_or(0.0))), Some(|r, n, v| r.store(12_000 + n, f64::from(u8::from(v != 0.0))))),
+    stated!(13_000, 13_063),
+    stated!(20_000, 39_999),
+    stored!(50_001, 59_999),
 ];
 
 /// Ranges that a Haas has and the simulator lacks; on a Fanuc they have another meaning or none.
-const HAAS_NOT_SIMULATED: &[(u32, u32, &str)] = &[
-    (1032, 1099, "inputs and loads of a Haas"),
-    (1132, 1299, "outputs and loads of a Haas"),
-    (1601, 2000, "flutes and vibrations of tools"),
-    (3020, 3299, "timers and switches of a Haas"),
-    (3300, 3600, "tools of a Haas"),
-    (5401, 6999, "tool life, settings and parameters of a Haas"),
-    (7401, 7960, "pallets of a Haas"),
-    (8500, 8599, "tool management"),
-    (11_000, 13_999, "inputs and outputs of a Haas"),
-    (20_000, 39_999, "settings and parameters of a Haas"),
-    (50_001, 59_999, "tools of a Haas"),
-];
+const HAAS_NOT_SIMULATED: &[(u32, u32, &str)] = &[(1132, 1299, "outputs and loads of a Haas")];
 
 /// Returns the alarm of a number in one of these ranges.
 fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
@@ -136,36 +166,41 @@ fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
     Some(Alarm::NotSimulated { what: format!("#{number} ({what})") })
 }
 
-/// Returns the row of a number on a control with these offsets.
-fn find(number: u32, offsets: OffsetVariables) -> Result<&'static VariableRow, Alarm> {
+/// Returns the row of a number on a control with these settings.
+fn find(number: u32, settings: &Settings) -> Result<&'static VariableRow, Alarm> {
     let unknown = Alarm::NoSuchVariable { number: i64::from(number) };
-    if offsets == OffsetVariables::Haas {
-        if let Some(row) = HAAS.iter().find(|row| (row.from..=row.to).contains(&number)) {
+    let among = |rows: &'static [VariableRow]| rows.iter().find(|row| (row.from..=row.to).contains(&number));
+    if settings.offset_variables == OffsetVariables::Haas {
+        if let Some(row) = among(HAAS) {
             return Ok(row);
         }
         if let Some(alarm) = not_simulated(number, HAAS_NOT_SIMULATED) {
             return Err(alarm);
         }
-        if matches!(number, 2500..=2899 | 3100..=3199 | 10_001..=10_999) {
+        if matches!(number, 2500..=2899 | 3100..=3199 | 10_001..=13_999) {
             return Err(unknown);
         }
+    } else if settings.has_diameter_variables
+        && let Some(row) = among(DIAMETER_ROWS)
+    {
+        return Ok(row);
     }
     let index = ROWS.partition_point(|row| row.to < number);
     let found = ROWS.get(index).filter(|row| row.from <= number);
     found.ok_or_else(|| not_simulated(number, NOT_SIMULATED).unwrap_or(unknown))
 }
 
-/// Raises the alarm of reading a number on any control with these offsets.
-pub(super) fn check_readable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
-    match find(number, offsets)?.read {
+/// Raises the alarm of reading a number on any control with these settings.
+pub(super) fn check_readable(number: u32, settings: &Settings) -> Result<(), Alarm> {
+    match find(number, settings)?.read {
         ReadRule::Protected => Err(Alarm::ReadProtected { number }),
         ReadRule::Vacant | ReadRule::Value(_) => Ok(()),
     }
 }
 
-/// Raises the alarm of writing a number on any control with these offsets.
-pub(super) fn check_writable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
-    find(number, offsets)?.write.map(|_| ()).ok_or(Alarm::WriteProtected { number })
+/// Raises the alarm of writing a number on any control with these settings.
+pub(super) fn check_writable(number: u32, settings: &Settings) -> Result<(), Alarm> {
+    find(number, settings)?.write.map(|_| ()).ok_or(Alarm::WriteProtected { number })
 }
 
 /// Returns the alarm of a variable: an axis that the control lacks has none.
@@ -178,7 +213,7 @@ fn variable_alarm(alarm: Alarm, number: u32) -> Alarm {
 
 impl Registers {
     pub(super) fn read_system(&self, number: u32) -> Result<Value, Alarm> {
-        let row = find(number, self.data.settings.offset_variables)?;
+        let row = find(number, &self.data.settings)?;
         match row.read {
             ReadRule::Protected => Err(Alarm::ReadProtected { number }),
             ReadRule::Vacant => Ok(Value::Vacant),
@@ -190,9 +225,66 @@ impl Registers {
     }
 
     pub(super) fn write_system(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
-        let row = find(number, self.data.settings.offset_variables)?;
+        let row = find(number, &self.data.settings)?;
         let write = row.write.ok_or(Alarm::WriteProtected { number })?;
         write(self, number - row.from, value).map_err(|alarm| variable_alarm(alarm, number))
+    }
+
+    /// Reads `#n.m`: an item of a parameter of a Haas, or a bit of any other variable.
+    pub(super) fn read_item(&self, number: u32, item: u32) -> Result<Value, Alarm> {
+        if has_items(number) {
+            return Ok(Value::Number(self.machine_value(number, Some(item))));
+        }
+        let bits = integer(self.read_variable(number)?.number())?;
+        if item > 31 {
+            return Err(Alarm::OutOfRange { function: format!("bit of #{number}"), value: f64::from(item) });
+        }
+        Ok(Value::Number((bits >> item & 1) as f64))
+    }
+
+    /// Returns a value of the machine: one that follows from the settings of the control, or is stated; 0 with a note for any
+    /// other.
+    fn machine_value(&self, number: u32, item: Option<u32>) -> f64 {
+        let known = if item.is_none() { self.haas_setting(number) } else { None };
+        if let Some(value) = known {
+            return value;
+        }
+        match self.data.settings.machine_values.get(number, item) {
+            Some(MachineValue::Number(value)) => value,
+            Some(MachineValue::Output { number, is_inverted }) => {
+                let is_on = self.panel.stored(number).is_some_and(|value| value != 0.0);
+                f64::from(u8::from(is_on != is_inverted))
+            }
+            None => {
+                self.block_effects.record_note(Note::MachineValueUnknown { number, item });
+                0.0
+            }
+        }
+    }
+
+    /// Returns a setting of a Haas that the simulator has, by its variable #20000 + n. Mirror images by settings are off.
+    fn haas_setting(&self, number: u32) -> Option<f64> {
+        let settings = &self.data.settings;
+        let on = |is_on: bool| f64::from(u8::from(is_on));
+        Some(match number {
+            20_009 => on(self.state.modal.unit == Unit::Metric),
+            20_022 => self.data.to_program_unit(&self.state, None, settings.g73_retract),
+            20_033 | 20_045..=20_048 | 20_080 | 20_250 => 0.0,
+            20_040 => on(settings.offsets_are_diameters?),
+            20_052 => self.data.to_program_unit(&self.state, None, settings.g83_above_r),
+            20_162 => on(settings.uses_calculator_input),
+            _ => return None,
+        })
+    }
+
+    /// Returns an entry of a table of the machine: as the program has written it, as stated, or 0 with a note.
+    fn stored_value(&self, number: u32) -> f64 {
+        self.panel.stored(number).unwrap_or_else(|| self.machine_value(number, None))
+    }
+
+    fn store(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
+        self.panel.store(number, value);
+        Ok(())
     }
 
     /// Returns #3012 as hhmmss: the time of the settings plus the duration of the run.
@@ -321,7 +413,7 @@ mod tests {
     #[test]
     fn numbers_between_the_ranges_do_not_exist() {
         for number in [34, 99, 200, 499, 5401, 9_999_999] {
-            assert!(find(number, OffsetVariables::Fanuc).is_err(), "#{number}");
+            assert!(find(number, &Settings::default()).is_err(), "#{number}");
         }
     }
 }

@@ -146,8 +146,8 @@ pub struct Vars {
     extra_values: Vec<StoredValue>,
     /// Locals of the callers' levels, the main program's first.
     outer_locals: Vec<Locals>,
-    /// Numbers of further commons.
-    extra_range: (u32, u32),
+    /// Numbers of further commons, in the order of their indices.
+    extra_ranges: Vec<(u32, u32)>,
     /// `#10100` is `#100`.
     aliases_commons: bool,
     /// Names from SETVN.
@@ -155,14 +155,15 @@ pub struct Vars {
 }
 
 impl Vars {
-    /// Returns vacant variables; `extra_range` are the numbers of commons beyond #999, with `aliases_commons` #10100 is #100.
-    pub(super) fn new(extra_range: Option<(u32, u32)>, aliases_commons: bool) -> Self {
-        let count = extra_range.map_or(0, |(from, to)| (to - from + 1) as usize);
+    /// Returns vacant variables; `extra_ranges` are the numbers of commons that not every control has, with `aliases_commons`
+    /// #10100 is #100.
+    pub(super) fn new(extra_ranges: &[(u32, u32)], aliases_commons: bool) -> Self {
+        let count = extra_ranges.iter().map(|(from, to)| (to - from + 1) as usize).sum();
         Self {
             direct_values: Box::new([StoredValue::VACANT; SLOTS]),
             extra_values: vec![StoredValue::VACANT; count],
             outer_locals: Vec::new(),
-            extra_range: extra_range.unwrap_or((1, 0)),
+            extra_ranges: extra_ranges.to_vec(),
             aliases_commons,
             names: BTreeMap::new(),
         }
@@ -207,11 +208,25 @@ impl Vars {
             10_100..=10_199 | 10_500..=10_999 if self.aliases_commons => {
                 VariableClass::Common(number as usize - 10_000)
             }
-            _ if (self.extra_range.0..=self.extra_range.1).contains(&number) => {
-                VariableClass::Common(DIRECT_COUNT + (number - self.extra_range.0) as usize)
-            }
-            _ => VariableClass::System,
+            _ => self.extra_index(number).map_or(VariableClass::System, VariableClass::Common),
         }
+    }
+
+    /// Returns the index of a common that not every control has.
+    fn extra_index(&self, number: u32) -> Option<usize> {
+        let mut first = DIRECT_COUNT;
+        for (from, to) in &self.extra_ranges {
+            if (*from..=*to).contains(&number) {
+                return Some(first + (number - from) as usize);
+            }
+            first += (to - from + 1) as usize;
+        }
+        None
+    }
+
+    /// Returns the numbers of the commons behind [`DIRECT_COUNT`], in the order of their indices.
+    fn extra_numbers(&self) -> impl Iterator<Item = u32> + '_ {
+        self.extra_ranges.iter().flat_map(|(from, to)| *from..=*to)
     }
 
     #[inline(always)]
@@ -296,7 +311,7 @@ impl Vars {
             outer_locals,
             names,
             // Settings of the control.
-            extra_range: _,
+            extra_ranges: _,
             aliases_commons: _,
         } = self;
         *direct_values == other.direct_values
@@ -321,17 +336,18 @@ impl Vars {
         self.outer_locals.iter().flat_map(|level| level.0.map(StoredValue::bits))
     }
 
-    /// Iterates over the variables that aren't vacant, by number: the locals of the main program and the commons.
+    /// Iterates over the variables that aren't vacant: the locals of the main program, the commons of every control, and the
+    /// others, each by number.
     pub(super) fn nonvacant(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let local =
             |local| self.outer_locals.first().map_or_else(|| self.get(local), |level| level.get(local));
-        let locals = (0..LOCALS).map(move |index| (index, local(index)));
-        let commons = (LOCALS..self.indices()).map(|index| (index, self.get(index)));
-        locals.chain(commons).filter_map(|(index, value)| {
-            let number =
-                index.checked_sub(DIRECT_COUNT).map_or(index as u32, |more| self.extra_range.0 + more as u32);
-            Some((number, value.as_number()?))
-        })
+        let locals = (0..LOCALS).map(move |index| (index as u32, local(index)));
+        let direct = (LOCALS..DIRECT_COUNT).map(|index| (index as u32, self.get(index)));
+        let extra = self
+            .extra_numbers()
+            .zip(&self.extra_values)
+            .map(|(number, stored)| (number, Value::from(*stored)));
+        locals.chain(direct).chain(extra).filter_map(|(number, value)| Some((number, value.as_number()?)))
     }
 }
 
@@ -370,7 +386,7 @@ mod tests {
 
     #[test]
     fn a_call_hides_the_callers_locals_and_a_return_restores_them() {
-        let mut vars = Vars::new(None, false);
+        let mut vars = Vars::new(&[], false);
         vars.set(1, Value::Number(7.0));
         vars.push_level(&VACANT);
         assert!(vars.get(1).is_vacant());
@@ -384,7 +400,7 @@ mod tests {
 
     #[test]
     fn values_differ_in_any_bit_and_on_any_level() {
-        let mut vars = Vars::new(Some((98_000, 98_499)), false);
+        let mut vars = Vars::new(&[(400, 409), (98_000, 98_499)], false);
         vars.set(3, Value::Number(0.0));
         let before = vars.clone();
         assert_eq!(before.difference(&vars), None);
@@ -405,11 +421,16 @@ mod tests {
 
     #[test]
     fn variables_that_are_not_vacant_have_their_numbers() {
-        let mut vars = Vars::new(Some((98_000, 98_499)), false);
-        for index in [33, 100, 999, DIRECT_COUNT, DIRECT_COUNT + 499] {
+        let mut vars = Vars::new(&[(400, 409), (98_000, 98_499)], false);
+        for index in [33, 100, 999, DIRECT_COUNT, DIRECT_COUNT + 9, DIRECT_COUNT + 10, DIRECT_COUNT + 509] {
             vars.set(index, Value::Number(1.0));
         }
         let numbers: Vec<_> = vars.nonvacant().map(|(number, _)| number).collect();
-        assert_eq!(numbers, [33, 100, 999, 98_000, 98_499]);
+        assert_eq!(numbers, [33, 100, 999, 400, 409, 98_000, 98_499]);
+        assert!(numbers.iter().all(|number| matches!(
+            vars.classify(*number),
+            VariableClass::Local(_) | VariableClass::Common(_)
+        )));
+        assert_eq!(vars.classify(410), VariableClass::System);
     }
 }

@@ -47,7 +47,7 @@ impl Registers {
         let raw = match &word.value {
             WordOperand::Literal(number) => WordNumber::Literal(*number),
             WordOperand::G(code, found) if !word.comma => {
-                let row = found.row_for(self.data.settings.codes);
+                let row = g_codes::row_on(*code, *found, &self.data.settings);
                 let improper =
                     || Alarm::ImproperGCode { code: g_codes::spelled(*code) }.located_at(word.span);
                 return locate(block_words.put_g(row.ok_or_else(improper)?), word.span);
@@ -84,7 +84,7 @@ impl Registers {
         };
         match letter {
             b'G' => {
-                let row = locate(computed_row(raw, self.data.settings.codes), word.span)?;
+                let row = locate(computed_row(raw, &self.data.settings), word.span)?;
                 locate(block_words.put_g(row), word.span)
             }
             b'M' => {

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::functions::{ExecResult, integer, locate};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::{Dialect, Settings};
+use gcode_lang::control::Settings;
 use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::Motion;
@@ -199,7 +199,7 @@ pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
 }
 
 /// Returns the row of a computed G code.
-pub(super) fn computed_row(raw: WordNumber, dialect: Dialect) -> Result<&'static GCodeRow, Alarm> {
+pub(super) fn computed_row(raw: WordNumber, settings: &Settings) -> Result<&'static GCodeRow, Alarm> {
     let value = match raw {
         WordNumber::Computed(value) => value,
         WordNumber::Literal(number) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
@@ -213,7 +213,8 @@ pub(super) fn computed_row(raw: WordNumber, dialect: Dialect) -> Result<&'static
         return Err(Alarm::ImproperGCode { code: value.to_string() });
     }
     let code = tenths as u32;
-    g_codes::find(code).row_for(dialect).ok_or_else(|| Alarm::ImproperGCode { code: g_codes::spelled(code) })
+    let row = g_codes::row_on(code, g_codes::find(code), settings);
+    row.ok_or_else(|| Alarm::ImproperGCode { code: g_codes::spelled(code) })
 }
 
 /// Word that calls a subprogram.

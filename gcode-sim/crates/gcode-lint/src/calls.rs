@@ -118,7 +118,13 @@ fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<
             true => arguments(&words.list[1..], is_every_block, settings),
             false => Vec::new(),
         };
-        let target = CalledProgramName::Number(called.program);
+        let program = match called.kind {
+            CodeCallKind::MacroInP => {
+                words.list.iter().find(|word| word.letter == b'P').and_then(literal::word_count)?
+            }
+            CodeCallKind::Macro | CodeCallKind::Modal | CodeCallKind::Subprogram => called.program,
+        };
+        let target = CalledProgramName::Number(program);
         let (folder, start, span) = (None, None, word.span);
         Some(CallSite { block, has_own_locals, is_modal, target, folder, start, arguments, span })
     })

@@ -7,7 +7,7 @@ use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::motion::Backtrace;
-use gcode_lang::program::g_codes::{Effect, GCodeRow};
+use gcode_lang::program::g_codes::{self, Effect, GCodeRow};
 use gcode_lang::program::{
     CallCode, LoweredWord, Memory, Op, OpIndex, OpKind, Program, ProgramId, Statement, WordOperand, Words,
 };
@@ -183,7 +183,7 @@ impl<'a> CheckContext<'a> {
     /// Returns the row of a G code written as a number; `None` if this control lacks the code, or for another word.
     pub(crate) fn g_code_row(&self, word: &LoweredWord) -> Option<&'static GCodeRow> {
         match word.value {
-            WordOperand::G(_, found) => found.row_for(self.settings.codes),
+            WordOperand::G(code, found) => g_codes::row_on(code, found, self.settings),
             WordOperand::Literal(_)
             | WordOperand::Number(_)
             | WordOperand::Variable { .. }

@@ -94,5 +94,6 @@ fn collect_from_condition<'a>(condition: &'a Condition, found: &mut UsedExpressi
             collect_from_condition(other, found);
         }
         Condition::Bracket(inner) => collect_from_condition(inner, found),
+        Condition::Value { value, .. } => found.push((value, ValueUse::Comparison)),
     }
 }

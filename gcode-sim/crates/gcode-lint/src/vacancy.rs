@@ -244,6 +244,7 @@ pub(crate) fn truth(condition: &Condition, state: &Locals) -> Option<bool> {
             _ => None,
         },
         Condition::Bracket(inner) => truth(inner, state),
+        Condition::Value { value, .. } => known_number(value_of(value, state)).map(|value| value != 0.0),
     }
 }
 
@@ -310,5 +311,14 @@ fn refine(condition: &Condition, answer: bool, state: &mut Locals) {
         }
         Condition::Logic(..) => {}
         Condition::Bracket(inner) => refine(inner, answer, state),
+        // A true value is not vacant.
+        Condition::Value { value, .. } => {
+            let bits = literal::variable(value).filter(|number| answer && *number > 0);
+            if let Some(bits) = bits.and_then(|number| state.0.get_mut(number as usize))
+                && *bits & NUMBER != 0
+            {
+                *bits &= NUMBER;
+            }
+        }
     }
 }

@@ -33,7 +33,7 @@ pub(super) fn dependencies(request: &Request, run: &Run, metal: &Metal, has_hole
     let Ok(mut control) = set_up_control(request, run.control.memory().reload()) else {
         return HoleDependencies::default();
     };
-    let mut slice = Slice::new(stated_values(request), request.settings.offset_variables, &request.variables);
+    let mut slice = Slice::new(stated_values(request), &request.settings, &request.variables);
     let mut sink = MarkedEvents {
         extractor: super::extractor(request, metal.clone()),
         motion: slice.motion(),
@@ -98,7 +98,11 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     };
     let takes_power_on_modes = || {
         KEPT_GROUPS.into_iter().any(|group| {
-            let is_used = group != ModalGroup::Work || !stated.work_systems.is_empty();
+            let is_used = match group {
+                ModalGroup::Work => !stated.work_systems.is_empty(),
+                ModalGroup::Unit => !stated.has_unit,
+                _ => true,
+            };
             is_used && !control.is_commanded_before_use(group)
         })
     };
@@ -129,6 +133,7 @@ fn stated_values(request: &Request) -> StatedValues {
         work_systems: offsets.map(|offset| offset.system).collect(),
         codes: clamp.collect(),
         has_part: request.part.is_some(),
+        has_unit: request.settings.is_inch_at_power_on.is_some(),
     }
 }
 

@@ -44,6 +44,7 @@ use gcode_lang::alarm::{Alarm, remedy};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, EventSink};
+use gcode_lang::program::modes::Unit;
 use gcode_lang::program::{Library, Memory, Program};
 use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::ast::ProgramPath;
@@ -80,6 +81,7 @@ impl Request {
         let mut settings =
             Settings { axes: machine.axes.clone(), increment: machine.increment, ..Settings::default() };
         settings.apply_dialect(machine.dialect);
+        settings.is_inch_at_power_on = machine.unit.map(|unit| unit == Unit::Inch);
         Self {
             name: name.into(),
             bytes: bytes.into(),
@@ -212,8 +214,12 @@ fn no_such_program(request: &Request, memory: &Memory, path: &ProgramPath) -> Se
 fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionError> {
     let mut control = Control::new(memory, request.settings.clone());
     let presets = presets(&request.machine, &request.settings);
-    for (number, value) in presets.chain(request.variables.iter().copied()) {
-        control.set_variable(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
+    let refused = |number| move |alarm| SessionError::Variable { number, alarm };
+    for (number, value) in presets {
+        control.set_metric_variable(number, value).map_err(refused(number))?;
+    }
+    for (number, value) in request.variables.iter().copied() {
+        control.set_variable(number, value).map_err(refused(number))?;
     }
     for (axis, position) in &request.machine.start {
         control.set_start(*axis, *position);

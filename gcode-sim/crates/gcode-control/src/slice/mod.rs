@@ -25,10 +25,10 @@ use super::control::{Control, Observer};
 use super::data::{SystemAxes, system_index};
 use super::flow::ProgramFlow;
 use super::registers::Registers;
-use gcode_lang::control::OffsetVariables;
+use gcode_lang::control::Settings;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::g_codes::name;
-use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::modes::{ModalGroup, WorkSystem};
 use gcode_lang::program::{Assign, AssignmentTarget, Op, OpKind, Statement};
 
 /// Value that comes from outside the program.
@@ -105,6 +105,8 @@ pub struct StatedValues {
     pub codes: BTreeSet<u32>,
     /// A part decides where G31 stops.
     pub has_part: bool,
+    /// The unit at power-on.
+    pub has_unit: bool,
 }
 
 /// Observer that follows outside values through a run.
@@ -144,22 +146,22 @@ pub struct Slice {
 
 impl Slice {
     /// Returns the observer of a run. `variables` are set before its start; an offset that they set is not stated.
-    pub fn new(
-        mut stated: StatedValues,
-        offset_variables: OffsetVariables,
-        variables: &[(u32, f64)],
-    ) -> Self {
+    pub fn new(mut stated: StatedValues, settings: &Settings, variables: &[(u32, f64)]) -> Self {
         let mut set_offsets = SystemAxes::default();
         stated.work_systems.iter().for_each(|system| set_offsets.add(system_index(*system), u8::MAX));
         for (number, _) in variables {
-            match reads::offset_of(*number, offset_variables) {
+            match reads::offset_of(*number, settings) {
                 Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
                 Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
                 Some(OffsetEntry::Work(system, axes)) => set_offsets.remove(system, axes),
                 None => {}
             }
         }
-        Self { stated, set_offsets, ..Self::default() }
+        let mut slice = Self { stated, set_offsets, ..Self::default() };
+        if slice.stated.has_unit {
+            slice.machine.settle_group(ModalGroup::Unit, Marks::NONE);
+        }
+        slice
     }
 
     /// Returns the marks of the current block's motion, shared with the sink of the run.

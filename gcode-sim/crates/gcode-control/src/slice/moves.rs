@@ -43,7 +43,18 @@ impl Slice {
             self.machine.rest |= others | control;
         }
         match modes.one_shot {
-            None | Some(OneShot::SingleDirection | OneShot::Skip) => {}
+            None | Some(OneShot::SingleDirection | OneShot::Skip) => {
+                let repeats = list.iter().find(|word| word.letter == b'L').filter(|_| settings.repeats_moves);
+                if let Some(repeats) = repeats {
+                    named().for_each(|(axis, _)| self.machine.axes[axis] |= repeats.marks);
+                }
+            }
+            // The start, the end and the offset decide.
+            Some(OneShot::ToolOffset(_)) => {
+                let offset = self.tool_offset_marks(block, list);
+                named().for_each(|(axis, word)| self.machine.axes[axis] |= word.marks | offset | control);
+                return;
+            }
             Some(OneShot::Reference | OneShot::SecondReference) => {
                 for (axis, word) in named() {
                     let before = if word.is_fixed() { Marks::NONE } else { self.machine.axes[axis] };

@@ -7,7 +7,7 @@ use super::super::functions::variable_number;
 use super::super::variables::VariableClass;
 use super::{Block, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
-use gcode_lang::control::OffsetVariables;
+use gcode_lang::control::{OffsetVariables, Settings};
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
 
@@ -26,8 +26,8 @@ pub(super) enum OffsetEntry {
 }
 
 /// Returns the entry that a system variable addresses.
-pub(super) fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetEntry> {
-    let is_haas = offsets == OffsetVariables::Haas;
+pub(super) fn offset_of(number: u32, settings: &Settings) -> Option<OffsetEntry> {
+    let is_haas = settings.offset_variables == OffsetVariables::Haas;
     let bit = |axis: u32| 1_u8.checked_shl(axis).unwrap_or(0);
     let work = |first: u32, system: usize| {
         let (row, axis) = ((number - first) / POSITIONS, (number - first) % POSITIONS);
@@ -35,11 +35,14 @@ pub(super) fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetE
     };
     Some(match number {
         2001..=2400 => OffsetEntry::Length((number - 2001) % 200 + 1),
-        2401..=2800 if is_haas => OffsetEntry::Radius((number - 2401) % 200 + 1),
+        2401..=2800 if is_haas || settings.has_diameter_variables => {
+            OffsetEntry::Radius((number - 2401) % 200 + 1)
+        }
         2500..=2806 => OffsetEntry::Work((number % 100) as usize, bit(number / 100 - 25)),
         5201..=5220 if is_haas => return None,
         5201..=5340 => work(5201, 0),
         7001..=7960 => work(7001, FIRST_ADDITIONAL),
+        10_001..=13_999 if is_haas => return None,
         10_001..=11_999 => OffsetEntry::Length(number % 1000),
         12_001..=13_999 => OffsetEntry::Radius(number % 1000),
         14_001..=20_000 => work(14_001, FIRST_ADDITIONAL),
@@ -47,9 +50,14 @@ pub(super) fn offset_of(number: u32, offsets: OffsetVariables) -> Option<OffsetE
     })
 }
 
+fn is_haas(block: &Block<'_>) -> bool {
+    block.registers.data.settings.offset_variables == OffsetVariables::Haas
+}
+
 /// Returns true if a system variable is the wear of a tool, which no machine file states.
-fn is_wear(number: u32, offsets: OffsetVariables) -> bool {
-    match offsets {
+fn is_wear(number: u32, settings: &Settings) -> bool {
+    match settings.offset_variables {
+        OffsetVariables::Fanuc if settings.has_diameter_variables && matches!(number, 2401..=2600) => true,
         OffsetVariables::Fanuc => matches!(number, 2001..=2200 | 10_001..=10_999 | 12_001..=12_999),
         OffsetVariables::Haas => matches!(number, 2201..=2400 | 2601..=2800),
     }
@@ -98,6 +106,10 @@ impl Slice {
                     self.sources_marks(block, std::slice::from_ref(value))
                 }
                 Operation::Uncommon(UncommonOp::Read(number)) => self.variable_marks(block, *number),
+                Operation::Uncommon(UncommonOp::ReadItem { number, rounded, .. }) => {
+                    let has_items = block.registers.data.settings.has_variable_bits;
+                    self.variable_marks(block, if has_items { *number } else { *rounded })
+                }
                 Operation::Uncommon(UncommonOp::LoadIndirect | UncommonOp::AddPoint) => {
                     match block.number_before(code, place) {
                         Some(number) => self.variable_marks(block, number),
@@ -167,6 +179,13 @@ impl Slice {
             3000 | 3006 | 3100..=3102 => Marks::NONE,
             4001..=4130 | 4201..=4330 => self.modal_marks(block, number),
             5001..=5100 => self.position_marks(block, number),
+            // Before any tool change the tool in the spindle comes from outside.
+            3026 if is_haas(block) => match block.registers.state.tool {
+                0 => self.machine.tool | self.outside_variable(block, number),
+                _ => self.machine.tool,
+            },
+            3027 if is_haas(block) => self.machine.spindle | self.modal_marks(block, 4119),
+            20_009 if is_haas(block) => self.modal_marks(block, 4006),
             // A clock goes on whatever the program sets.
             3001 | 3002 | 3011 | 3012 => self.outside_variable(block, number),
             _ => match self.variables.system(number) {
@@ -197,9 +216,10 @@ impl Slice {
 
     /// Returns true if the machine file states an offset or a block has set it, by its variable.
     fn is_offset_set(&self, data: &ControlData, number: u32) -> bool {
-        let offsets = data.settings.offset_variables;
-        let is_stated = |tools: &BTreeSet<u32>, tool: u32| tools.contains(&tool) && !is_wear(number, offsets);
-        match offset_of(number, offsets) {
+        let settings = &data.settings;
+        let is_stated =
+            |tools: &BTreeSet<u32>, tool: u32| tools.contains(&tool) && !is_wear(number, settings);
+        match offset_of(number, settings) {
             Some(OffsetEntry::Length(tool)) => {
                 self.set_lengths.contains(&tool) || is_stated(&self.stated.lengths, tool)
             }
@@ -229,7 +249,7 @@ impl Slice {
             VariableClass::System => {
                 self.variables.set_system(number, marks);
                 self.add_to_tables(number, marks);
-                match offset_of(number, registers.data.settings.offset_variables) {
+                match offset_of(number, &registers.data.settings) {
                     Some(OffsetEntry::Length(tool)) => _ = self.set_lengths.insert(tool),
                     Some(OffsetEntry::Radius(tool)) => _ = self.set_radii.insert(tool),
                     Some(OffsetEntry::Work(system, axis)) => self.set_offsets.add(system, axis),

@@ -2,7 +2,7 @@
 use super::super::words::{computed_row, count};
 use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
-use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
+use gcode_lang::program::g_codes::{self, Effect, GCodeRow, OneShot};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::modes::{
     CutterSide, Distance, Length, ModalGroup, Motion, Plane, Polar, WorkSystem,
@@ -99,7 +99,7 @@ impl Slice {
     }
 
     fn follow_g_codes(&mut self, block: &Block<'_>, words: &Words, list: &[MarkedWord]) -> BlockModes {
-        let (state, codes) = (&block.registers.state, block.registers.data.settings.codes);
+        let state = &block.registers.state;
         let control = self.branches.marks();
         let mut modes = BlockModes {
             motion: state.modal.motion,
@@ -114,7 +114,7 @@ impl Slice {
             one_shot: None,
         };
         for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'G') {
-            let Some(row) = row_of(block, words, word, codes) else { continue };
+            let Some(row) = row_of(block, words, word) else { continue };
             // G#5 with a code that #4003 had before is one of the same group.
             let is_restored = matches!(word.value, WordOperand::Variable { .. })
                 && marked.marks.is_within(self.power_on_modes)
@@ -205,6 +205,17 @@ impl Slice {
                 }
                 Some(MCodeEffect::RigidTapping) => self.machine.spindle |= control | marked.marks,
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
+                // An output may drive anything.
+                Some(MCodeEffect::Output { .. }) => {
+                    let output = list.iter().find(|word| word.letter == b'P');
+                    if let Some(number) = output.and_then(|word| word.value) {
+                        let marks = control | output.map_or(Marks::NONE, |word| word.marks) | marked.marks;
+                        self.variables.set_system(12_000 + number as u32, marks);
+                    }
+                    let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
+                    self.machine.rest |= marks;
+                }
+                None if settings.declared_codes.find(b'M', 10 * code).is_some() => {}
                 None if settings.code_calls.find_call(b'M', 10 * code).is_none()
                     && !self.stated.codes.contains(&code) =>
                 {
@@ -261,6 +272,26 @@ impl Slice {
         }
     }
 
+    /// Returns the marks of the offset of G45 to G48.
+    pub(super) fn tool_offset_marks(&mut self, block: &Block<'_>, list: &[MarkedWord]) -> Marks {
+        let data = &block.registers.data;
+        let modal = &block.registers.state.modal_words;
+        let is_h = data.settings.tool_offset_is_h;
+        let (letter, modal) = if is_h { (b'H', modal.h) } else { (b'D', modal.d) };
+        let word = list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
+        let number = word.map_or(modal, |value| value as u32);
+        let marks = self.machine.code(letter) | self.machine.tool_table;
+        let is_set = if is_h { self.is_length_set(number) } else { self.is_radius_set(number) };
+        if number == 0 || is_set {
+            return marks;
+        }
+        let (source, value) = match is_h {
+            true => (OutsideValue::ToolLength(number), data.offsets.length(number).ok()),
+            false => (OutsideValue::CutterRadius(number), data.offset_radius(number)),
+        };
+        marks | self.outside(source, value, block.flow, block.op)
+    }
+
     fn follow_call(&mut self, block: &Block<'_>, words: &Words, call: &CallOp) {
         let control = self.branches.marks();
         let mut marks_of = |word: &LoweredWord| self.marked_word(block, words, word, Marks::NONE).marks;
@@ -296,17 +327,13 @@ impl Slice {
 }
 
 /// Returns the row of a G word.
-fn row_of(
-    block: &Block<'_>,
-    words: &Words,
-    word: &LoweredWord,
-    dialect: gcode_lang::control::Dialect,
-) -> Option<&'static GCodeRow> {
+fn row_of(block: &Block<'_>, words: &Words, word: &LoweredWord) -> Option<&'static GCodeRow> {
+    let settings = &block.registers.data.settings;
     match &word.value {
-        WordOperand::G(_, found) => found.row_for(dialect),
+        WordOperand::G(code, found) => g_codes::row_on(*code, *found, settings),
         _ => {
             let raw = block.registers.without_side_effects(|registers| registers.evaluate_word(words, word));
-            computed_row(raw.ok().flatten()?, dialect).ok()
+            computed_row(raw.ok().flatten()?, settings).ok()
         }
     }
 }

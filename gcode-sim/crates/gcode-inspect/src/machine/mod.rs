@@ -36,7 +36,7 @@ pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex, Position};
-use gcode_lang::program::modes::WorkSystem;
+use gcode_lang::program::modes::{self, WorkSystem};
 use gcode_lang::units::Deg;
 use gcode_part::{Hand, Stock};
 
@@ -52,6 +52,8 @@ pub struct Machine {
     pub dialect: Dialect,
     /// Least input increment.
     pub increment: Increment,
+    /// Unit of programs at power-on; `None` if nothing states it, which counts as mm.
+    pub unit: Option<modes::Unit>,
     /// Axes that carry the part, from the bed outwards.
     pub table: Chain,
     /// True if no machine file and no job describes the table.
@@ -160,6 +162,7 @@ impl Default for Machine {
             axes,
             dialect: Dialect::default(),
             increment: Increment::default(),
+            unit: None,
             head: Head::new(HeadKind::Free, 0.0),
             wheel: None,
             tools: Vec::new(),

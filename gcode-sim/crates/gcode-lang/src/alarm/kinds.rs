@@ -104,5 +104,6 @@ crate::finding_kinds! {
     SIM0001 = "SIM0001", Alarm, "a function that is not simulated";
     SIM0002 = "SIM0002", Alarm, "G31 ended without a skip signal";
     SIM0003 = "SIM0003", Alarm, "the stylus is deflected too far";
+    SIM0004 = "SIM0004", Alarm, "G31 with M78 got a skip signal";
     LIMIT = "limit", Alarm, "the run was ended before the program's end";
 }

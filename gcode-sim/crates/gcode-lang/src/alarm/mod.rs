@@ -139,6 +139,8 @@ pub enum Alarm {
     SkipInCompensation,
     /// G31 ended without a signal, and the setting makes that an alarm.
     SkipMissed,
+    /// A G31 with M78 got a skip signal.
+    SkipReceived,
     /// The stylus is deflected beyond its overtravel.
     StylusBroken {
         /// Deflection, mm.

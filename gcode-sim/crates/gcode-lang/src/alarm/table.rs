@@ -74,7 +74,9 @@ impl Alarm {
             Self::DivideByZero => (&PS0112, "division by zero".into(), Some("check the divisor: a vacant variable counts as 0")),
             Self::Expression { text } if text.is_empty() => (&PS1125, "a value is missing".into(), None),
             Self::Expression { text } => (&PS1125, format!("the expression is not valid at '{text}'"), None),
-            Self::NoSuchVariable { number: number @ (34..=99 | 200..=499) } => (&PS0115, format!("the control has no variable #{number}"), Some("use a local variable, #1 to #33, or a common variable, #100 to #199 or #500 to #999")),
+            Self::NoSuchVariable { number: number @ (34..=99 | 200..=499) } => (&PS0115, format!("the control has no variable #{number}"), Some("use #1 to #33, #100 to #199 or #500 to #999; for a machine that has more common variables give their range, as in --control MORE-COMMONS=400-499")),
+            Self::NoSuchVariable { number: number @ (2401..=2800) } => (&PS0115, format!("the control has no variable #{number}"), Some("give --control D15=1 for a control whose D offsets are #2401 to #2800")),
+            Self::NoSuchVariable { number: number @ (20_001..=99_999 | 100_201..=999_999) } => (&PS0115, format!("the control has no variable #{number}"), Some("for a machine whose builder has such common variables give their range, as in --control MORE-COMMONS=900000-907399")),
             Self::NoSuchVariable { number } => (&PS0115, format!("the control has no variable #{number}"), None),
             Self::WriteProtected { number } => (&PS0116, format!("#{number} cannot be written"), None),
             Self::ReadProtected { number } => (&PS1115, format!("#{number} cannot be read"), None),
@@ -139,6 +141,7 @@ impl Alarm {
             Self::UserAlarm { text, .. } if text.is_empty() => (&MC3000, "the program raises an alarm without a text".into(), Some("write a text after the number: #3000=1(TEXT)")),
             Self::UserAlarm { text, .. } => (&MC3000, text.clone(), None),
             Self::SkipMissed => (&SIM0002, "G31 ended without a skip signal".into(), Some("probe farther, or check the position of the part")),
+            Self::SkipReceived => (&SIM0004, "G31 with M78 got a skip signal".into(), Some("check the path: the probe touches something before its end")),
             Self::StylusBroken { deflection, overtravel_limit } => (&SIM0003, format!("the stylus is deflected by {deflection:.3} mm, limit {overtravel_limit:.3} mm"), Some("probe with a lower feed, and back off before the next touch")),
             Self::NotSimulated { what } => (&SIM0001, format!("{what} is not simulated"), Some("avoid it, or check it on a control that has it: this simulator does not execute it")),
         }

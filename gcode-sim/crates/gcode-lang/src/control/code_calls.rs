@@ -18,6 +18,8 @@ pub enum CodeCallKind {
     Macro,
     /// Modal call like G66, or like G66.1 with MGE 6007#3.
     Modal,
+    /// Macro call of the program in P, like G65: `M165 P9810`.
+    MacroInP,
     /// Subprogram call like M98: the other words act first.
     Subprogram,
 }
@@ -282,6 +284,16 @@ impl CodeCalls {
             _ => return None,
         };
         self.add(letter, tenths as u32, CalledProgram { program, kind })
+    }
+
+    /// Makes a code, `M165`, the macro call of the program in P.
+    pub(super) fn set_code_with_p(&mut self, key: &str) -> Option<()> {
+        let letter = key.bytes().next()?.to_ascii_uppercase();
+        let code: f64 = key.get(1..)?.trim().parse().ok()?;
+        let tenths = (code * 10.0).round();
+        let is_code = matches!(letter, b'G' | b'M') && (10.0..=99_990.0).contains(&tenths);
+        let target = CalledProgram { program: 0, kind: CodeCallKind::MacroInP };
+        is_code.then(|| self.add(letter, tenths as u32, target)).flatten()
     }
 
     fn set_address(&mut self, letter: u8, program: u32) -> Option<()> {

@@ -1,6 +1,9 @@
 //! Settings of a control that the meaning of a program depends on, in one struct.
 mod code_calls;
+mod common_ranges;
+mod declared_codes;
 mod dialect;
+mod machine_values;
 mod parameters;
 mod table;
 
@@ -10,6 +13,8 @@ use crate::units::{MmPerMin, round_scaled};
 pub use code_calls::{
     ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
 };
+pub use declared_codes::{DeclaredCodes, DeclaredEffect};
+pub use machine_values::{MachineValue, MachineValues, has_items};
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
 
@@ -171,6 +176,8 @@ with_defaults! {
         pub codes: Dialect = Default::default(),
         /// Least input increment.
         pub increment: Increment = Default::default(),
+        /// True for inches at power-on, false for mm; `None` if nothing states it, which counts as mm.
+        pub is_inch_at_power_on: Option<bool> = None,
         /// Axes in the order of their numbers.
         pub axes: Axes = Default::default(),
         /// ROA 1008#0: axes whose work coordinate rolls over from 360 to 0 and that take the shorter rotation.
@@ -187,6 +194,8 @@ with_defaults! {
         pub converts_arguments: bool = false,
         /// FXY 5101#0: cycles drill along the normal of the plane or the axis in their block, not always Z.
         pub drills_by_plane: bool = false,
+        /// D15 6004#5: #2401 to #2800 are the offsets of D, not work offsets.
+        pub has_diameter_variables: bool = false,
         /// V15 6000#3: geometry and wear are exchanged in the tool offset variables.
         pub series_15_offsets: bool = false,
         /// AD2 3403#6: a repeated address in a block raises PS5074.
@@ -201,10 +210,12 @@ with_defaults! {
         pub macro_alarm_max: u16 = 200,
         /// `IF[…]` accepts an assignment or words without THEN.
         pub allows_plain_if: bool = false,
+        /// IF and WHILE accept a value as their condition, true unless it is 0 or vacant.
+        pub allows_value_conditions: bool = false,
         /// `IF[…]THEN` accepts words.
         pub then_takes_words: bool = false,
-        /// First and last common variable beyond #999; `None` without any.
-        pub extra_commons: Option<(u32, u32)> = Some((98_000, 98_499)),
+        /// First and last of each range of common variables beyond those of every control, in ascending order.
+        pub extra_commons: Vec<(u32, u32)> = vec![(98_000, 98_499)],
         /// Numbering of the tool offset variables.
         pub offset_variables: OffsetVariables = Default::default(),
         /// PRT 6001#1: DPRNT omits the blanks before a number.
@@ -217,6 +228,8 @@ with_defaults! {
         pub print_digits: usize = 8,
         /// ODI 5004#2, setting 40 of a Haas: the offsets of D are diameters; `None` if nothing states it, and they count as radii.
         pub offsets_are_diameters: Option<bool> = None,
+        /// OFH 5001#2: the offset of G45 to G48 is that of H, not of D.
+        pub tool_offset_is_h: bool = false,
         /// EVR 5001#4: a changed offset of D applies from the next block, not from the next D.
         pub applies_radius_at_once: bool = false,
         /// SUP 5003#0: cutter compensation starts and ends by type B.
@@ -231,6 +244,8 @@ with_defaults! {
         pub stops_at_m01: bool = true,
         /// Inputs #1000 to #1031 that are 1, as bits.
         pub inputs: u32 = 0,
+        /// Other values of the machine that a program can read.
+        pub machine_values: MachineValues = Default::default(),
         /// Fraction of a G31 path after which the skip signal comes; `None` for no signal.
         pub skip_signal: Option<f64> = None,
         /// A G31 that ends without its signal raises an alarm.
@@ -239,6 +254,8 @@ with_defaults! {
         pub main_program_cycles: Option<u32> = None,
         /// Codes and addresses that call programs.
         pub code_calls: CodeCalls = Default::default(),
+        /// Codes of the machine builder with a declared effect.
+        pub declared_codes: DeclaredCodes = Default::default(),
         /// 1401#1: a rapid is a straight line; otherwise each axis moves at its own rate.
         pub rapids_are_straight: bool = false,
         /// 1420: rapid rate of the linear axes.
@@ -247,6 +264,8 @@ with_defaults! {
         pub rapid_rotary: f64 = 3_600.0,
         /// 3410: largest difference between the radii at start and end of an arc, mm.
         pub arc_tolerance: f64 = 0.02,
+        /// CIR 3403#5: an arc without R, I, J and K raises PS0022; otherwise it is a straight cut.
+        pub alarms_without_centre: bool = true,
         /// 5440: final approach of G60 with its direction, mm or degrees.
         pub single_direction_overrun: Position = Default::default(),
         /// M97 P calls the subprogram at a sequence number of its own program.
@@ -263,7 +282,7 @@ with_defaults! {
         pub work_systems: usize = 300,
         /// `#10100` is `#100`; `#10500` to `#10999` are `#500` to `#999`.
         pub aliases_commons: bool = false,
-        /// `#n.m` is bit m of #n.
+        /// `#n.m` is item m of the parameter #n, or bit m of any other variable #n.
         pub has_variable_bits: bool = false,
         /// Programs and variables may have names; PRM, AX and AXNUM are available.
         pub has_named_variables: bool = true,
@@ -275,6 +294,10 @@ with_defaults! {
         pub reads_repeats_in_p: bool = true,
         /// Letter for the number of repeats of a canned cycle, K or L.
         pub cycle_repeat_letter: u8 = b'K',
+        /// S may have a decimal point.
+        pub speed_takes_point: bool = false,
+        /// L repeats an incremental straight move.
+        pub repeats_moves: bool = false,
         /// G28 without an axis moves all axes to the reference position.
         pub homes_all_axes: bool = false,
         /// P of a dwell with a point is seconds.

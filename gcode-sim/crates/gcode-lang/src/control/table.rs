@@ -1,5 +1,7 @@
 //! Named settings: the parameter in the manual, the key on the command line, and how the value is read.
-use super::{ArgumentScale, Dialect, Increment, OffsetVariables, Settings};
+use super::common_ranges;
+use super::machine_values::MachineValues;
+use super::{ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetVariables, Settings};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
@@ -49,6 +51,18 @@ pub enum SettingValues {
     Number(f64, f64, &'static str),
     /// Text that matches a regular expression, with its description.
     Text(&'static str, &'static str),
+    /// Ranges of common variables that match a regular expression.
+    Ranges(&'static str),
+}
+
+impl SettingValues {
+    /// Returns the reason why a value is refused, or the permitted values.
+    fn refusal(&self, value: &str) -> String {
+        match self {
+            Self::Ranges(_) => common_ranges::read(value).err().unwrap_or_else(|| self.to_string()),
+            _ => self.to_string(),
+        }
+    }
 }
 
 impl SettingRow {
@@ -70,6 +84,7 @@ impl std::fmt::Display for SettingValues {
             },
             Self::Whole(min, max) => write!(f, "{min} to {max}"),
             Self::Number(_, _, wording) | Self::Text(_, wording) => f.write_str(wording),
+            Self::Ranges(_) => f.write_str(common_ranges::ALLOWED),
         }
     }
 }
@@ -154,6 +169,7 @@ const DOCUMENTED: &[SettingRow] = &[
     choice!("DIALECT", "the family of controls", Dialect::ALL, |s, v| s.apply_dialect(v)),
     choice!("CODES", "the set of G and M codes", Dialect::ALL, |s, v| s.codes = v),
     choice!("INCREMENT", "1013: the least input increment", Increment::ALL, |s, v| s.increment = v),
+    switch!("INI", "the unit at power-on is inch: INI of the setting data, setting 9 of a Haas", |s, on| s.is_inch_at_power_on = Some(on)),
     switch!("DPI", "3401#0, setting 162 of a Haas: numbers without a decimal point are mm, degrees, seconds", uses_calculator_input),
     switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", returns_signed_angles),
     switch!("MFZ", "6004#1: SIN, COS, TAN below 1e-8 become 0", zeroes_residues),
@@ -165,6 +181,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("BCS", "B, unless it is an axis, calls O9028 with its number in #146", code_calls.b_calls_program),
     switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has no effect", converts_arguments),
     switch!("FXY", "5101#0: canned cycles drill along the normal of the plane, not always Z", drills_by_plane),
+    switch!("D15", "6004#5: #2401 to #2800 are the offsets of D, and #2500 to #2806 no work offsets", has_diameter_variables),
     switch!("V15", "6000#3: geometry and wear are exchanged in tool offset variables", series_15_offsets),
     switch!("AD2", "3403#6: a repeated address in a block raises an alarm", alarms_on_repeated_address),
     switch!("M3B", "3404#7: up to three M codes in a block", allows_three_m_codes),
@@ -177,15 +194,17 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("MCA", "6008#1: #3000=n shows MC n", |s, on| (s.macro_alarm_base, s.macro_alarm_max) = if on { (0, 4095) } else { (3000, 200) }),
     whole!("ALARM-BASE", "the number that #3000=n adds to n", 0, 9000, |s, v| s.macro_alarm_base = v as u16),
     whole!("ALARM-MOST", "the largest n that the manual gives for #3000=n", 1, 4095, |s, v| s.macro_alarm_max = v as u16),
-    row!("MORE-COMMONS", "common variables beyond #999", SettingValues::Text("^(0|[0-9]{4,5} *- *[0-9]{4,6})$", "a range as 98000-98499, or 0"), |s, v| s.extra_commons = range(v)?),
+    row!("MORE-COMMONS", "common variables beyond #100 to #199 and #500 to #999", SettingValues::Ranges(common_ranges::PATTERN), |s, v| s.extra_commons = common_ranges::read(v).ok()?),
     choice!("OFFSET-VARIABLES", "numbering of the tool offset variables", OffsetVariables::ALL, |s, v| s.offset_variables = v),
     switch!("PLAIN-IF", "IF[..] accepts an assignment or words without THEN", allows_plain_if),
+    switch!("VALUE-CONDITIONS", "IF[#1] and WHILE[#1] are true unless #1 is 0 or vacant", allows_value_conditions),
     switch!("THEN-WORDS", "IF[..]THEN accepts words", then_takes_words),
     switch!("PRT", "6001#1: DPRNT omits the blanks before a number", omits_print_blanks),
     switch!("PRINT-EXPANDS", "DPRNT prints all digits of a number, also beyond its format", print_expands),
     switch!("PRINT-NEEDS-POPEN", "DPRNT and BPRNT without POPEN raise an alarm", print_needs_open),
     whole!("PRINT-DIGITS", "the most digits that DPRNT's format allows", 1, 15, |s, v| s.print_digits = v),
     switch!("ODI", "5004#2, setting 40 of a Haas: the offsets of D are diameters", |s, on| s.offsets_are_diameters = Some(on)),
+    switch!("OFH", "5001#2: the offset of G45 to G48 is that of H, not of D", tool_offset_is_h),
     switch!("EVR", "5001#4: a changed offset of D applies from the next block", applies_radius_at_once),
     switch!("SUP", "5003#0: cutter compensation starts and ends by type B", starts_up_by_type_b),
     whole!("19625", "blocks of lookahead in cutter compensation", 3, 8, |s, v| s.lookahead_blocks = v),
@@ -200,6 +219,7 @@ const DOCUMENTED: &[SettingRow] = &[
     number!("RAPID", "1420: rapid rate of linear axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
     number!("RAPID-ROTARY", "1420: rapid rate of rotary axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
     number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
+    switch!("CIR", "3403#5: an arc without R, I, J and K raises PS0022, otherwise it is a straight cut", alarms_without_centre),
     row!("5440", "overrun of G60 single direction positioning, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.single_direction_overrun = point(s, v)?),
     switch!("M97-CALLS", "M97 P calls the subprogram at N of the same program", has_local_calls),
     number!("5114", "retract of G73; setting 22 of a Haas", 0.0, 1e6, LENGTH, |s, v| s.g73_retract = v),
@@ -208,12 +228,14 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("FEED-INCREMENTS", "setting 77 of a Haas: F without a decimal point counts 0.001 mm/min", feed_in_increments),
     whole!("WORK-SYSTEMS", "additional work coordinate systems, G54.1 P or G154 P", 1, 300, |s, v| s.work_systems = v),
     switch!("ALIASED-COMMONS", "#10100.. and #10500.. are #100.. and #500..", aliases_commons),
-    switch!("VARIABLE-BITS", "#n.m is bit m of #n", has_variable_bits),
+    switch!("VARIABLE-BITS", "#n.m is item m of the parameter #30000 to #39999, or bit m of any other variable", has_variable_bits),
     switch!("NEW-WORDS", "<NAME>, SETVN, [#NAME], [#_NAME], PRM, AX, AXNUM are available", has_named_variables),
     switch!("MORE-FUNCTIONS", "FUP, LN, EXP, BIN, BCD, POW, ADP, ATAN[a,b] are available", has_extended_functions),
     switch!("G10-PARAMETERS", "G10 accepts L3, L14, L50, L52 and L85", allows_parameter_input),
     switch!("REPEATS-IN-P", "M98 P with more than four digits is repeats and program", reads_repeats_in_p),
     choice!("CYCLE-REPEATS", "the address for the number of repeats of a canned cycle", REPEAT_LETTERS, |s, v| s.cycle_repeat_letter = v),
+    switch!("MOVE-REPEATS", "L repeats an incremental straight move", repeats_moves),
+    switch!("S-POINT", "S may have a decimal point", speed_takes_point),
     switch!("HOME-ALL", "G28 without an axis moves all axes to the reference position", homes_all_axes),
     switch!("DWELL-SECONDS", "P of a dwell with a decimal point is seconds; G04 takes no X and U", dwell_in_seconds),
     switch!("G84-RIGID", "5200#0: G84 and G74 turn the spindle without M29 as well", taps_rigidly),
@@ -273,6 +295,7 @@ undocumented_choices! {
     "G53-IN-G91" g53_moves_in_g91 = false, "G53 in G91 moves by the increment instead of not moving";
     "K0-MOVES" k0_positions = false, "a canned cycle with K0 moves in the plane";
     "SKIP-KEEPS-END" skip_keeps_end = false, "#5001.. after a skipped G31 are the commanded end, not the position of the signal";
+    "G31-R" skip_takes_r = true, "R beside G31 selects a skip signal, as P does; otherwise SIM0001";
     "G43-MOVES" length_moves_at_once = true, "G43 H without an axis moves by the offset at once";
     "TAP-DWELL-R" tap_dwells_at_r = true, "G84 and G74 dwell at the R point level as well";
     "G67-ALARM" g67_alarms = true, "G67 without G66 raises PS1100";
@@ -283,6 +306,8 @@ undocumented_choices! {
     "LOWER-CASE" reads_lower_case = true, "lower case is read as capitals instead of raising PS0004";
     "LARGE-ALARMS" shows_large_alarm_numbers = true, "#3000=n shows a number that is too large instead of raising PS0119";
     "M98-NO-P-311" missing_p_is_311 = false, "M98 without P is PS0311, not PS0076";
+    "DWELL-COMPUTED" computed_dwell_is_seconds = true, "with DWELL-SECONDS a computed P of a dwell is seconds, not milliseconds";
+    "CODES-BEFORE-CALL" allows_codes_before_call = true, "modal codes, F, S, T, D, H and M before G65, G66 or G66.1 act first; otherwise PS0125";
     "M06-STOPS-SPINDLE" tool_change_stops_spindle = true, "M06 stops the spindle";
     "M00-STOPS-SPINDLE" stop_stops_spindle = false, "M00 and M01 stop the spindle";
     "M06-HOMES-Z" tool_change_homes_z = false, "M06 sends Z to machine zero before the tool changes";
@@ -299,9 +324,13 @@ impl Settings {
             SettingError::Value { key: key.to_owned(), value: value.to_owned(), allowed }
         };
         if let Some(row) = ROWS.iter().find(|row| row.key.eq_ignore_ascii_case(key)) {
-            return (row.set)(self, value.trim()).ok_or_else(|| bad(&row.values));
+            return (row.set)(self, value.trim()).ok_or_else(|| bad(&row.values.refusal(value.trim())));
         }
         if let Some(number) = key.strip_prefix('#') {
+            if let Some(stated) = MachineValues::key(number) {
+                let set = self.machine_values.set(stated, value);
+                return set.ok_or_else(|| bad(&MachineValues::ALLOWED));
+            }
             let bit = number.parse().ok().filter(|n| (1000..=1031).contains(n)).map(|n: u32| n - 1000);
             let bit = bit.ok_or_else(|| SettingError::Unknown { key: key.to_owned() })?;
             let on = switch(value).ok_or_else(|| bad(&SettingValues::Switch))?;
@@ -316,9 +345,16 @@ impl Settings {
         if !key.starts_with(|c: char| c.is_ascii_alphabetic()) {
             return Err(unknown());
         }
-        let program = whole(value, 1, 99_999_999).ok_or_else(|| bad(&"a program number"))? as u32;
-        self.code_calls.set_code(key, program).ok_or_else(unknown)?;
-        Ok(())
+        if let Some(effect) = choice(value.trim(), &DeclaredEffect::ALL) {
+            return self.declared_codes.set(key, effect).ok_or_else(unknown);
+        }
+        if value.trim().eq_ignore_ascii_case("P") {
+            return self.code_calls.set_code_with_p(key).ok_or_else(unknown);
+        }
+        let number = value.trim().trim_start_matches(['O', 'o']);
+        let allowed = "a program number, P, nothing or wait";
+        let program = whole(number, 1, 99_999_999).ok_or_else(|| bad(&allowed))? as u32;
+        self.code_calls.set_code(key, program).ok_or_else(unknown)
     }
 }
 
@@ -357,17 +393,6 @@ fn limits(axes: &Axes, value: &str) -> Option<[Option<f64>; MAX_AXES]> {
     Some(limits)
 }
 
-/// Reads a range, `98000-98499`; `0` is no range.
-fn range(value: &str) -> Option<Option<(u32, u32)>> {
-    if value == "0" {
-        return Some(None);
-    }
-    let (from, to) = value.split_once('-')?;
-    let from = whole(from.trim(), 1000, 99_999)? as u32;
-    let to = whole(to.trim(), from as usize, from as usize + 9_999)? as u32;
-    Some(Some((from, to)))
-}
-
 fn roll_over(settings: &mut Settings, letters: &str) -> Option<()> {
     for letter in letters.bytes().filter(|b| *b != b'+') {
         let axis = settings.axes.find(letter.to_ascii_uppercase())?;
@@ -394,6 +419,9 @@ mod tests {
     #[test]
     fn settings_are_set_by_key() {
         let mut settings = Settings::default();
+        assert!(settings.set("G120.1", "nothing").is_ok() && settings.set("M77", "wait").is_ok());
+        assert_eq!(settings.declared_codes.find(b'G', 1201), Some(DeclaredEffect::Nothing));
+        assert!(settings.set("X5", "nothing").is_err() && settings.set("M7.5", "wait").is_err());
         for (key, value) in
             [("NAT", "1"), ("BDT", "1+3"), ("ROA", "A"), ("5115", "0.2"), ("#1005", "1"), ("G201", "9010")]
         {

@@ -129,6 +129,15 @@ pub enum UncommonOp {
     Push,
     /// Reads a variable that may be unreadable.
     Read(u32),
+    /// Reads `#n.m`: item m of #n on a control that has such items, otherwise the variable with the rounded number.
+    ReadItem {
+        /// Variable in front of the point.
+        number: u32,
+        /// Digits behind the point.
+        item: u32,
+        /// Variable with the rounded number.
+        rounded: u32,
+    },
     /// Reads the variable whose number is the last result.
     LoadIndirect,
     /// Changes the sign.

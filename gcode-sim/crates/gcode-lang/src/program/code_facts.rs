@@ -117,6 +117,8 @@ pub enum LookaheadUse {
     Dwell,
     /// Arc at the corner before the next move.
     CornerArc,
+    /// The block waits for the end of the moves before it, as M00 does.
+    Blocks,
 }
 
 /// Transforms of coordinates under which a code is permitted.
@@ -176,7 +178,7 @@ pub struct CodeFacts {
 
 use AxisWords::{Hole, Move, Other, Position, PositionInAbsolute, Tables};
 use CoordinateUse::{Free, NotScaled, NotTransformed};
-use LookaheadUse::{Alarms, CornerArc, Dwell, Path, Refused, Suspends};
+use LookaheadUse::{Alarms, Blocks, CornerArc, Dwell, Path, Refused, Suspends};
 use Timing::{MovesNothing, ReadAhead, Waits};
 use WithoutAxes::{AllOrNothing, CentreDefaulted, Nothing, Same};
 
@@ -233,11 +235,24 @@ pub(super) const SMOOTHNESS: CodeFacts = CodeFacts {
     words: CodeWords { own: Letters::of(b"E"), without_effect: Letters::of(b"EP"), ..CodeWords::NONE },
     ..LOOK_AHEAD
 };
-pub(super) const TOOL_OFFSET: CodeFacts = CodeFacts { lookahead: Alarms, ..MODAL };
+/// Code that the user declares to be without effect, with all its words.
+pub(super) const DECLARED: CodeFacts = CodeFacts {
+    words: CodeWords {
+        own: Letters::of(b"ABCELOUVW"),
+        without_effect: Letters::of(b"ABCEIJKLOPQRUVW"),
+        ..CodeWords::NONE
+    },
+    unsimulated: Unsimulated::Code(Letters::of(b"IJKPQR")),
+    ..MODAL
+};
+pub(super) const DECLARED_WAIT: CodeFacts = CodeFacts { lookahead: Blocks, timing: Waits, ..DECLARED };
 
 /// Code of group 00: axis words are not a move.
 const ONE_SHOT: CodeFacts = CodeFacts { axis_words: Other, ..MODAL };
 
+/// G45 to G48.
+pub(super) const TOOL_OFFSET: CodeFacts =
+    CodeFacts { without_axes: Nothing, lookahead: Alarms, coordinates: NotTransformed, ..ONE_SHOT };
 pub(super) const DWELL: CodeFacts = CodeFacts {
     words: CodeWords {
         own: Letters::of(b"U"),
@@ -280,6 +295,7 @@ pub(super) const FROM_REFERENCE: CodeFacts = CodeFacts { axis_words: Other, ..CH
 pub(super) const SKIP: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     without_axes: Nothing,
+    words: CodeWords { measured: Measured::Axes, ..CodeWords::NONE },
     lookahead: Suspends,
     timing: Waits,
     ..ONE_SHOT

@@ -31,8 +31,15 @@ pub enum DialectSyntax {
     NewWord(&'static str),
     /// G code × 10 that lowering interprets as a call.
     GCodeCall(u32),
-    /// `#30057.21`: bit of a variable, or the variable with the rounded number.
+    /// `#30057.21=1`: an item or bit is written, or the variable with the rounded number.
     FractionalNumber,
+    /// `IF[#1]`, `WHILE[#1]DO1`: a value as a condition.
+    ValueCondition {
+        /// True for WHILE.
+        of_loop: bool,
+    },
+    /// Modal codes before G65, G66 or G66.1.
+    CodesBeforeCall,
 }
 
 impl DialectSyntax {
@@ -53,6 +60,8 @@ impl DialectSyntax {
             Self::NewWord(_) => settings.has_named_variables,
             Self::GCodeCall(code) => g_codes::find(code).row_for(settings.codes).is_some(),
             Self::FractionalNumber => !settings.has_variable_bits,
+            Self::ValueCondition { .. } => settings.allows_value_conditions,
+            Self::CodesBeforeCall => undocumented.allows_codes_before_call,
         }
     }
 
@@ -68,7 +77,10 @@ impl DialectSyntax {
             Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
             Self::NewWord(word) => Alarm::NotAWord { text: word.into() },
             Self::GCodeCall(code) => Alarm::ImproperGCode { code: g_codes::spelled(code) },
-            Self::FractionalNumber => Alarm::NotSimulated { what: "a bit of a variable, #n.m".into() },
+            Self::FractionalNumber => Alarm::NotSimulated { what: "writing #n.m".into() },
+            Self::ValueCondition { of_loop: false } => Alarm::IfFormat,
+            Self::ValueCondition { of_loop: true } => Alarm::WhileFormat,
+            Self::CodesBeforeCall => Alarm::MacroFormat { what: "words before the macro call".into() },
         }
     }
 }

@@ -56,6 +56,8 @@ pub enum Effect {
     LookAhead,
     /// G187 of a Haas, with P and E.
     Smoothness,
+    /// Code of the machine builder that the user declares to be without effect.
+    Declared,
     /// Call; lowering has separated it unless the code is computed.
     Call,
     /// A control may have the code; the simulator does not execute it.
@@ -87,6 +89,7 @@ impl Effect {
             | Self::NoEffect
             | Self::LookAhead
             | Self::Smoothness
+            | Self::Declared
             | Self::Call
             | Self::NotSimulated => return None,
         })
@@ -96,7 +99,9 @@ impl Effect {
     /// A mode that only the final state shows is not shown: a program can switch it on and off again.
     pub(super) const fn is_shown(self) -> bool {
         match self {
-            Self::NoEffect | Self::LookAhead | Self::Smoothness | Self::StrokeCheck(_) => false,
+            Self::NoEffect | Self::LookAhead | Self::Smoothness | Self::Declared | Self::StrokeCheck(_) => {
+                false
+            }
             Self::Motion(_)
             | Self::Plane(_)
             | Self::Distance(_)
@@ -154,6 +159,8 @@ pub enum OneShot {
     PresetWorkCoordinateSystem,
     /// G60: single direction positioning.
     SingleDirection,
+    /// G45 to G48: travel extended by 1, −1, 2 or −2 tool offsets.
+    ToolOffset(i8),
     /// G12 and G13 of a Haas.
     CirclePocket(Motion),
     /// G70 and G71 of a Haas.

@@ -43,6 +43,14 @@ const fn fanuc_cycle(of: &'static Cycle) -> GCodeRow {
     GCodeRow { dialects: Dialect::FANUC, ..cycle(of) }
 }
 
+/// Rows of all codes that the user declares; their code is that of no table.
+pub(super) const DECLARED: GCodeRow = declared(facts::DECLARED);
+pub(super) const DECLARED_WAIT: GCodeRow = declared(facts::DECLARED_WAIT);
+
+const fn declared(facts: facts::CodeFacts) -> GCodeRow {
+    row(u32::MAX, Effect::Declared, "code of the machine builder, declared").with(facts)
+}
+
 /// All codes in ascending order; a code with several meanings has one row per meaning.
 #[rustfmt::skip]
 pub(super) const CODES: &[GCodeRow] = &[
@@ -110,11 +118,11 @@ pub(super) const CODES: &[GCodeRow] = &[
     five_axis(435, Effect::NotSimulated, "tool centre point control, type 2"),
     fanuc(437, Effect::NotSimulated, "tool offset"),
     row(440, Effect::Length(Length::Minus), "tool length compensation -"),
-    fanuc(450, Effect::NotSimulated, "tool offset: increase").with(facts::TOOL_OFFSET),
-    fanuc(460, Effect::NotSimulated, "tool offset: decrease").with(facts::TOOL_OFFSET),
-    fanuc(470, Effect::NotSimulated, "tool offset: double increase").with(facts::TOOL_OFFSET),
-    haas(470, Effect::NotSimulated, "text engraving").with(facts::TOOL_OFFSET),
-    fanuc(480, Effect::NotSimulated, "tool offset: double decrease").with(facts::TOOL_OFFSET),
+    fanuc(450, Effect::OneShot(OneShot::ToolOffset(1)), "tool offset: increase").with(facts::TOOL_OFFSET),
+    fanuc(460, Effect::OneShot(OneShot::ToolOffset(-1)), "tool offset: decrease").with(facts::TOOL_OFFSET),
+    fanuc(470, Effect::OneShot(OneShot::ToolOffset(2)), "tool offset: double increase").with(facts::TOOL_OFFSET),
+    haas(470, Effect::NotSimulated, "text engraving"),
+    fanuc(480, Effect::OneShot(OneShot::ToolOffset(-2)), "tool offset: double decrease").with(facts::TOOL_OFFSET),
     row(490, Effect::Length(Length::Off), "tool length compensation cancel"),
     fanuc(491, Effect::NotSimulated, "tool length compensation cancel"),
     row(500, Effect::Scaling(Scaling::Off), "scaling cancel").with(facts::SCALING_OFF),
@@ -230,7 +238,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     haas(2340, Effect::NotSimulated, "tool centre point control"),
     haas(2530, Effect::NotSimulated, "orient spindle normal to feature coordinate system"),
     haas(2540, Effect::NotSimulated, "dynamic work offset"),
-    haas(2550, Effect::NotSimulated, "dynamic work offset cancel"),
+    haas(2550, Effect::NoEffect, "dynamic work offset cancel").with(facts::WITHOUT_EFFECT),
     haas(2660, Effect::NotSimulated, "linear rapid motion of all axes"),
     haas(2680, Effect::NotSimulated, "feature coordinate system on"),
     haas(2690, Effect::NotSimulated, "feature coordinate system off"),

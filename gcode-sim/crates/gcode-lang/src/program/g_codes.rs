@@ -1,8 +1,8 @@
 //! Lookup of G codes. A code without a row raises an alarm and is never skipped.
 use super::code_facts::{AxisWords, Unsimulated};
 pub use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot, name, spelled};
-use super::g_code_table::CODES;
-use crate::control::Dialect;
+use super::g_code_table::{CODES, DECLARED, DECLARED_WAIT};
+use crate::control::{DeclaredEffect, Dialect, Settings};
 
 /// Rows of a code × 10 by family, as indices; 255 for a code that the controls lack.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +28,24 @@ impl RowLookup {
 #[inline]
 pub fn find(code: u32) -> RowLookup {
     LOOKUP.get(code as usize).copied().unwrap_or(RowLookup::NOT_FOUND)
+}
+
+/// Returns the row of a code × 10 on a control: that of the table, or of a declaration where the table has none that runs.
+#[inline]
+pub fn row_on(code: u32, found: RowLookup, settings: &Settings) -> Option<&'static GCodeRow> {
+    match found.row_for(settings.codes) {
+        Some(row) if row.effect != Effect::NotSimulated => Some(row),
+        row => declared_row(code, settings).or(row),
+    }
+}
+
+/// Returns the row of a code × 10 that the user declares.
+#[cold]
+fn declared_row(code: u32, settings: &Settings) -> Option<&'static GCodeRow> {
+    Some(match settings.declared_codes.find(b'G', code)? {
+        DeclaredEffect::Nothing => &DECLARED,
+        DeclaredEffect::Wait => &DECLARED_WAIT,
+    })
 }
 
 /// Rows of every code × 10 up to the last one.

@@ -28,6 +28,13 @@ pub enum MCodeEffect {
     CoolantOff,
     /// Overrides and rigid tapping: no effect on the path.
     NoEffect,
+    /// M59 and M69 of a Haas: sets or clears the output P, #12000 + P.
+    Output {
+        /// True for M59.
+        is_on: bool,
+    },
+    /// M78 and M79 of a Haas beside G31: an alarm after the motion.
+    SkipAlarm(SkipAlarm),
     /// M96: enables a macro interrupt, whose signal never comes in a run.
     InterruptOn,
     /// M97: disables the macro interrupt.
@@ -36,6 +43,15 @@ pub enum MCodeEffect {
     Call,
     /// A control may have the code; the simulator does not execute it.
     NotSimulated,
+}
+
+/// Condition of the alarm after a G31.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SkipAlarm {
+    /// M78: the signal came.
+    OnSignal,
+    /// M79: no signal came.
+    OnMiss,
 }
 
 /// M code with its effect.
@@ -82,8 +98,10 @@ pub const M_CODES: &[MCodeRow] = &[
     row(30, MCodeEffect::End, "program end, rewind"),
     row(48, MCodeEffect::NoEffect, "overrides on"),
     row(49, MCodeEffect::NoEffect, "overrides off"),
-    haas(78, MCodeEffect::NotSimulated, "alarm where the skip signal came"),
-    haas(79, MCodeEffect::NotSimulated, "alarm where no skip signal came"),
+    haas(59, MCodeEffect::Output { is_on: true }, "output on"),
+    haas(69, MCodeEffect::Output { is_on: false }, "output off"),
+    haas(78, MCodeEffect::SkipAlarm(SkipAlarm::OnSignal), "alarm where the skip signal came"),
+    haas(79, MCodeEffect::SkipAlarm(SkipAlarm::OnMiss), "alarm where no skip signal came"),
     fanuc(96, MCodeEffect::InterruptOn, "macro interrupt"),
     haas(96, MCodeEffect::NotSimulated, "jump by an input"),
     fanuc(97, MCodeEffect::InterruptOff, "macro interrupt off"),

@@ -252,6 +252,10 @@ impl Lowering {
             let span = list[at].span;
             self.record_syntax(DialectSyntax::GCodeCall(code), span);
             if kind != CallCode::Cancel {
+                if at > 0 {
+                    check_codes_before_call(&list[..at])?;
+                    self.record_syntax(DialectSyntax::CodesBeforeCall, list[0].span);
+                }
                 return macro_call(list, at, kind, words);
             }
             list.remove(at);
@@ -327,7 +331,7 @@ pub(super) fn g_code(number: Decimal) -> Option<u32> {
     if number.negative { None } else { u32::try_from(tenths).ok() }
 }
 
-/// Separates the call of G65, G66 or G66.1; all words after the code are its arguments.
+/// Separates the call of G65, G66 or G66.1; all words after the code are its arguments, those before it stay.
 fn macro_call<'a>(
     mut list: Vec<LoweredWord>,
     at: usize,
@@ -335,13 +339,10 @@ fn macro_call<'a>(
     words: impl Iterator<Item = &'a Word>,
 ) -> Result<Words, LocatedAlarm> {
     let span = list[at].span;
-    if at > 0 {
-        let what = "words before the macro call".into();
-        return Err(Alarm::MacroFormat { what }.located_at(list[0].span));
-    }
-    list.remove(0);
+    let arguments = list.split_off(at + 1);
+    list.pop();
     let mut call = CallOp::new(kind, span);
-    for (lowered, word) in list.into_iter().zip(words.skip(1)) {
+    for (lowered, word) in arguments.into_iter().zip(words.skip(at + 1)) {
         match (lowered.letter, &word.value) {
             (b'P', WordValue::Name(name)) => call.target = CallTarget::Name(name.clone()),
             (b'P', _) => call.target = CallTarget::Number(lowered),
@@ -362,7 +363,24 @@ fn macro_call<'a>(
             _ => call.arguments.push(lowered),
         }
     }
-    Ok(Words::new(Vec::new(), Some(call)))
+    Ok(Words::new(list, Some(call)))
+}
+
+/// Raises the alarm of a word before a macro call that is no code: G other than a call, F, S, T, D, H or M.
+fn check_codes_before_call(before: &[LoweredWord]) -> Result<(), LocatedAlarm> {
+    for word in before {
+        match (word.letter, word.value) {
+            (_, WordOperand::G(code, _)) if is_call(code) => {
+                return Err(Alarm::TwoMacroCalls.located_at(word.span));
+            }
+            (b'G' | b'F' | b'S' | b'T' | b'D' | b'H' | b'M', _) => {}
+            _ => {
+                let what = "words before the macro call".into();
+                return Err(Alarm::MacroFormat { what }.located_at(word.span));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Separates the call of M97 P, M98, M99 or M198 with its P, L and Q; the other words act first.

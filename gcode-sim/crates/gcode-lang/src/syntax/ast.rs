@@ -293,7 +293,7 @@ pub enum Function {
 
 /// Condition in the brackets of IF and WHILE.
 ///
-/// A condition is not a number, and a number is not a condition.
+/// A condition is not a number; a number is a condition on some controls, where nothing joins it to others.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Condition {
     /// Comparison of two values.
@@ -313,6 +313,13 @@ pub enum Condition {
     Logic(BinaryOp, OperatorSpelling, Box<Condition>, Box<Condition>),
     /// Condition in brackets.
     Bracket(Box<Condition>),
+    /// `[#1]`: a value in place of the whole condition.
+    Value {
+        /// Value, without the brackets of the condition.
+        value: Expr,
+        /// True for WHILE.
+        of_loop: bool,
+    },
 }
 
 /// Notation of an operator in a condition.

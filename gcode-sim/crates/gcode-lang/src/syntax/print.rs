@@ -169,6 +169,7 @@ fn condition(value: &Condition) -> String {
             format!("{}{}{}", condition(left), operator(*op, *spelling), condition(right))
         }
         Condition::Bracket(inner) => format!("[{}]", condition(inner)),
+        Condition::Value { value, .. } => expr(value),
     }
 }
 

@@ -136,7 +136,7 @@ fn goto(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr> {
 }
 
 fn if_statement(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Statement, bool)> {
-    let (rest, condition) = require_condition(line, input, Alarm::IfFormat)?;
+    let (rest, condition) = require_condition(line, input, false)?;
     let at = spaces(rest);
     match keyword(at) {
         Some(StatementStart { rest, keyword: Keyword::Goto, is_short: short }) => {
@@ -176,7 +176,7 @@ fn then(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Statement, bool)> 
 }
 
 fn while_statement(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Statement, bool)> {
-    let (rest, condition) = require_condition(line, input, Alarm::WhileFormat)?;
+    let (rest, condition) = require_condition(line, input, true)?;
     let at = spaces(rest);
     match keyword(at) {
         Some(StatementStart { rest, keyword: Keyword::Do, .. })
@@ -190,8 +190,9 @@ fn while_statement(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Stateme
 }
 
 /// Reads the condition of IF and WHILE; `IF(…)` has a comment in its place and raises its own alarm.
-fn require_condition<'a>(line: LineInput, input: Input<'a>, otherwise: Alarm) -> ReadResult<'a, Condition> {
-    match condition(line, input) {
+fn require_condition<'a>(line: LineInput, input: Input<'a>, of_loop: bool) -> ReadResult<'a, Condition> {
+    let otherwise = if of_loop { Alarm::WhileFormat } else { Alarm::IfFormat };
+    match condition(line, input, of_loop) {
         Err(nom::Err::Error(_)) if comment_before(input) => round_brackets(input, None),
         Err(nom::Err::Error(_)) => fail(spaces(input), otherwise),
         read => read,

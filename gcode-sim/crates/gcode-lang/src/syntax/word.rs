@@ -94,10 +94,10 @@ pub(super) fn name_word(line: LineInput, input: Input<'_>) -> ReadResult<'_, Wor
     Ok((rest, Word { address, axis: None, value: WordValue::Name(name), span: line.span(input, rest) }))
 }
 
-/// Reads `<NAME>`: letters, digits and `+ - _ .`, in a call also `/` between folders.
+/// Reads `<NAME>`: letters, digits, `+ - _ .` and the blanks that some controls accept, in a call also `/` between folders.
 pub(super) fn program_name(input: Input<'_>) -> ReadResult<'_, String> {
     let Some(inside) = input.strip_prefix(b"<") else { return no_match(input) };
-    let fits = |b: &u8| b.is_ascii_alphanumeric() || matches!(b, b'+' | b'-' | b'_' | b'.' | b'/');
+    let fits = |b: &u8| b.is_ascii_alphanumeric() || matches!(b, b'+' | b'-' | b'_' | b'.' | b'/' | b' ');
     let length = inside.iter().take_while(|b| fits(b)).count();
     let name = String::from_utf8_lossy(&inside[..length]).to_ascii_uppercase();
     let last = name.rsplit('/').next().map_or(0, str::len);

@@ -61,7 +61,9 @@ fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String,
             }
         }
         (b'M', _) => {
-            let code = literal::word_count(word).filter(|code| !is_call(code.saturating_mul(10)))?;
+            let is_declared = |code: u32| settings.declared_codes.find(b'M', code).is_some();
+            let code = literal::word_count(word)
+                .filter(|code| !is_call(code.saturating_mul(10)) && !is_declared(code.saturating_mul(10)))?;
             let fault = match m_codes::find(code, settings.codes) {
                 Some(MCodeEffect::NotSimulated) => "is not simulated",
                 Some(_) => return None,

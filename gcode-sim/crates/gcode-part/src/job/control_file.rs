@@ -18,7 +18,8 @@ use toml::Value;
 use super::FileError;
 use crate::reader::{Located, Reader};
 use gcode_lang::control::{
-    ADDRESSES, CODE_RANGES, CodeCalls, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues, Settings,
+    ADDRESSES, CODE_RANGES, CodeCalls, DeclaredEffect, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues,
+    Settings,
 };
 
 /// Applies the text of a control file to the settings, the dialect first and the rest in the order of the
@@ -35,6 +36,13 @@ pub fn apply(text: &str, settings: &mut Settings, takes_dialect: bool) -> Result
     entries.sort_by_key(|(key, _)| (!is_dialect(key), key.span().start));
     for (key, value) in entries {
         let name = key.as_ref();
+        if let (CODES, Value::Table(codes)) = (name.as_str(), &value) {
+            for (code, value) in codes {
+                let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                settings.set(code, &text).map_err(|error| reader.error(&key, error.to_string()))?;
+            }
+            continue;
+        }
         let value = match value {
             Value::String(text) => text,
             Value::Integer(number) => number.to_string(),
@@ -48,6 +56,12 @@ pub fn apply(text: &str, settings: &mut Settings, takes_dialect: bool) -> Result
     }
     Ok(())
 }
+
+/// Regular expression of a code.
+const CODE: &str = "^[GM]-?[0-9]+([.][0-9])?$";
+
+/// Table of the codes that call a program or have a declared effect.
+const CODES: &str = "codes";
 
 fn is_switch(key: &str) -> bool {
     key.starts_with('#') || ROWS.iter().any(|row| row.key.eq_ignore_ascii_case(key) && row.is_switch())
@@ -68,14 +82,34 @@ impl JsonSchema for ControlFile {
             schema["description"] = text.into();
             schema
         };
-        let program = json!({ "type": "integer", "minimum": 1, "maximum": 99_999_999 });
+        let effects: Vec<&str> = DeclaredEffect::ALL.iter().map(|(name, _)| *name).collect();
+        let program = json!({ "anyOf": [
+            { "type": "integer", "minimum": 1, "maximum": 99_999_999 },
+            { "type": "string", "pattern": "^O?[0-9]{1,8}$" },
+            { "enum": effects },
+            { "enum": ["P"] },
+        ] });
+        let code = described(
+            "A code that calls this program, or its declared effect; G-201 is a modal call.",
+            program,
+        );
+        let mut properties = properties;
+        let codes = json!({ "type": "object", "patternProperties": { CODE: code.clone() }, "additionalProperties": false });
+        properties.insert(
+            CODES.to_owned(),
+            described("Codes that call programs or have a declared effect.", codes),
+        );
         json_schema!({
             "description": "Settings of the control by their names or parameter numbers.",
             "type": "object",
             "properties": properties,
             "patternProperties": {
                 "^#10([0-2][0-9]|3[01])$": described("An input signal.", switch()),
-                "^[GM]-?[0-9]+([.][0-9])?$": described("A code that calls this program; G-201 is a modal call.", program),
+                "^#(103[2-9]|10[4-9][0-9]|1[1-9][0-9]{2}|[2-9][0-9]{3}|[1-5][0-9]{4})([.][0-9]+)?$": described(
+                    "A setting, parameter, input or tool table of the machine: its value, or the output that an input follows.",
+                    json!({ "type": ["number", "string"] }),
+                ),
+                CODE: code,
             },
             "additionalProperties": false,
         })
@@ -90,7 +124,9 @@ fn setting(row: &SettingRow) -> serde_json::Value {
         SettingValues::Number(least, most, _) => {
             json!({ "type": "number", "minimum": least, "maximum": most })
         }
-        SettingValues::Text(pattern, _) => json!({ "type": "string", "pattern": pattern }),
+        SettingValues::Text(pattern, _) | SettingValues::Ranges(pattern) => {
+            json!({ "type": "string", "pattern": pattern })
+        }
     };
     schema["description"] = format!("{} [{}]", row.meaning, row.values).into();
     schema

@@ -34,6 +34,7 @@ use wheel::FileWheel;
 use super::{Chain, Head, HeadKind, Machine, Tool};
 use gcode_lang::control::{Dialect, Increment};
 use gcode_lang::motion::{Axes, AxisIndex};
+use gcode_lang::program::modes::Unit;
 use gcode_part::Stock;
 use gcode_part::reader::bounds::{Bounded, KeyRange};
 use gcode_part::reader::{FileError, FileKey, FixedArray, Items, Located, Optional, Reader, Section, names};
@@ -91,10 +92,17 @@ struct FileControl {
     /// The least input increment: IS-A 0.01, IS-B 0.001, IS-C 0.0001 [default: IS-B].
     #[schemars(extend("enum" = names(&Increment::ALL)))]
     increment: Option<Located<String>>,
+    /// The unit of programs at power-on, as INI of the setting data or setting 9 of a Haas has it [default: metric, as an
+    /// assumption].
+    #[schemars(extend("enum" = names(&UNITS)))]
+    unit: Option<Located<String>>,
     /// Its axis table, axis 1 first: different letters [default: XYZABC].
     #[schemars(regex(pattern = "^[XYZABCUVW]{1,8}$"))]
     axes: Option<Located<String>>,
 }
+
+/// Units of programs.
+const UNITS: [(&str, Unit); 2] = [("metric", Unit::Metric), ("inch", Unit::Inch)];
 
 /// Letters of axes.
 const AXES: [&str; 9] = ["X", "Y", "Z", "A", "B", "C", "U", "V", "W"];
@@ -151,6 +159,11 @@ impl Machine {
                 Some(increment) => reader.choice("control.increment", increment, &Increment::ALL)?,
                 None => Increment::default(),
             },
+            unit: control
+                .unit
+                .as_ref()
+                .map(|unit| reader.choice("control.unit", unit, &UNITS))
+                .transpose()?,
             slides: Chain::default_slides(&axes, &table),
             wheel: file.wheel.map(|wheel| wheel.check(&reader, &axes, &table, &head)).transpose()?,
             offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, offsets))?,

@@ -53,7 +53,7 @@ impl Lowering {
         match &expr.kind {
             ExprKind::Literal(number) => return Ok(Operand::Number(number.value())),
             ExprKind::Variable(index) => {
-                if let Some(number) = self.literal_index(index) {
+                if let Some(number) = literal_index(index) {
                     return Ok(Operand::Variable { slot: Slot::of(number), span: expr.span });
                 }
             }
@@ -120,7 +120,7 @@ impl Lowering {
         match &expr.kind {
             ExprKind::Literal(number) => return Ok((OperandSource::Number(number.value()), 1)),
             ExprKind::Variable(index) => {
-                if let Some(number) = self.literal_index(index) {
+                if let Some(number) = literal_index(index) {
                     let source = match Slot::of(number) {
                         Slot::Free(number) => OperandSource::Free(number),
                         Slot::Other(number) => {
@@ -129,6 +129,10 @@ impl Lowering {
                         }
                     };
                     return Ok((source, 1));
+                }
+                if let Some(read) = item_read(index) {
+                    self.emit(read, expr.span);
+                    return Ok((LAST, 1));
                 }
                 let depth = self.compile_expr(index, context.of_macro())?;
                 self.emit(UncommonOp::LoadIndirect, expr.span);
@@ -273,6 +277,9 @@ impl Lowering {
             ExprKind::Variable(index) => match self.operand(index, ExprContext::MACRO)? {
                 // The nearest whole number, as for any index.
                 Operand::Number(number) if (0.0..=MAX_VARIABLE_NUMBER).contains(&number.round()) => {
+                    if number.fract() != 0.0 {
+                        self.record_syntax(DialectSyntax::FractionalNumber, index.span);
+                    }
                     Ok(AssignmentTarget::Slot(Slot::of(number.round() as u32)))
                 }
                 operand => Ok(AssignmentTarget::Computed(operand)),
@@ -311,19 +318,6 @@ impl Lowering {
         Ok(depth)
     }
 
-    /// Returns the number of a variable with a literal number, `#5`.
-    ///
-    /// `#5.4` is #5, as any number used as an integer is rounded, unless the control reads it as a bit.
-    fn literal_index(&mut self, index: &Expr) -> Option<u32> {
-        let ExprKind::Literal(number) = index.kind else { return None };
-        let value = number.value();
-        if value.fract() != 0.0 {
-            self.record_syntax(DialectSyntax::FractionalNumber, index.span);
-        }
-        let value = value.round();
-        (0.0..=MAX_VARIABLE_NUMBER).contains(&value).then_some(value as u32)
-    }
-
     fn compile_condition(&mut self, condition: &Condition) -> LoweringResult<usize> {
         match condition {
             Condition::Compare { left, relation, spelling: written, right, span } => {
@@ -347,8 +341,32 @@ impl Lowering {
                 Ok(left.max(right + 1))
             }
             Condition::Bracket(inner) => self.compile_condition(inner),
+            Condition::Value { value, of_loop } => {
+                self.record_syntax(DialectSyntax::ValueCondition { of_loop: *of_loop }, value.span);
+                self.compile_expr(value, ExprContext::MACRO.inside(1))
+            }
         }
     }
+}
+
+/// Returns the number of a variable with a whole literal number, `#5`.
+fn literal_index(index: &Expr) -> Option<u32> {
+    let ExprKind::Literal(number) = index.kind else { return None };
+    let value = number.value();
+    (value.fract() == 0.0 && (0.0..=MAX_VARIABLE_NUMBER).contains(&value)).then_some(value as u32)
+}
+
+/// Returns the operation that reads a variable whose literal number has digits behind its point, `#30057.21`.
+fn item_read(index: &Expr) -> Option<UncommonOp> {
+    let ExprKind::Literal(number) = index.kind else { return None };
+    let unit = 10_u64.checked_pow(u32::from(number.places?))?;
+    let (whole, rounded) = (number.digits / unit, number.value().round());
+    let is_index = !number.negative && rounded <= MAX_VARIABLE_NUMBER;
+    is_index.then_some(UncommonOp::ReadItem {
+        number: whole as u32,
+        item: u32::try_from(number.digits % unit).ok()?,
+        rounded: rounded as u32,
+    })
 }
 
 /// Returns true for an expression whose value is a number even if its variables are vacant.

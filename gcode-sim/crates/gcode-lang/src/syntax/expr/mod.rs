@@ -37,12 +37,16 @@ pub(super) fn expr(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'
 
 /// Reads `[c]` of IF and WHILE, or `[c1]AND[c2]`, which some programs write for `[[c1]AND[c2]]`.
 ///
-/// The brackets around the whole condition are not kept.
-pub(super) fn condition(line: LineInput, input: Input<'_>) -> ReadResult<'_, Condition> {
+/// The brackets around the whole condition are not kept. A single value in brackets is a condition of `of_loop`, true for
+/// WHILE.
+pub(super) fn condition(line: LineInput, input: Input<'_>, of_loop: bool) -> ReadResult<'_, Condition> {
     sign(b'[')(input)?;
     match sum(line, input, 0)? {
         (rest, ExprOrCondition::Condition(Condition::Bracket(inner))) => Ok((rest, *inner)),
         (rest, ExprOrCondition::Condition(condition)) => Ok((rest, condition)),
+        (rest, ExprOrCondition::Expr(Expr { kind: ExprKind::Bracket(value), .. })) => {
+            Ok((rest, Condition::Value { value: *value, of_loop }))
+        }
         (_, ExprOrCondition::Expr(_)) => no_match(input),
     }
 }

@@ -1,0 +1,57 @@
+//! Use of the axis words of a block: by one code in place of a move, or by two whose meaning together is known.
+use gcode_lang::program::g_codes::OneShot;
+
+/// Use of the axis words of a block by a code instead of a move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum AxisWordUse {
+    OneShot(OneShot),
+    AdditionalWork,
+    Scale,
+    Mirror { is_on: bool },
+    Rotate,
+    Tilt,
+}
+
+impl AxisWordUse {
+    /// Returns true if two uses are these, in any order.
+    pub(super) fn is_pair_with(self, other: Self, pair: [Self; 2]) -> bool {
+        [self, other] == pair || [other, self] == pair
+    }
+
+    /// Returns true if the block's P can be that of a work coordinate system.
+    pub(super) fn leaves_p(self) -> bool {
+        match self {
+            Self::Rotate | Self::Mirror { .. } => true,
+            Self::OneShot(one) => matches!(
+                one,
+                OneShot::Skip
+                    | OneShot::MachineCoordinateSystem
+                    | OneShot::Reference
+                    | OneShot::CheckReference
+                    | OneShot::FromReference
+            ),
+            Self::AdditionalWork | Self::Scale | Self::Tilt => false,
+        }
+    }
+}
+
+/// Different uses that the codes of a block make of its axis words.
+#[derive(Debug, Default)]
+pub(super) struct AxisWordUses {
+    pub(super) first: Option<AxisWordUse>,
+    pub(super) second: Option<AxisWordUse>,
+    pub(super) has_third: bool,
+}
+
+impl AxisWordUses {
+    /// Adds the use of a further code.
+    pub(super) fn add(&mut self, new: Option<AxisWordUse>) {
+        let Some(new) = new else { return };
+        match (self.first, self.second) {
+            (None, _) => self.first = Some(new),
+            (Some(first), None) if first != new => self.second = Some(new),
+            (Some(first), Some(second)) => self.has_third |= first != new && second != new,
+            (Some(_), None) => {}
+        }
+    }
+}
