@@ -21,12 +21,14 @@ pub(crate) struct Node {
 impl Node {
     /// Returns true if the point is in the box. All coordinates are compared, which is faster than a branch
     /// for each.
+    #[inline]
     pub(crate) fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
         let p = &self.point;
         (0..3).fold(true, |inside, i| inside & (low[i] <= p[i]) & (p[i] <= high[i]))
     }
 
     /// Returns the coordinate of the split and its value.
+    #[inline]
     pub(crate) fn halves(&self) -> (usize, f64) {
         let axis = usize::from(self.axis);
         (axis, self.point[axis])
