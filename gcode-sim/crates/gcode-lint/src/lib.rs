@@ -27,6 +27,7 @@ mod first_reach;
 mod literal;
 mod parameters;
 mod prelude;
+mod repetition;
 mod rule;
 pub mod rules;
 mod suppression;
@@ -43,6 +44,7 @@ use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::{Library, Memory, Program, ProgramId};
 use gcode_lang::source::{Bytes, Span};
+use repetition::Repetitions;
 pub use variables::variables_read;
 
 /// Result of a check: the findings and the texts they refer to.
@@ -72,9 +74,14 @@ pub fn check(
 
 /// Checks the programs in memory as [`check`] does.
 pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> CheckResult {
-    let programs = load_called_programs(&mut memory, settings, library);
+    let mut repetitions = Repetitions::default();
+    let programs = load_called_programs(&mut memory, settings, library, &mut repetitions);
     let context = CheckContext::new(&memory, settings, &programs, rules::codes());
-    let findings = rules::findings(&context);
+    let mut findings = rules::findings(&context);
+    if !repetitions.is_exact(&context, &findings) {
+        repetitions.restore(&mut memory);
+        findings = rules::findings(&CheckContext::new(&memory, settings, &programs, rules::codes()));
+    }
     CheckResult { programs: programs.len(), memory, findings }
 }
 
@@ -83,12 +90,14 @@ fn load_called_programs(
     memory: &mut Memory,
     settings: &Settings,
     library: &mut impl Library,
+    repetitions: &mut Repetitions,
 ) -> Vec<ProgramId> {
     let mut found: Vec<_> = memory.ids().collect();
     let mut known: BTreeSet<_> = found.iter().copied().collect();
     let mut next = 0;
-    while let Some(id) = found.get(next) {
-        for target in calls::called_programs(memory.lower_program(*id), settings) {
+    while let Some(id) = found.get(next).copied() {
+        repetitions.leave_out(memory, id, settings);
+        for target in calls::called_programs(memory.lower_program(id), settings) {
             let called = match target {
                 CalledProgramName::Number(number) => memory.fetch(number, library),
                 CalledProgramName::Name(name) => memory.fetch_name(&name, library),
