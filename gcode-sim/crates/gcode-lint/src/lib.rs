@@ -3,8 +3,9 @@
 //! A finding is a fault at which a control raises an alarm, or a mistake that the control does not notice. The
 //! programs of the file and those they call form one context (`context`): the control flow between their blocks
 //! (`control_flow`), their calls (`calls`), the vacancy of local variables (`vacancy`) and the reads of unset ones
-//! (`unset_reads`). Each rule, a row of [`rules::ALL`], reports its findings about this context. A comment
-//! `(CHECK-OFF NAME)` on a block, or in the head of a program, turns a rule off there (`suppression`).
+//! (`unset_reads`). Moves that repeat an earlier one are left out of it (`repetition`). Each rule, a row of
+//! [`rules::ALL`], reports its findings about this context. A comment `(CHECK-OFF NAME)` on a block, or in the head of a
+//! program, turns a rule off there (`suppression`).
 //!
 //! ```
 //! use gcode_lang::control::Settings;

@@ -109,11 +109,12 @@ impl Repetitions {
             let place = finding.backtrace.as_ref().map(|place| (place.block.source, place.block.start));
             place.is_some_and(|place| self.stand_ins.contains(&place))
         };
-        let may_number_matter = || {
-            context.units.iter().flat_map(|unit| unit.program.ops()).any(|op| may_jump(op.kind()))
-                || self.programs.iter().any(|(_, program)| program.has_duplicate_numbers())
-        };
-        !findings.iter().any(stands_in) && !(self.has_numbers && may_number_matter())
+        let is_found = findings.iter().any(stands_in);
+        let may_lead_there = |op: &Op| may_jump(op.kind());
+        let may_number_matter = self.has_numbers
+            && (context.units.iter().flat_map(|unit| unit.program.ops()).any(may_lead_there)
+                || self.programs.iter().any(|(_, program)| program.has_duplicate_numbers()));
+        !is_found && !may_number_matter
     }
 
     /// Puts the whole programs back.
