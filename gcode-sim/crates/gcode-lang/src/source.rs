@@ -146,32 +146,10 @@ fn line_starts(bytes: &[u8]) -> Vec<u32> {
     }
 }
 
-/// Returns the length of the first line of a text without its end. Sixteen bytes are compared at a time.
+/// Returns the length of the first line of a text without its end.
 #[inline]
 pub(crate) fn line_length(text: &[u8]) -> usize {
-    const ONES: u64 = u64::from_ne_bytes([1; 8]);
-    let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
-    // Sets the top bit of every byte up to CR, LF included. A byte above a match may get a false bit.
-    let low_byte_bits = |word: u64| word.wrapping_sub(ONES * u64::from(b'\r' + 1)) & !word & ONES << 7;
-    let (chunks, rest) = text.as_chunks::<16>();
-    for (index, chunk) in chunks.iter().enumerate() {
-        if !chunk.iter().fold(false, |any, byte| any | (*byte <= b'\r')) {
-            continue;
-        }
-        let (words, _) = chunk.as_chunks::<8>();
-        for (nth_word, word) in words.iter().enumerate() {
-            let word = u64::from_le_bytes(*word);
-            let mut found = low_byte_bits(word);
-            while found != 0 {
-                let bits = found.trailing_zeros() & !7;
-                if is_line_end(&((word >> bits) as u8)) {
-                    return 16 * index + 8 * nth_word + bits as usize / 8;
-                }
-                found &= found - 1;
-            }
-        }
-    }
-    16 * chunks.len() + rest.iter().position(is_line_end).unwrap_or(rest.len())
+    memchr::memchr2(b'\n', b'\r', text).unwrap_or(text.len())
 }
 
 /// Most CRs next to a LF that belong to one line end. The limit keeps reading linear in a file of CRs only.

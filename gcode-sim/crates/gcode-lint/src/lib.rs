@@ -3,8 +3,9 @@
 //! A finding is a fault at which a control raises an alarm, or a mistake that the control does not notice. The
 //! programs of the file and those they call form one context (`context`): the control flow between their blocks
 //! (`control_flow`), their calls (`calls`), the vacancy of local variables (`vacancy`) and the reads of unset ones
-//! (`unset_reads`). Each rule, a row of [`rules::ALL`], reports its findings about this context. A comment
-//! `(CHECK-OFF NAME)` on a block, or in the head of a program, turns a rule off there (`suppression`).
+//! (`unset_reads`). Moves that repeat an earlier one are left out of it (`repetition`). Each rule, a row of
+//! [`rules::ALL`], reports its findings about this context. A comment `(CHECK-OFF NAME)` on a block, or in the head of a
+//! program, turns a rule off there (`suppression`).
 //!
 //! ```
 //! use gcode_lang::control::Settings;
@@ -29,6 +30,7 @@ mod main_programs;
 mod modes;
 mod parameters;
 mod prelude;
+mod repetition;
 mod rule;
 pub mod rules;
 mod suppression;
@@ -46,6 +48,7 @@ use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::{Library, Memory, Program, ProgramId};
 use gcode_lang::source::{Bytes, Span};
+use repetition::Repetitions;
 pub use variables::variables_read;
 
 /// Result of a check: the findings and the texts they refer to.
@@ -91,9 +94,15 @@ pub fn check_loaded(
     knowledge: ControlKnowledge,
     library: &mut impl Library,
 ) -> CheckResult {
-    let programs = load_called_programs(&mut memory, settings, library);
+    let mut repetitions = Repetitions::default();
+    let programs = load_called_programs(&mut memory, settings, library, &mut repetitions);
     let context = CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes());
-    let findings = rules::findings(&context);
+    let mut findings = rules::findings(&context);
+    if !repetitions.is_exact(&context, &findings) {
+        repetitions.restore(&mut memory);
+        let context = CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes());
+        findings = rules::findings(&context);
+    }
     CheckResult { programs: programs.len(), memory, findings }
 }
 
@@ -102,14 +111,16 @@ fn load_called_programs(
     memory: &mut Memory,
     settings: &Settings,
     library: &mut impl Library,
+    repetitions: &mut Repetitions,
 ) -> Vec<ProgramId> {
     let mut found: Vec<_> = memory.ids().collect();
     let mut known: BTreeSet<_> = found.iter().copied().collect();
     let (main, mut next) = (memory.main(), 0);
-    while let Some(id) = found.get(next) {
+    while let Some(id) = found.get(next).copied() {
         // Each program finds what a main program in its folder would find.
-        memory.set_main(*id);
-        for target in calls::called_programs(memory.lower_program(*id), settings) {
+        memory.set_main(id);
+        repetitions.leave_out(memory, id, settings);
+        for target in calls::called_programs(memory.lower_program(id), settings) {
             let called = match target {
                 CalledProgramName::Number(number) => memory.fetch(number, library),
                 CalledProgramName::Name(name) => memory.fetch_name(&name, library),

@@ -21,12 +21,14 @@ pub(crate) struct Node {
 impl Node {
     /// Returns true if the point is in the box. All coordinates are compared, which is faster than a branch
     /// for each.
+    #[inline]
     pub(crate) fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
         let p = &self.point;
         (0..3).fold(true, |inside, i| inside & (low[i] <= p[i]) & (p[i] <= high[i]))
     }
 
     /// Returns the coordinate of the split and its value.
+    #[inline]
     pub(crate) fn halves(&self) -> (usize, f64) {
         let axis = usize::from(self.axis);
         (axis, self.point[axis])
@@ -102,31 +104,37 @@ fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
     halve(&mut behind[1..], start, high);
 }
 
-/// Calls `each` for the points in a box, without the first `skipped` nodes.
+/// Calls `each` for the points in a box, without the first `skipped` nodes. It follows one half in a loop: most boxes are
+/// small and meet no other.
 fn visit(
-    nodes: &[Node],
-    skipped: usize,
+    mut nodes: &[Node],
+    mut skipped: usize,
     low: &Point3<f64>,
     high: &Point3<f64>,
     each: &mut impl FnMut(usize),
 ) {
-    let middle = nodes.len() / 2;
-    if nodes.len() <= LEAF_SIZE {
-        let inside = nodes.iter().skip(skipped).filter(|node| node.is_in(low, high));
-        inside.for_each(|node| each(node.index as usize));
-        return;
+    while LEAF_SIZE < nodes.len() {
+        let middle = nodes.len() / 2;
+        let (before, behind) = (&nodes[..middle], &nodes[middle + 1..]);
+        let node = &nodes[middle];
+        if skipped <= middle && node.is_in(low, high) {
+            each(node.index as usize);
+        }
+        let (axis, place) = node.halves();
+        let is_before = skipped < middle && low[axis] <= place;
+        if place <= high[axis] {
+            if is_before {
+                visit(before, skipped, low, high, each);
+            }
+            (nodes, skipped) = (behind, skipped.saturating_sub(middle + 1));
+        } else if is_before {
+            nodes = before;
+        } else {
+            return;
+        }
     }
-    let node = &nodes[middle];
-    if skipped <= middle && node.is_in(low, high) {
-        each(node.index as usize);
-    }
-    let (axis, place) = node.halves();
-    if skipped < middle && low[axis] <= place {
-        visit(&nodes[..middle], skipped, low, high, each);
-    }
-    if skipped < nodes.len() && place <= high[axis] {
-        visit(&nodes[middle + 1..], skipped.saturating_sub(middle + 1), low, high, each);
-    }
+    let inside = nodes.iter().skip(skipped).filter(|node| node.is_in(low, high));
+    inside.for_each(|node| each(node.index as usize));
 }
 
 fn closest(

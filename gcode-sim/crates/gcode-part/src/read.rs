@@ -1,6 +1,6 @@
 //! Reads lists of nominal holes as JSON and CSV in the schema of `hole`, and rejects implausible entries with
 //! their location.
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
@@ -50,9 +50,9 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
     };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
-    let column = |name: &str| header.iter().position(|h| h == name);
-    for name in &COLUMNS[..REQUIRED] {
-        if column(name).is_none() {
+    let columns = COLUMNS.map(|name| (name, header.iter().position(|h| h == name)));
+    for (name, place) in &columns[..REQUIRED] {
+        if place.is_none() {
             let all = COLUMNS[..=REQUIRED].join(",");
             return Err(error(Some(1), format!("column '{name}' is missing: the header is {all}")));
         }
@@ -63,28 +63,31 @@ pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
             format!("column '{other}' is unknown: the columns are {}", COLUMNS.join(",")),
         ));
     }
+    let [id, x, y, z, i, j, k, depth, diameter, feature_list, through] = columns;
     let mut holes = Vec::new();
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(|e| csv_error(&e))? {
         let line = record.position().map(|p| p.line() as usize);
-        let field = |name: &str| column(name).and_then(|c| record.get(c)).unwrap_or_default().trim();
-        let number = |name: &str| {
-            let text = field(name);
+        let field = |(_, place): (&str, Option<usize>)| {
+            place.and_then(|place| record.get(place)).unwrap_or_default().trim()
+        };
+        let number = |column: (&str, Option<usize>)| {
+            let (name, text) = (column.0, field(column));
             text.parse::<f64>().map_err(|_| error(line, format!("column '{name}' is '{text}': a number")))
         };
         holes.push(Hole {
-            id: Some(field("id").to_owned()).filter(|id| !id.is_empty()),
-            entry: [number("x")?, number("y")?, number("z")?],
-            axis: [number("i")?, number("j")?, number("k")?],
-            depth: if field("depth").is_empty() && !field("features").is_empty() {
+            id: Some(field(id).to_owned()).filter(|id| !id.is_empty()),
+            entry: [number(x)?, number(y)?, number(z)?],
+            axis: [number(i)?, number(j)?, number(k)?],
+            depth: if field(depth).is_empty() && !field(feature_list).is_empty() {
                 0.0
             } else {
-                number("depth")?
+                number(depth)?
             },
-            diameter: if field("diameter").is_empty() { None } else { Some(number("diameter")?) },
-            features: features(field("features"))
+            diameter: if field(diameter).is_empty() { None } else { Some(number(diameter)?) },
+            features: features(field(feature_list))
                 .map_err(|message| error(line, format!("column 'features': {message}")))?,
-            through: match field("through") {
+            through: match field(through) {
                 "" | "false" => false,
                 "true" => true,
                 other => return Err(error(line, format!("column 'through' is '{other}': true or false"))),
@@ -119,7 +122,7 @@ fn csv_error(e: &csv::Error) -> FileError {
 
 /// Returns the holes with an id each and axes normalised to length 1, or the first error.
 pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, FileError> {
-    let mut ids = BTreeMap::new();
+    let mut ids = HashMap::new();
     for (index, hole) in holes.iter_mut().enumerate() {
         complete(hole);
         check(hole, index).map_err(|message| error(None, message))?;

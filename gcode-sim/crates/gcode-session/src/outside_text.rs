@@ -4,12 +4,42 @@ use gcode_control::slice::StatedValues;
 /// Returns true if a text has a block skip, `#` before anything but a local or a harmless system variable, PRM, or a tool
 /// offset whose value the machine file does not state.
 pub(super) fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
-    let (mut is_in_comment, mut has_assignment, mut open_brackets) = (false, false, 0);
-    text.iter().enumerate().any(|(at, byte)| match byte.to_ascii_uppercase() {
-        b'\n' => {
-            (is_in_comment, has_assignment, open_brackets) = (false, false, 0);
-            false
+    let mut rest = text;
+    // Most lines of a long file are numbers alone.
+    while let Some(found) = find_outside_sign(rest) {
+        let start = rest[..found].iter().rposition(is_line_end).map_or(0, |end| end + 1);
+        let end = rest[found..].iter().position(is_line_end).map_or(rest.len(), |length| found + length);
+        if line_names_outside(&rest[start..end], stated, has_holes) {
+            return true;
         }
+        rest = &rest[end..];
+    }
+    false
+}
+
+fn is_line_end(byte: &u8) -> bool {
+    *byte == b'\n'
+}
+
+/// Returns 0 for the bytes at which a line can name an outside value: `#`, `/`, `[`, H and D. Without branches, so that
+/// many bytes are tested at once.
+fn outside_sign(byte: u8) -> u8 {
+    let letter = byte & 0xdf;
+    (byte ^ b'#').min(byte ^ b'/').min(byte ^ b'[').min(letter ^ b'H').min(letter ^ b'D')
+}
+
+/// Returns the offset of the first byte that [`outside_sign`] finds.
+#[inline(never)]
+fn find_outside_sign(text: &[u8]) -> Option<usize> {
+    let least = |chunk: &[u8; 64]| chunk.iter().fold(u8::MAX, |least, byte| least.min(outside_sign(*byte)));
+    let without = 64 * text.as_chunks().0.iter().take_while(|chunk| least(chunk) != 0).count();
+    text[without..].iter().position(|byte| outside_sign(*byte) == 0).map(|offset| without + offset)
+}
+
+/// Returns [`names_outside`] for one line.
+fn line_names_outside(line: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
+    let (mut is_in_comment, mut has_assignment, mut open_brackets) = (false, false, 0);
+    line.iter().enumerate().any(|(at, byte)| match byte.to_ascii_uppercase() {
         bracket @ (b'(' | b')') => {
             is_in_comment = bracket == b'(';
             false
@@ -22,7 +52,7 @@ pub(super) fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool)
         b'[' => {
             open_brackets += 1;
             // No other function of one argument ends with M.
-            text[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M'))
+            line[..at].trim_ascii_end().last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M'))
         }
         b']' => {
             open_brackets -= 1;
@@ -30,8 +60,8 @@ pub(super) fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool)
         }
         // Behind `=` or inside brackets a slash divides.
         b'/' => !has_assignment && open_brackets <= 0,
-        b'#' => !matches!(number_behind(text, at), Some(0..=33 | 3000 | 3006 | 3100..=3102)),
-        letter @ (b'H' | b'D') if has_holes => is_open_offset(text, at, letter, stated),
+        b'#' => !matches!(number_behind(line, at), Some(0..=33 | 3000 | 3006 | 3100..=3102)),
+        letter @ (b'H' | b'D') if has_holes => is_open_offset(line, at, letter, stated),
         _ => false,
     })
 }

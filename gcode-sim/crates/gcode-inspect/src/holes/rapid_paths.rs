@@ -101,9 +101,13 @@ impl HoleExtractor<'_> {
             return self.check_curved(event, &travel, MotionKind::Rapid);
         }
         let Some(start) = start else { return false };
-        let is_end = *to == self.axis_position;
-        let tip = if is_end { self.pose.tip } else { self.machine.forward(to, &self.setup).tip };
+        let tip = self.pose_at(to).tip;
         self.check_rapid(event, &start, &tip)
+    }
+
+    /// Returns the pose of the tool on the part, which is known at the end of the motion.
+    fn pose_at(&self, at: &Position) -> Pose {
+        if *at == self.axis_position { self.pose } else { self.machine.forward(at, &self.setup) }
     }
 
     /// Reports a rapid that cuts if its axes arrive in another order than along the straight path; returns true if one
@@ -161,7 +165,7 @@ impl HoleExtractor<'_> {
             return;
         }
         let is_straight = self.machine.is_straight(&AxisMotion { from, to, arc: None });
-        let pose = self.machine.forward(to, &self.setup);
+        let pose = self.pose_at(to);
         let begin = start.unwrap_or(pose.tip);
         let Some(axis) = self.axis_in_motion(&begin, &pose.tip) else { return };
         if is_straight {

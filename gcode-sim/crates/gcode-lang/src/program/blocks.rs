@@ -80,6 +80,30 @@ impl Blocks {
         numbers
     }
 
+    /// Returns the number of blocks.
+    pub(super) fn len(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// Calls `each` with every block in order: with its operation if it consists of numbers alone.
+    pub(super) fn visit_numbers(&self, mut each: impl FnMut(OpIndex, Option<&Op>)) {
+        let mut op = Op::default();
+        for (index, start) in self.starts.iter().enumerate() {
+            let is_numbers = !self.separate_trees.contains_key(&(index as u32))
+                && op.refill(self.text.source, self.text.content(), *start);
+            each(index, is_numbers.then_some(&op));
+        }
+    }
+
+    /// Returns the blocks whose new index is not that of the next one.
+    pub(super) fn renumbered(&self, new_index: &[u32]) -> Self {
+        let is_kept = |index: usize| new_index[index] != new_index[index + 1];
+        let kept = self.starts.iter().enumerate().filter(|(index, _)| is_kept(*index));
+        let trees =
+            self.separate_trees.iter().map(|(index, tree)| (new_index[*index as usize], tree.clone()));
+        Self::new(self.text.clone(), kept.map(|(_, start)| *start).collect(), trees.collect())
+    }
+
     /// Returns the operation of a block if it is lowered.
     #[inline(always)]
     pub(super) fn op(&self, index: OpIndex) -> Option<&Op> {

@@ -51,6 +51,15 @@ impl Loops {
         Self { pairs, ends }
     }
 
+    /// Returns the loops with new indices for their blocks.
+    pub(super) fn renumbered(&self, new_index: &[u32]) -> Self {
+        let new = |block: OpIndex| new_index[block] as OpIndex;
+        Self {
+            pairs: self.pairs.iter().map(|(begin, end, number)| (new(*begin), new(*end), *number)).collect(),
+            ends: self.ends.iter().map(|(end, begin)| (new(*end), new(*begin))).collect(),
+        }
+    }
+
     pub(super) fn end_of(&self, begin: OpIndex) -> Option<OpIndex> {
         let index = self.pairs.binary_search_by_key(&begin, |(first, ..)| *first).ok()?;
         self.pairs.get(index).map(|(_, end, _)| *end)

@@ -169,6 +169,11 @@ impl Memory {
         program
     }
 
+    /// Replaces a program by another form of it and returns it.
+    pub fn replace(&mut self, id: ProgramId, program: Program) -> Program {
+        std::mem::replace(&mut self.programs[id.0 as usize], program)
+    }
+
     /// Returns the span of a block, read again from its text.
     pub fn block_span(&self, id: ProgramId, index: OpIndex) -> Option<Span> {
         self.get(id).blocks.tree(index).map(|tree| tree.span)

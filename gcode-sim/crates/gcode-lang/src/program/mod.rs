@@ -297,6 +297,36 @@ impl Program {
         self.blocks.lowered_ops()
     }
 
+    /// Returns the number of blocks.
+    pub fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Calls `each` with every block in order: its index, and its operation if it consists of numbers alone.
+    pub fn visit_number_blocks(&self, each: impl FnMut(OpIndex, Option<&Op>)) {
+        self.blocks.visit_numbers(each);
+    }
+
+    /// Returns the program without the marked blocks. No block that begins or ends a loop may be marked, nor the last one
+    /// before it.
+    #[must_use]
+    pub fn without(&self, is_left_out: &[bool]) -> Self {
+        let mut kept = 0;
+        let mut new_index = vec![0];
+        new_index.extend(is_left_out.iter().map(|is_left_out| {
+            kept += u32::from(!is_left_out);
+            kept
+        }));
+        Self {
+            name: self.name.clone(),
+            folder: self.folder.clone(),
+            blocks: self.blocks.renumbered(&new_index),
+            numbers: OnceLock::new(),
+            loops: self.loops.renumbered(&new_index),
+            ..*self
+        }
+    }
+
     /// Lowers one block for execution and returns it; `None` after the last block.
     #[inline(always)]
     pub fn lower_block(&mut self, index: OpIndex) -> Option<(&Self, &Op)> {
@@ -319,6 +349,11 @@ impl Program {
 
     fn numbers(&self) -> &[(u32, u32)] {
         self.numbers.get_or_init(|| self.blocks.sequence_numbers())
+    }
+
+    /// Returns true if two blocks have the same sequence number, other than 0.
+    pub fn has_duplicate_numbers(&self) -> bool {
+        self.numbers().windows(2).any(|pair| pair[0].0 != 0 && pair[0].0 == pair[1].0)
     }
 
     /// Returns true if several blocks have this sequence number.

@@ -13,13 +13,11 @@ impl Op {
     #[inline]
     pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
         self.ordinal = 0;
-        let Some(numbers) = NumberWords::new(source, text, start) else { return false };
-        let number = numbers.sequence_number;
         if !matches!(self.body, OpBody::Plain(OpKind::Words(_))) {
             self.body = OpBody::Plain(OpKind::Words(Words::default()));
         }
         let OpBody::Plain(OpKind::Words(words)) = &mut self.body else { return false };
-        let Some(end) = fill(words.cleared_list(), numbers) else { return false };
+        let Some((number, end)) = fill(words.cleared_list(), source, text, start) else { return false };
         if words.list.is_empty() {
             self.body = OpBody::default();
         }
@@ -29,10 +27,16 @@ impl Op {
     }
 }
 
-/// Appends the words of a line to an empty list and returns the end of the last one; `None` for any other
-/// line.
-#[inline(never)]
-fn fill(list: &mut Vec<LoweredWord>, mut numbers: NumberWords<'_>) -> Option<u32> {
+/// Appends the words of the line at `start` to an empty list; returns the sequence number and the end of the last word,
+/// `None` for any other line.
+#[inline(always)]
+fn fill(
+    list: &mut Vec<LoweredWord>,
+    source: SourceId,
+    text: &[u8],
+    start: u32,
+) -> Option<(Option<u32>, u32)> {
+    let mut numbers = NumberWords::new(source, text, start)?;
     let mut end = numbers.words_start;
     for NumberWord { letter, number, span } in numbers.by_ref() {
         end = span.end;
@@ -46,7 +50,7 @@ fn fill(list: &mut Vec<LoweredWord>, mut numbers: NumberWords<'_>) -> Option<u32
             _ => list.push(lowered_word(WordOperand::Literal(number))),
         }
     }
-    numbers.is_at_end().then_some(end)
+    numbers.is_at_end().then_some((numbers.sequence_number, end))
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ impl<'a> NumberWords<'a> {
     /// Starts at the block at `start`; `text` may continue after the line.
     ///
     /// `None` if the block begins with an N that is not a plain sequence number.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(source: SourceId, text: Input<'a>, start: u32) -> Option<Self> {
         let mut numbers =
             Self { source, text, words_start: start, position: start as usize, sequence_number: None };
@@ -55,6 +55,7 @@ impl<'a> NumberWords<'a> {
         Some(numbers)
     }
 
+    #[inline]
     pub(crate) fn is_at_end(&self) -> bool {
         matches!(self.behind_spaces(), [] | [b'\n' | b'\r', ..])
     }
