@@ -314,8 +314,9 @@ impl HoleExtractor<'_> {
             ),
             (ToolRegion::Shank, _) => {
                 let tool = tool_name(self.setup.tool);
-                let message =
-                    format!("the shank or the holder of {tool} touches metal, {depth:.3} mm below {level} at {point}");
+                let message = format!(
+                    "the shank or the holder of {tool} touches metal, {depth:.3} mm below {level} at {point}"
+                );
                 let number = self.setup.tool.unwrap_or(0);
                 // The tool is the same in all its feeds.
                 self.findings.add_in_program(&FEED_BESIDE_HOLE, backtrace, number, 1, |kind| {

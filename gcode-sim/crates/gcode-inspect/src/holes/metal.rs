@@ -238,8 +238,13 @@ impl KnownMetal {
     }
 
     /// Returns the nominal hole on whose axis the tip makes a stroke.
-    pub(super) fn hole_of_stroke(&self, tips: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<&Collar> {
-        self.hole_around(tips, axis, 0.0).filter(|hole| tips.iter().all(|tip| hole.from_axis(tip) <= MAX_OFFSET))
+    pub(super) fn hole_of_stroke(
+        &self,
+        tips: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+    ) -> Option<&Collar> {
+        self.hole_around(tips, axis, 0.0)
+            .filter(|hole| tips.iter().all(|tip| hole.from_axis(tip) <= MAX_OFFSET))
     }
 
     /// Returns the nominal hole in which a cylinder about the tool's axis stays while its lower end moves between two points.

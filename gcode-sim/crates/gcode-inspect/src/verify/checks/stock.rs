@@ -12,7 +12,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         return;
     };
     let entry = |hole: &Hole| Some(Point3::from(hole.entry));
-    let frames = "give stock and holes in the same frame, that of the part, and the stock the size of the part";
+    let frames =
+        "give stock and holes in the same frame, that of the part, and the stock the size of the part";
     if report(comparison, findings, ("entry", frames), &stock, entry) {
         return;
     }
@@ -21,7 +22,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let bottom = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
         (!hole.through).then_some(bottom)
     };
-    let through = "correct the depth or the stock; a hole through the part is `through`, and its depth the thickness";
+    let through =
+        "correct the depth or the stock; a hole through the part is `through`, and its depth the thickness";
     report(comparison, findings, ("bottom", through), &stock, bottom);
 }
 
