@@ -80,9 +80,9 @@ fn header(job: &PinHoles) -> [String; 18] {
         format!("CALLS O{HEAD} ITSELF BEFORE IT CUTS"),
         "A EQUATORIAL RADIUS, B POLAR RADIUS, C CLEARANCE, D DEPTH".to_owned(),
         "E FEED OUT, F FEED IN, H 0. NORMAL 1. AXIAL, Q PIVOT TO TIP".to_owned(),
-        format!("R RADIUS, U SIGN OF {}, V RETRACT, W AZIMUTH", rotary.letter),
+        format!("R RADIUS, T TOOL DIAMETER, U SIGN OF {}, V RETRACT, W AZIMUTH", rotary.letter),
         format!("COMMON VARIABLES #{common} HEAD ANGLE TO SET, #{} ANGLE SET", common + 1),
-        format!("ALARMS {k}001-{k}017 BY O{HOLE}, {k}021-{k}030 BY O{HEAD}"),
+        format!("ALARMS {k}001-{k}019 BY O{HOLE}, {k}021-{k}030 BY O{HEAD}"),
         "START WITH THE TOOL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
     ]
 }
@@ -138,6 +138,7 @@ fn hole_call(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> Block {
         ('V', job.machine.retract()),
         ('F', tool.feed),
         ('E', tool.retract_feed()),
+        ('T', tool.diameter),
         ('U', f64::from(job.machine.rotary.sign)),
         ('Q', reach(job, tool)),
     ];

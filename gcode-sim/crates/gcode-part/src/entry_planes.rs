@@ -223,6 +223,11 @@ impl Collar {
         self.rod.piece(from, to, (self.rod.length - max_depth, f64::INFINITY), radius)
     }
 
+    /// Returns the shares of a straight travel between which it is below the entry plane.
+    pub fn piece_below_entry(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<[f64; 2]> {
+        self.rod.piece(from, to, (f64::NEG_INFINITY, self.rod.length), f64::INFINITY)
+    }
+
     /// Returns the largest depth of a feed in the hole, mm.
     pub fn max_depth(&self) -> f64 {
         self.steps.iter().map(|step| step.max_depth).fold(0.0, f64::max)

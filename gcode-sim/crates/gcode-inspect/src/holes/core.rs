@@ -116,7 +116,7 @@ impl HoleExtractor<'_> {
         let [u, v] = directions_across(axis);
         let is_left = |offset: Vector3<f64>| {
             let line = [base + offset, base + offset + up];
-            self.metal.uncut(&line, &|_| false).is_some()
+            self.metal.uncut(&line).is_some()
         };
         let radius = gaps.last()?[1];
         let distance = (radius / LINES).max(MIN_DISTANCE);

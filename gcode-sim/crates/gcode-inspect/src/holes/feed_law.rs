@@ -1,4 +1,4 @@
-//! What feeds may remove: the nominal holes and the stated pockets, and nothing else of the part.
+//! Feeds in metal: they may remove the nominal holes and the stated pockets, and nothing else of the part.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
@@ -8,7 +8,7 @@ use super::profile::Profile;
 use super::rapids::{PLUNGE_COSINE, format_point};
 use super::tool_lines::{lines, rim};
 use crate::findings::FEED_BESIDE_HOLE;
-use crate::machine::{AxisMotion, ToolCylinder, ToolKind};
+use crate::machine::{AxisMotion, ToolCylinder, ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
 use gcode_part::Collar;
@@ -25,22 +25,22 @@ const MAX_RADIUS: f64 = 25.0;
 /// Largest number of chords of an arc by which the shank and the holder are compared.
 const SHANK_CHORDS: usize = 16;
 
-/// Number of feeds that cut what has to stay after which no more are compared.
-const MAX_SPOILT_FEEDS: u32 = 1000;
+/// Number of feeds with a gouge after which no more are compared.
+const MAX_GOUGES: u32 = 1000;
 
 /// Largest distance by which a plunge leads aside, mm.
 const MAX_ASIDE: f64 = 0.2;
 
-/// What a feed removes of the metal that has to stay.
+/// Deepest cut of a feed into metal that has to stay.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spoilt {
+pub(super) struct Gouge {
     at: PointInMetal,
-    part: SpoiltBy,
+    part: ToolRegion,
 }
 
-/// Part of the tool that removes it.
+/// Region of a tool that makes a gouge.
 #[derive(Clone, Copy, Debug)]
-enum SpoiltBy {
+enum ToolRegion {
     Tip,
     Side,
     Shank,
@@ -83,8 +83,7 @@ impl HoleExtractor<'_> {
         Some(cuts || rim().is_some_and(|rim| rim.into_iter().any(is_cut)))
     }
 
-    /// Follows a feed through points: it removes metal. Reports what it must not remove, where the positions of the axes
-    /// are known.
+    /// Removes the metal that a feed through points sweeps, and reports a gouge where the positions of the axes are known.
     pub(super) fn remove_by_feed(&mut self, event: &Event<'_>, path: &[Point3<f64>], is_known: bool) {
         if !self.metal.is_known() {
             return;
@@ -94,8 +93,8 @@ impl HoleExtractor<'_> {
         if is_judged && (self.surface.is_none() || self.has_left_start) {
             self.check_milling(event, path);
         }
-        let is_judged = is_judged && self.spoilt_feeds < MAX_SPOILT_FEEDS;
-        let mut worst: Option<Spoilt> = None;
+        let is_judged = is_judged && self.gouge_count < MAX_GOUGES;
+        let mut worst: Option<Gouge> = None;
         for chord in path.windows(2) {
             let (from, to) = (chord[0], chord[1]);
             let Some(axis) = self.axis_in_motion(&from, &to) else { continue };
@@ -106,23 +105,23 @@ impl HoleExtractor<'_> {
             // The direction of the tool is unknown, and the body is one that is drilled all round.
             let is_unclear =
                 self.pose.axis.is_none() && self.surface.is_some_and(|body| !body.has_flat_faces());
-            let spoilt = match is_judged && !is_unclear {
-                true => self.spoilt(&[from, to], &axis),
+            let gouge = match is_judged && !is_unclear {
+                true => self.gouge(&[from, to], &axis),
                 false => None,
             };
             // A plunge may drill a hole: the motion after it shows that.
-            let all = if is_plunge { &mut self.plunge_spoilt } else { &mut worst };
-            *all = Spoilt::worse(*all, spoilt);
+            let all = if is_plunge { &mut self.plunge_gouge } else { &mut worst };
+            *all = Gouge::worse(*all, gouge);
             self.remove(&[from, to], &axis);
         }
         if is_judged && worst.is_none() {
             let few = self.shank_path(path);
             let chords = few.windows(2).map(|chord| [chord[0], chord[1]]);
-            worst = chords.filter_map(|chord| self.spoilt_by_shank(&chord)).reduce(Spoilt::deeper);
+            worst = chords.filter_map(|chord| self.shank_contact(&chord)).reduce(Gouge::deeper);
         }
-        if let Some(spoilt) = worst {
-            self.spoilt_feeds += 1;
-            self.report_spoilt(&event.backtrace(), spoilt);
+        if let Some(gouge) = worst {
+            self.gouge_count += 1;
+            self.report_gouge(&event.backtrace(), gouge);
         }
     }
 
@@ -191,8 +190,8 @@ impl HoleExtractor<'_> {
         self.metal.removed.add(from, to, *axis, &profile);
     }
 
-    /// Returns what a feed removes of the metal that has to stay.
-    fn spoilt(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Spoilt> {
+    /// Returns the gouge that a feed makes.
+    fn gouge(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
         if self.surface.is_some() && !self.has_left_start {
             return None;
         }
@@ -204,23 +203,23 @@ impl HoleExtractor<'_> {
         {
             return None;
         }
-        match self.metal.spoilt(travel, FeedPart::Tip) {
-            Some(at) => Some(Spoilt { at, part: SpoiltBy::Tip }),
-            None => self.spoilt_by_side(travel, axis).or_else(|| self.spoilt_beyond(travel)),
+        match self.metal.gouge(travel, FeedPart::Tip) {
+            Some(at) => Some(Gouge { at, part: ToolRegion::Tip }),
+            None => self.side_gouge(travel, axis).or_else(|| self.gouge_beyond(travel)),
         }
     }
 
-    /// Returns what the tool may meet beyond the far side of a hole through which it is fed.
-    fn spoilt_beyond(&self, travel: &[Point3<f64>; 2]) -> Option<Spoilt> {
+    /// Returns the gouge of a tool that is fed beyond the far side of a hole.
+    fn gouge_beyond(&self, travel: &[Point3<f64>; 2]) -> Option<Gouge> {
         let axis = self.pose.axis.filter(|_| self.surface.is_some())?;
         let beyond = |tip| self.metal.beyond_hole(tip, &axis);
         let (hole, at) =
             travel.iter().filter_map(beyond).reduce(|a, b| if a.1.depth < b.1.depth { b } else { a })?;
-        Some(Spoilt { at, part: SpoiltBy::TipBeyond(hole) })
+        Some(Gouge { at, part: ToolRegion::TipBeyond(hole) })
     }
 
-    /// Returns what the cutting parts of the tool remove of the metal that has to stay.
-    fn spoilt_by_side(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Spoilt> {
+    /// Returns the gouge that the cutting parts of the tool make beside the path of its tip.
+    fn side_gouge(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
         self.pose.axis?;
         self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
             let base = travel.map(|tip| tip + axis.into_inner() * part.from);
@@ -228,30 +227,29 @@ impl HoleExtractor<'_> {
                 return None;
             }
             let lines = lines(part, axis, travel, &self.metal).into_iter();
-            let points = lines.filter_map(|line| self.metal.spoilt(&line, FeedPart::Side(part.radius)));
+            let points = lines.filter_map(|line| self.metal.gouge(&line, FeedPart::Side(part.radius)));
             let at = points.reduce(PointInMetal::deeper)?;
-            Some(Spoilt { at, part: SpoiltBy::Side })
+            Some(Gouge { at, part: ToolRegion::Side })
         })
     }
 
-    /// Returns what the shank and the holder touch of the metal that is left.
-    fn spoilt_by_shank(&self, travel: &[Point3<f64>; 2]) -> Option<Spoilt> {
+    /// Returns the contact of the shank or the holder with the metal that is left.
+    fn shank_contact(&self, travel: &[Point3<f64>; 2]) -> Option<Gouge> {
         let axis = &self.pose.axis?;
         if self.surface.is_some() && !self.has_left_start {
             return None;
         }
-        // In a nominal hole its outline decides.
-        if self.metal.is_allowed(travel, axis, 0.0) {
-            return None;
-        }
+        // Below the entry of a nominal hole its outline decides on strokes in it.
+        let is_stroke = is_along(axis, &(travel[1] - travel[0]));
+        let hole = if is_stroke { self.metal.hole_of_stroke(travel, axis) } else { None };
         self.tool_body.iter().filter(|part| !part.is_cutter).find_map(|part| {
             if !self.may_cut(part, travel, axis) {
                 return None;
             }
             let lines = lines(part, axis, travel, &self.metal).into_iter();
-            let points = lines.filter_map(|line| self.metal.uncut(&line, &|_| false));
+            let points = lines.filter_map(|line| self.metal.uncut_above(&line, hole));
             let at = points.reduce(PointInMetal::deeper)?;
-            Some(Spoilt { at, part: SpoiltBy::Shank })
+            Some(Gouge { at, part: ToolRegion::Shank })
         })
     }
 
@@ -265,21 +263,24 @@ impl HoleExtractor<'_> {
         (0..last).step_by(step).chain([last]).filter_map(|index| path.get(index).copied()).collect()
     }
 
-    /// Returns false if a part of the tool stays outside a known body.
+    /// Returns false if a part of the tool stays outside the metal that is known.
     fn may_cut(&self, part: &ToolCylinder, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> bool {
-        let along = travel[1] - travel[0];
+        let Some(body) = self.surface else {
+            let [from, to] = travel.map(|tip| tip + axis.into_inner() * part.from);
+            return self.metal.is_touched(&from, &to, axis, part.radius);
+        };
         let part = ToolCylinder { to: self.metal.top_of(part, &travel[0], axis), ..*part };
-        self.surface.is_none_or(|body| part.cuts(&body, (&travel[0], axis), &along))
+        part.cuts(&body, (&travel[0], axis), &(travel[1] - travel[0]))
     }
 
-    /// Starts a line: what its feeds spoil is not known yet.
-    pub(super) fn forget_plunge(&mut self) {
-        self.plunge_spoilt = None;
+    /// Starts a line along the tool.
+    pub(super) fn begin_plunge(&mut self) {
+        self.plunge_gouge = None;
     }
 
-    /// Returns true if the current line removes metal that has to stay.
-    pub(super) fn is_spoilt_by_plunge(&self, line: &CuttingLine) -> bool {
-        line.cutting_state.tool == self.setup.tool && self.plunge_spoilt.is_some()
+    /// Returns true if the current line makes a gouge.
+    pub(super) fn has_gouged(&self, line: &CuttingLine) -> bool {
+        line.cutting_state.tool == self.setup.tool && self.plunge_gouge.is_some()
     }
 
     /// Returns true if all metal in which a line feeds is in a pocket.
@@ -292,51 +293,65 @@ impl HoleExtractor<'_> {
         lines.all(|line| self.metal.is_in_pocket(&line))
     }
 
-    /// Reports what the current line removes of the metal that has to stay.
+    /// Reports the gouge of the current line.
     pub(super) fn report_plunge(&mut self, backtrace: &Backtrace) {
-        if let Some(spoilt) = self.plunge_spoilt.take() {
-            self.report_spoilt(backtrace, spoilt);
+        if let Some(gouge) = self.plunge_gouge.take() {
+            self.report_gouge(backtrace, gouge);
         }
     }
 
-    fn report_spoilt(&mut self, backtrace: &Backtrace, Spoilt { at, part }: Spoilt) {
+    fn report_gouge(&mut self, backtrace: &Backtrace, Gouge { at, part }: Gouge) {
         let (depth, point) = (at.depth, format_point(&at.point));
-        if let (SpoiltBy::TipBeyond(hole), Some(holes)) = (part, self.metal.holes.as_deref()) {
-            let (id, limit) = (holes.id(hole), holes.collar(hole).max_depth());
-            let message = format!(
-                "the tool is fed through hole {id} and {depth:.3} mm below its entry, at {point}: limit {limit:.3}"
-            );
-            self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| {
-                Diagnostic::new(kind, message).help(
-                    "feed less deep: what is below the part, a table or a vise, is not in the machine file's [stock]",
-                )
-            });
-            return;
-        }
         let level = self.metal.level_at(&at.point);
-        let what = match part {
-            SpoiltBy::TipBeyond(_) | SpoiltBy::Tip => "the feed cuts",
-            SpoiltBy::Side => "the side of the tool cuts",
-            SpoiltBy::Shank => "the shank or the holder of the tool touches",
+        let (message, help) = match (part, self.metal.holes.as_deref()) {
+            (ToolRegion::TipBeyond(hole), Some(holes)) => (
+                format!(
+                    "the tool is fed through hole {} and {depth:.3} mm below its entry, at {point}: limit {:.3}",
+                    holes.id(hole),
+                    holes.collar(hole).max_depth()
+                ),
+                "feed less deep: what is below the part, a table or a vise, is not in the machine file's [stock]",
+            ),
+            (ToolRegion::Shank, _) => {
+                let tool = tool_name(self.setup.tool);
+                let message = format!(
+                    "the shank or the holder of {tool} touches metal, {depth:.3} mm below {level} at {point}"
+                );
+                let number = self.setup.tool.unwrap_or(0);
+                // The tool is the same in all its feeds.
+                self.findings.add_in_program(&FEED_BESIDE_HOLE, backtrace, number, 1, |kind| {
+                    Diagnostic::new(kind, message).help(
+                        "use a tool whose flutes are longer than the metal beside them is high, or cut that metal before",
+                    )
+                });
+                return;
+            }
+            (ToolRegion::Tip | ToolRegion::Side | ToolRegion::TipBeyond(_), _) => {
+                let what = if matches!(part, ToolRegion::Side) { "the side of the tool" } else { "the feed" };
+                let is_stock = self.surface.is_some();
+                let hole = self.metal.hole_at(&at.point).filter(|_| !is_stock);
+                let pocket = self.metal.distance_from_pocket(&at.point);
+                let reach = self.tool_radius().unwrap_or(MAX_RADIUS);
+                let place = match (hole, pocket.filter(|distance| *distance <= reach)) {
+                    (Some(id), _) => format!("beside hole {id}"),
+                    (None, Some(distance)) => format!("the part {distance:.3} mm outside its pocket"),
+                    (None, None) => "the part beside its holes".to_owned(),
+                };
+                let help = match is_stock {
+                    true => {
+                        "keep the tool's radius away from what has to stay, or state in [[stock.pocket]] what the \
+                         program mills besides the holes"
+                    }
+                    false => "retract above the entry of the hole before a motion beside it",
+                };
+                (format!("{what} cuts {place}, {depth:.3} mm below {level} at {point}"), help)
+            }
         };
-        let hole = self.metal.hole_at(&at.point).filter(|_| self.surface.is_none());
-        let place = hole.map_or("the part beside its holes".to_owned(), |id| format!("beside hole {id}"));
-        let is_stock = self.surface.is_some();
-        self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| {
-            let message = format!("{what} {place}, {depth:.3} mm below {level} at {point}");
-            Diagnostic::new(kind, message).help(match (part, is_stock) {
-                (SpoiltBy::Shank, _) => "the flutes have to be longer than the hole is deep, or the hole wider above",
-                (_, true) => {
-                    "keep the tool's radius away from what has to stay, or state in [[stock.pocket]] what the \
-                     program mills besides the holes"
-                }
-                (_, false) => "retract above the entry of the hole before a motion beside it",
-            })
-        });
+        self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
     }
 }
 
-impl Spoilt {
+impl Gouge {
     fn deeper(self, other: Self) -> Self {
         if self.at.depth < other.at.depth { other } else { self }
     }

@@ -38,15 +38,18 @@ impl HoleExtractor<'_> {
         // A feed outwards, as of a tool left in its hole, makes no hole. Its start decides: a hole in a steep flank may end
         // outside the part.
         // Parallel to the surface beside it the side of the tool decides; without its diameter the verdict does.
+        let is_backward = tilt.is_some_and(|tilt| tilt.0 > 90.0);
+        let is_forward = line.tool_axis.is_some_and(|axis| MIN_TOOL_COSINE <= axis.dot(&line.out));
         let may_cut =
-            || self.machine.diameter_of(line.cutting_state.tool).is_none() || self.is_spoilt_by_plunge(&line);
+            || self.machine.diameter_of(line.cutting_state.tool).is_none() || self.has_gouged(&line);
         let is_outward = surface.is_some_and(|s| {
             let (gradient, along) = (s.gradient(&line.start), line.bottom() - line.start);
             let slope = gradient.dot(&along);
             let is_parallel = slope <= MAX_PARALLEL_COSINE * gradient.norm() * along.norm();
-            0.0 <= slope && !(is_parallel && may_cut())
+            // Inside the body, as at the floor of a pocket, no face is known to be the one where the feed begins.
+            let is_fed_inside = is_forward && TOUCH_DEPTH < s.depth(&line.start);
+            0.0 <= slope && !is_fed_inside && !(is_parallel && may_cut())
         });
-        let is_backward = tilt.is_some_and(|tilt| tilt.0 > 90.0);
         if is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH) {
             return;
         }
@@ -54,7 +57,7 @@ impl HoleExtractor<'_> {
             ToolExit::Sideways { back } if back <= TOUCH_DEPTH => {
                 let inside = inside();
                 if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
-                    if self.is_spoilt_by_plunge(&line) {
+                    if self.has_gouged(&line) {
                         self.report_plunge(line.backtrace());
                     }
                     return;
@@ -115,7 +118,7 @@ impl HoleExtractor<'_> {
         let is_judged = self.metal.holes.is_some() && line.tool_axis.is_some();
         // Where the tool goes next is judged, unless that is unknown, or it is changed in the hole.
         let is_followed = moves_on && self.positions.is_known(self.machine);
-        if is_judged && is_followed && !self.is_spoilt_by_plunge(line) {
+        if is_judged && is_followed && !self.has_gouged(line) {
             return;
         }
         let findings = if is_judged { &mut self.findings } else { &mut self.engagement.errors };
@@ -136,8 +139,8 @@ impl HoleExtractor<'_> {
     fn is_cut_sideways(&self, from: &Point3<f64>, is_feeding: bool) -> bool {
         let travel = [*from, self.pose.tip];
         let cut = match is_feeding && self.metal.holes.is_some() {
-            true => self.metal.spoilt(&travel, FeedPart::Tip),
-            false => self.metal.uncut(&travel, &|_| false),
+            true => self.metal.gouge(&travel, FeedPart::Tip),
+            false => self.metal.uncut(&travel),
         };
         cut.is_some()
     }

@@ -1,11 +1,11 @@
-//! Metal of the part: what is solid as far as known, what feeds have removed of it, and what they may remove.
+//! Metal of the part: solid as far as known, without what feeds have removed, and with the room of holes and pockets.
 use std::sync::Arc;
 
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
 use super::removed_metal::RemovedMetal;
-use super::rest::Rest;
+use super::shares::Shares;
 use crate::machine::{TOUCH_DEPTH, ToolCylinder};
 use gcode_part::{Collar, EntryPlanes, Metal, NearestPoint, PARALLEL_COSINE, Rod, Step, Surface};
 
@@ -37,7 +37,7 @@ pub(super) struct KnownMetal {
     body: Option<Surface>,
     /// Nominal holes with the metal round them; `None` without a reference.
     pub holes: Option<Arc<EntryPlanes>>,
-    /// What feeds may remove besides the holes.
+    /// Pockets that feeds may mill.
     pockets: Vec<Surface>,
     pub removed: RemovedMetal,
 }
@@ -131,37 +131,45 @@ impl KnownMetal {
     }
 
     /// Returns the parts of a travel in solid metal, cut or not.
-    fn solid(&self, [from, to]: &[Point3<f64>; 2], is_counted: impl Fn(usize) -> bool) -> Rest {
-        let mut rest = Rest::default();
+    fn solid(&self, [from, to]: &[Point3<f64>; 2], is_counted: impl Fn(usize) -> bool) -> Shares {
+        let mut shares = Shares::default();
         match (&self.body, &self.holes) {
             (Some(body), _) => {
                 if let Some(piece) = body.piece(from, to, TOUCH_DEPTH) {
-                    rest.push(piece);
+                    shares.push(piece);
                 }
             }
             (None, Some(holes)) => holes.near(&from.inf(to), &from.sup(to), &mut |hole| {
                 if let Some(piece) =
                     holes.collar(hole).piece(from, to, TOUCH_DEPTH).filter(|_| is_counted(hole))
                 {
-                    rest.push(piece);
+                    shares.push(piece);
                 }
             }),
             (None, None) => {}
         }
-        rest
+        shares
     }
 
-    /// Returns the deepest point of a travel in metal that is not removed; points that are free don't count.
-    pub(super) fn uncut(
+    /// Returns the deepest point of a travel in metal that is not removed.
+    pub(super) fn uncut(&self, travel: &[Point3<f64>; 2]) -> Option<PointInMetal> {
+        self.uncut_above(travel, None)
+    }
+
+    /// Returns the deepest point of a travel in metal that is not removed, above the plane of a hole's entry if there is one.
+    pub(super) fn uncut_above(
         &self,
         travel: &[Point3<f64>; 2],
-        is_free: &dyn Fn(&Point3<f64>) -> bool,
+        hole: Option<&Collar>,
     ) -> Option<PointInMetal> {
-        let mut rest = self.solid(travel, |_| true);
-        if !rest.is_empty() {
-            self.removed.uncover(travel, false, &mut rest);
+        let mut shares = self.solid(travel, |_| true);
+        if let Some(below) = hole.and_then(|hole| hole.piece_below_entry(&travel[0], &travel[1])) {
+            shares.take_away(below);
         }
-        self.deepest(travel, &rest, is_free)
+        if !shares.is_empty() {
+            self.removed.uncover(travel, false, &mut shares);
+        }
+        self.deepest(travel, &shares)
     }
 
     /// Returns true if a travel leads through metal that is known, false if all that is known there is removed, and `None`
@@ -169,25 +177,25 @@ impl KnownMetal {
     pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let travel = [*from, *to];
         let is_in_known = self.body.is_some() || !self.solid(&travel, |_| true).is_empty();
-        is_in_known.then(|| self.uncut(&travel, &|_| false).is_some())
+        is_in_known.then(|| self.uncut(&travel).is_some())
     }
 
-    /// Returns the deepest point of a travel in which a feed removes what has to stay: neither in a nominal hole nor in a
-    /// pocket, nor removed before.
-    pub(super) fn spoilt(&self, travel: &[Point3<f64>; 2], part: FeedPart) -> Option<PointInMetal> {
+    /// Returns the deepest point of a travel in metal that has to stay: neither in a nominal hole nor in a pocket, nor removed
+    /// before.
+    pub(super) fn gouge(&self, travel: &[Point3<f64>; 2], part: FeedPart) -> Option<PointInMetal> {
         let holes = self.holes.as_deref()?;
         // Without a diameter the wall of a hole is unknown.
-        let mut rest = self.solid(travel, |hole| holes.collar(hole).has_diameter);
+        let mut shares = self.solid(travel, |hole| holes.collar(hole).has_diameter);
         let [from, to] = travel;
         for pocket in &self.pockets {
-            if rest.is_empty() {
+            if shares.is_empty() {
                 return None;
             }
             if let Some(piece) = pocket.piece(from, to, -TOUCH_DEPTH) {
-                rest.take_away(piece);
+                shares.take_away(piece);
             }
         }
-        if rest.is_empty() {
+        if shares.is_empty() {
             return None;
         }
         let mut allow = |collar: &Collar| {
@@ -198,17 +206,17 @@ impl KnownMetal {
                     FeedPart::Side(radius) => 2.0 * radius,
                 };
                 if let Some(piece) = collar.piece_above(from, to, radius, step.max_depth + TOUCH_DEPTH) {
-                    rest.take_away(piece);
+                    shares.take_away(piece);
                 }
             }
         };
         self.around(travel, MAX_HEIGHT, &mut allow);
         // Many feeds may have been here: they come last.
-        if rest.is_empty() {
+        if shares.is_empty() {
             return None;
         }
-        self.removed.uncover(travel, true, &mut rest);
-        self.deepest(travel, &rest, &|_| false)
+        self.removed.uncover(travel, true, &mut shares);
+        self.deepest(travel, &shares)
     }
 
     /// Returns true if a cylinder about the tool's axis stays in one nominal hole, or in one pocket, while its lower end
@@ -226,20 +234,39 @@ impl KnownMetal {
                 min[i] <= low && high <= max[i] + if up[i] > 0.0 { TOUCH_DEPTH } else { 0.0 }
             })
         });
-        is_in_box || {
-            let mut is_within = false;
-            let mut is_hole = |collar: &Collar| {
-                let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
-                let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
-                let is_in_step = |step: &Step| {
-                    let room = if collar.has_diameter { step.radius + SIDE_SLACK - radius } else { radius };
-                    aside <= room && deepest <= step.max_depth + TOUCH_DEPTH
-                };
-                is_within |= collar.is_parallel(axis) && collar.steps.iter().any(is_in_step);
+        is_in_box || self.hole_around(tips, axis, radius).is_some()
+    }
+
+    /// Returns the nominal hole on whose axis the tip makes a stroke.
+    pub(super) fn hole_of_stroke(
+        &self,
+        tips: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+    ) -> Option<&Collar> {
+        self.hole_around(tips, axis, 0.0)
+            .filter(|hole| tips.iter().all(|tip| hole.from_axis(tip) <= MAX_OFFSET))
+    }
+
+    /// Returns the nominal hole in which a cylinder about the tool's axis stays while its lower end moves between two points.
+    fn hole_around(
+        &self,
+        tips: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+    ) -> Option<&Collar> {
+        let mut found = None;
+        self.around(tips, 0.0, &mut |collar| {
+            let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
+            let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
+            let is_in_step = |step: &Step| {
+                let room = if collar.has_diameter { step.radius + SIDE_SLACK - radius } else { radius };
+                aside <= room && deepest <= step.max_depth + TOUCH_DEPTH
             };
-            self.around(tips, 0.0, &mut is_hole);
-            is_within
-        }
+            if collar.is_parallel(axis) && collar.steps.iter().any(is_in_step) {
+                found = Some(collar);
+            }
+        });
+        found
     }
 
     /// Returns the tip that is fed through a nominal hole and deeper than any tool has to break through, with its depth
@@ -334,33 +361,38 @@ impl KnownMetal {
     /// Returns true if all metal on a line is in one pocket.
     pub(super) fn is_in_pocket(&self, line: &[Point3<f64>; 2]) -> bool {
         self.pockets.iter().any(|pocket| {
-            let mut rest = self.solid(line, |_| true);
+            let mut shares = self.solid(line, |_| true);
             if let Some(piece) = pocket.piece(&line[0], &line[1], -TOUCH_DEPTH) {
-                rest.take_away(piece);
+                shares.take_away(piece);
             }
-            rest.is_empty()
+            shares.is_empty()
         })
     }
 
+    /// Returns the distance of a point from the nearest pocket, mm; `None` without pockets.
+    pub(super) fn distance_from_pocket(&self, p: &Point3<f64>) -> Option<f64> {
+        self.pockets.iter().map(|pocket| pocket.nearest(p).distance).reduce(f64::min)
+    }
+
     /// Calls `each` with the nominal holes whose metal may be nearer to a travel than `margin`.
-    pub(super) fn around(&self, [from, to]: &[Point3<f64>; 2], margin: f64, each: &mut impl FnMut(&Collar)) {
+    pub(super) fn around<'m>(
+        &'m self,
+        [from, to]: &[Point3<f64>; 2],
+        margin: f64,
+        each: &mut impl FnMut(&'m Collar),
+    ) {
         let Some(holes) = self.holes.as_deref() else { return };
         let margin = Vector3::repeat(margin);
         holes
             .around(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |hole| each(holes.collar(hole)));
     }
 
-    /// Returns the deepest point of what is left of a travel.
-    fn deepest(
-        &self,
-        [from, to]: &[Point3<f64>; 2],
-        rest: &Rest,
-        is_free: &dyn Fn(&Point3<f64>) -> bool,
-    ) -> Option<PointInMetal> {
+    /// Returns the deepest point of some shares of a travel.
+    fn deepest(&self, [from, to]: &[Point3<f64>; 2], shares: &Shares) -> Option<PointInMetal> {
         let along = to - from;
         let length = along.norm();
         let mut best: Option<PointInMetal> = None;
-        for [first, last] in rest.pieces() {
+        for [first, last] in shares.pieces() {
             if length * (last - first) < MIN_PIECE && MIN_PIECE < length {
                 continue;
             }
@@ -368,7 +400,7 @@ impl KnownMetal {
             let innermost = self.body.map(|body| body.deepest_between(&first, &last));
             for point in [first, last, nalgebra::center(&first, &last)].into_iter().chain(innermost) {
                 let depth = self.depth(&point).unwrap_or(0.0);
-                if best.is_none_or(|best| best.depth < depth) && !is_free(&point) {
+                if best.is_none_or(|best| best.depth < depth) {
                     best = Some(PointInMetal { point, depth });
                 }
             }

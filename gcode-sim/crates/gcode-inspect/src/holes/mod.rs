@@ -24,7 +24,7 @@ mod profile;
 mod rapid_paths;
 mod rapids;
 mod removed_metal;
-mod rest;
+mod shares;
 pub(crate) mod spindle;
 mod strokes;
 mod swallowed;
@@ -47,7 +47,7 @@ use self::axis_box::SearchBudget;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
-use self::feed_law::Spoilt;
+use self::feed_law::Gouge;
 use self::line::CuttingLine;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
@@ -110,12 +110,12 @@ pub struct HoleExtractor<'m> {
     setup: Setup,
     /// Parts of the tool in the spindle; empty if its diameter is unknown.
     tool_body: Vec<ToolCylinder>,
-    /// What it cuts in a feed; `None` if its diameter is unknown.
+    /// Parts of it that cut in a feed; `None` if its diameter is unknown.
     profile: Option<Profile>,
-    /// What the current line removes of the metal that has to stay.
-    plunge_spoilt: Option<Spoilt>,
-    /// Number of feeds that removed such metal.
-    spoilt_feeds: u32,
+    /// Gouge of the current line.
+    plunge_gouge: Option<Gouge>,
+    /// Number of feeds with a gouge.
+    gouge_count: u32,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -177,8 +177,8 @@ impl<'m> HoleExtractor<'m> {
             setup,
             tool_body: Vec::new(),
             profile: None,
-            plunge_spoilt: None,
-            spoilt_feeds: 0,
+            plunge_gouge: None,
+            gouge_count: 0,
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             builder_code: None,
@@ -338,7 +338,7 @@ impl<'m> HoleExtractor<'m> {
             (MotionKind::Feed, start) => {
                 // What a feed cuts is recorded before it is removed.
                 if let Some(start) = start {
-                    self.forget_plunge();
+                    self.begin_plunge();
                     self.start_line(event, start, last_motion);
                 }
                 self.remove_by_feed(event, &[before.tip, self.pose.tip], was.union(is).is_none());

@@ -2,18 +2,15 @@
 use nalgebra::{Point3, Vector3};
 
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
-use super::metal::{MAX_HEIGHT, PointInMetal};
+use super::metal::PointInMetal;
 use super::rapids::{PLUNGE_COSINE, error_if, format_point};
 use super::tool_lines::lines;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
-use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolCylinder, arrivals};
+use crate::machine::{AxisMotion, RapidPath, TOUCH_DEPTH, ToolCylinder, arrivals};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
-use gcode_part::{Collar, NearestPoint, Surface};
-
-/// Distance of a tool's side from the wall of the hole over which it stands, mm.
-const MAX_OVERSIZE: f64 = 0.05;
+use gcode_part::{NearestPoint, Surface};
 
 /// Rapids whose paths are too many to be searched.
 #[derive(Clone, Debug)]
@@ -143,7 +140,7 @@ impl HoleExtractor<'_> {
 
     /// Returns the point found in metal if it is not removed, or else another point of the box that is not.
     fn uncut_in_box(&self, found: DeepPoint, all: &AxisBox<'_>) -> Option<DeepPoint> {
-        let uncut = |travel: &[Point3<f64>; 2]| self.metal.uncut(travel, &|_| false);
+        let uncut = |travel: &[Point3<f64>; 2]| self.metal.uncut(travel);
         if uncut(&[found.point, found.point]).is_some() {
             return Some(found);
         }
@@ -197,16 +194,11 @@ impl HoleExtractor<'_> {
             if part.is_cutter && self.tool_radius().is_none() && self.metal.is_solid(&[begin, pose.tip]) {
                 continue;
             }
-            // The metal above a nominal hole goes with the hole: in a steep flank the tool meets it on its way to the entry.
-            let is_free = |p: &Point3<f64>| {
-                let poses = [Pose { tip: begin, ..pose }, pose];
-                part.is_cutter && is_straight && poses.iter().any(|pose| self.is_over_nominal_hole(p, pose))
-            };
             let lines = travels.iter().flatten().flat_map(|travel| lines(part, &axis, travel, &self.metal));
             let mut is_met = false;
             for line in lines {
                 is_met |= surface.is_some_and(|body| body.piece(&line[0], &line[1], TOUCH_DEPTH).is_some());
-                if let Some(cut) = self.metal.uncut(&line, &is_free) {
+                if let Some(cut) = self.metal.uncut(&line) {
                     found = Some(found.map_or(cut, |found| found.deeper(cut)));
                 }
             }
@@ -218,7 +210,7 @@ impl HoleExtractor<'_> {
                     Deepest::Metal(DeepPoint { point, depth, .. }) if !is_straight => {
                         Some(PointInMetal { point, depth })
                     }
-                    Deepest::Metal(at) => self.metal.uncut(&[at.point, at.point], &is_free),
+                    Deepest::Metal(at) => self.metal.uncut(&[at.point, at.point]),
                     Deepest::Clear => None,
                     Deepest::Unknown => {
                         count_unsearched(&mut self.unsearched_rapids, event);
@@ -242,11 +234,9 @@ impl HoleExtractor<'_> {
     pub(super) fn check_body_at(&mut self, event: &Event<'_>, tip: &Point3<f64>) {
         let Some(axis) = self.pose.axis else { return };
         let is_left_out = |part: &ToolCylinder| part.is_cutter && self.tool_radius().is_none();
-        let pose = Pose { tip: *tip, ..self.pose };
         let cut = self.tool_body.iter().filter(|part| !is_left_out(part)).find_map(|part| {
-            let is_free = |p: &Point3<f64>| part.is_cutter && self.is_over_nominal_hole(p, &pose);
             let lines = lines(part, &axis, &[*tip, *tip], &self.metal).into_iter();
-            lines.filter_map(|line| self.metal.uncut(&line, &is_free)).reduce(PointInMetal::deeper)
+            lines.filter_map(|line| self.metal.uncut(&line)).reduce(PointInMetal::deeper)
         });
         if let Some(cut) = cut {
             self.report_side(event, cut, Severity::Error, "");
@@ -264,23 +254,6 @@ impl HoleExtractor<'_> {
                 .with_severity(severity)
                 .help("keep the diameters of the tool and its holder away from the part until the feed")
         });
-    }
-
-    /// Returns true for a point in the metal above a nominal hole, if the tool stands above the entry in the direction of
-    /// the hole.
-    fn is_over_nominal_hole(&self, p: &Point3<f64>, pose: &Pose) -> bool {
-        let Some(axis) = pose.axis else { return false };
-        let radius = self.machine.diameter_of(self.setup.tool).unwrap_or(0.0) / 2.0;
-        let mut is_over = false;
-        self.metal.around(&[*p, *p], MAX_HEIGHT, &mut |collar: &Collar| {
-            let within = collar.hole_radius.max(radius) + MAX_OVERSIZE;
-            is_over |= collar.is_parallel(&axis)
-                && collar.depth(&pose.tip) <= TOUCH_DEPTH
-                && collar.from_axis(&pose.tip) <= within - radius
-                && collar.from_axis(p) <= within
-                && collar.depth(p) <= TOUCH_DEPTH;
-        });
-        is_over
     }
 
     /// Returns the point that a search has found; counts a search that was given up.

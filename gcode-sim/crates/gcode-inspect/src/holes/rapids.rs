@@ -68,7 +68,7 @@ impl HoleExtractor<'_> {
             self.record_close_rapid(event, &surface, from, to);
             return false;
         }
-        let Some(PointInMetal { point, depth }) = self.metal.uncut(&[*from, *to], &|_| false) else {
+        let Some(PointInMetal { point, depth }) = self.metal.uncut(&[*from, *to]) else {
             return false;
         };
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
@@ -83,7 +83,7 @@ impl HoleExtractor<'_> {
     /// Checks the known end of a rapid whose start is unknown.
     pub(super) fn check_known_end(&mut self, event: &Event<'_>, to: &Point3<f64>) {
         match self.surface {
-            Some(_) if self.metal.uncut(&[*to, *to], &|_| false).is_none() => self.check_body_at(event, to),
+            Some(_) if self.metal.uncut(&[*to, *to]).is_none() => self.check_body_at(event, to),
             Some(surface) => {
                 let note = "the start of this rapid is unknown";
                 self.check_rapid_end(event, &surface, to, Severity::Error, note);
@@ -136,7 +136,7 @@ impl HoleExtractor<'_> {
 
     /// Reports a straight rapid through metal round a hole; returns true if there is any.
     fn check_rapid_at_holes(&mut self, event: &Event<'_>, from: &Point3<f64>, to: &Point3<f64>) -> bool {
-        let Some(PointInMetal { point, depth }) = self.metal.uncut(&[*from, *to], &|_| false) else {
+        let Some(PointInMetal { point, depth }) = self.metal.uncut(&[*from, *to]) else {
             return false;
         };
         let id = self.metal.hole_at(&point).unwrap_or_default().to_owned();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::profile::Profile;
-use super::rest::Rest;
+use super::shares::Shares;
 use crate::machine::{TOUCH_DEPTH, ToolCylinder};
 
 /// Largest number of sweeps that are kept, for the memory.
@@ -135,24 +135,24 @@ impl RemovedMetal {
         (0..3).map(exit).fold(self.max_height, f64::min).max(0.0)
     }
 
-    /// Takes away from the rest of a travel what the sweeps cover, [`TOUCH_DEPTH`] beyond them included. `is_certain`
+    /// Takes away the shares of a travel that the sweeps cover, [`TOUCH_DEPTH`] beyond them included. `is_certain`
     /// leaves out tools of unknown diameter.
-    pub(super) fn uncover(&self, travel: &[Point3<f64>; 2], is_certain: bool, rest: &mut Rest) {
-        let by_sweep = |sweep: &Sweep, rest: &mut Rest| {
+    pub(super) fn uncover(&self, travel: &[Point3<f64>; 2], is_certain: bool, shares: &mut Shares) {
+        let by_sweep = |sweep: &Sweep, shares: &mut Shares| {
             let profile = &self.profiles[sweep.profile as usize];
             if profile.is_certain || !is_certain {
                 for part in &profile.parts {
                     if let Some(covered) = sweep.covered(part, travel) {
-                        rest.take_away(covered);
+                        shares.take_away(covered);
                     }
                 }
             }
-            rest.is_empty()
+            shares.is_empty()
         };
-        if self.is_last_open && self.sweeps.last().is_some_and(|last| by_sweep(last, rest)) {
+        if self.is_last_open && self.sweeps.last().is_some_and(|last| by_sweep(last, shares)) {
             return;
         }
-        let Some([first, last]) = rest.extent() else { return };
+        let Some([first, last]) = shares.extent() else { return };
         let along = travel[1] - travel[0];
         let (from, to) = (travel[0] + along * first, travel[0] + along * last);
         for (level, cells) in &self.levels {
@@ -162,7 +162,7 @@ impl RemovedMetal {
             let mut in_cell = |last: u32| {
                 let mut next = last;
                 while let Some(sweep) = self.sweeps.get(next as usize) {
-                    if by_sweep(sweep, rest) {
+                    if by_sweep(sweep, shares) {
                         return true;
                     }
                     next = sweep.previous;
@@ -279,7 +279,7 @@ impl Sweep {
     }
 }
 
-/// Returns the shares of some, s, at which `start` + `gain`·s is between two bounds.
+/// Returns the shares s, within some, at which `start` + `gain`·s is between two bounds.
 fn between([first, last]: [f64; 2], start: f64, gain: f64, (low, high): (f64, f64)) -> Option<[f64; 2]> {
     const NOISE: f64 = 1e-9;
     if gain.abs() < 1e-12 {
@@ -290,7 +290,7 @@ fn between([first, last]: [f64; 2], start: f64, gain: f64, (low, high): (f64, f6
     (first <= last).then_some([first, last])
 }
 
-/// Returns the shares of some, s, at which |q + s·u| is at most `radius`.
+/// Returns the shares s, within some, at which |q + s·u| is at most `radius`.
 fn in_circle([first, last]: [f64; 2], q: &Vector3<f64>, u: &Vector3<f64>, radius: f64) -> Option<[f64; 2]> {
     let (a, b, c) = (u.norm_squared(), q.dot(u), q.norm_squared() - radius * radius);
     if a < 1e-18 {
@@ -316,11 +316,11 @@ mod tests {
     }
 
     fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f64; 2]> {
-        let mut rest = Rest::default();
-        rest.push([0.0, 1.0]);
-        removed.uncover(&[from, to], true, &mut rest);
+        let mut shares = Shares::default();
+        shares.push([0.0, 1.0]);
+        removed.uncover(&[from, to], true, &mut shares);
         let mut pieces: Vec<_> =
-            rest.pieces().iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
+            shares.pieces().iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
         pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
         pieces
     }

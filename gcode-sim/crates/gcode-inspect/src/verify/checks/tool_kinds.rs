@@ -72,21 +72,15 @@ fn sideways(id: &str, cut: &Cut<'_>) -> Option<Diagnostic> {
         .then(|| finding.help("use an end mill, or correct the kind of the tool in the machine file"))
 }
 
-/// Reports a reamer or a boring bar that goes deeper than the hole before it: a reamer than its full diameter, a bar than its
-/// point.
+/// Reports a reamer or a boring bar that goes deeper than the full diameter of the hole before it: its end meets the cone below.
 fn in_solid(
     judged: &Judgement<'_>,
     cut: &Cut<'_>,
     before: &[Cut<'_>],
     others: &[Cut<'_>],
 ) -> Option<Diagnostic> {
-    let depth = |cut: &Cut<'_>, is_reamer: bool| match is_reamer {
-        true => cut.full_depth(judged.nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip),
-        false => cut.tip,
-    };
-    let is_reamer = cut.kind == Some(ToolKind::Reamer);
-    let drilled = before.iter().filter(|other| !needs_hole(other.kind)).map(|other| depth(other, is_reamer));
-    let drilled = drilled.fold(0.0, f64::max);
+    let depth = |cut: &Cut<'_>| cut.full_depth(judged.nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip);
+    let drilled = before.iter().filter(|other| !needs_hole(other.kind)).map(depth).fold(0.0, f64::max);
     let slack = judged.comparison.tolerances.depth;
     let is_open =
         judged.nominal.through && (!others.is_empty() || !exceeds(judged.nominal.depth - drilled, slack));

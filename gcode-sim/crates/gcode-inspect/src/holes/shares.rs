@@ -1,12 +1,12 @@
-//! What is left of a travel, as shares of it.
+//! Shares of a travel, from 0 at its start to 1 at its end.
 
-/// What is left of a travel, as shares of it.
+/// Disjoint pieces of a travel, as shares of it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rest {
+pub(super) struct Shares {
     pieces: Vec<[f64; 2]>,
 }
 
-impl Rest {
+impl Shares {
     /// Adds a piece.
     pub(super) fn push(&mut self, piece: [f64; 2]) {
         self.pieces.push(piece);
