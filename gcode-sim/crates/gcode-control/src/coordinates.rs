@@ -25,10 +25,13 @@ impl ControlData {
     }
 
     /// Returns a programmed end point in work coordinates; those that rotation or scaling computes are rounded to the least
-    /// input increment.
+    /// input increment, except in a plane that G53.1 has aligned.
     pub(super) fn to_work(&self, state: &State, point: &Position) -> Position {
         let mut work = state.transform.work_position(*point);
         let computed = state.transform.computed_axes();
+        if state.alignment().is_some() {
+            return work;
+        }
         for axis in (0..MAX_AXES).filter(|axis| computed >> axis & 1 == 1) {
             work[axis] = self.round_to_increment(state, axis, work[axis]);
         }
@@ -44,6 +47,12 @@ impl ControlData {
         let zero = self.zeros(state);
         let to_machine = |axis| self.on_machine(work[axis], zero[axis], state.length_offset[axis]);
         let mut machine = Position(std::array::from_fn(to_machine));
+        if let Some((axes, alignment)) = state.alignment() {
+            let turned = alignment.frame.apply(axes.map(|axis| work[axis] + zero[axis]));
+            for (axis, value) in axes.into_iter().zip(turned) {
+                machine[axis] = remove_noise(value + state.length_offset[axis]);
+            }
+        }
         for axis in self.settings.rollover_axes() {
             // The shorter rotation from the current position; full rotations stay.
             let from = state.machine_position[axis] - self.zero(state, axis) - state.length_offset[axis];
@@ -77,6 +86,12 @@ impl ControlData {
             let at = state.machine_position[axis] - self.zero(state, axis) - state.length_offset[axis];
             work[axis] = self.wrap_angle(axis, self.remove_residue(at));
         }
+        if let Some((axes, alignment)) = state.alignment() {
+            let turned = axes.map(|axis| state.machine_position[axis] - state.length_offset[axis]);
+            for (axis, value) in axes.into_iter().zip(alignment.frame.revert(turned)) {
+                work[axis] = value - self.zero(state, axis);
+            }
+        }
         work
     }
 
@@ -107,8 +122,11 @@ impl ControlData {
         let work = self.work_point(state);
         state.programmed_position = state.transform.programmed_position(work);
         if !state.transform.is_identity() {
+            let is_aligned = state.alignment().is_some();
             for axis in 0..MAX_AXES {
-                state.programmed_position[axis] = self.remove_residue(state.programmed_position[axis]);
+                let value = state.programmed_position[axis];
+                state.programmed_position[axis] =
+                    if is_aligned { remove_noise(value) } else { self.remove_residue(value) };
             }
         }
     }
@@ -159,7 +177,7 @@ impl ControlData {
         if state.modal.unit == Unit::Inch && !is_rotary { value / 25.4 } else { value }
     }
 
-    /// Returns the length offset of the modal state, on Z.
+    /// Returns the length offset of the modal state, on Z, or along the tool that G53.1 has turned.
     pub(super) fn length_offset(&self, state: &State) -> Result<Position, Alarm> {
         let mut offset = Position::default();
         let sign = match state.modal.length {
@@ -169,6 +187,12 @@ impl ControlData {
         };
         let axis = self.settings.axes.find(b'Z').ok_or(Alarm::ImproperAddress { letter: 'Z' })?;
         offset[axis] = sign * self.offsets.length(state.modal_words.h)?;
+        if let Some((axes, alignment)) = state.alignment() {
+            let length = alignment.tool.apply(axes.map(|axis| offset[axis]));
+            for (axis, value) in axes.into_iter().zip(length) {
+                offset[axis] = value;
+            }
+        }
         Ok(offset)
     }
 
@@ -232,6 +256,11 @@ fn extremes(arc: &PlanarArc, to: &Position) -> [Option<Position>; 4] {
             })
         },
     )
+}
+
+/// Returns a coordinate that kinematics computes, to 1e-9: finer than any increment, coarser than rounding errors.
+pub(super) fn remove_noise(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
 }
 
 /// Returns the rotation of an axis that rolls over: the shorter one, 180° in the plus direction.

@@ -43,7 +43,10 @@ mod contour;
 
 pub mod notes;
 mod outcome;
+mod kinematics;
+mod plane;
 mod state;
+mod transform;
 mod variables;
 
 mod functions;
@@ -77,6 +80,8 @@ mod data_input;
 mod lookahead_request;
 mod moves;
 mod one_shot_codes;
+mod plane_codes;
+mod plane_moves;
 mod probing;
 mod transform_codes;
 

@@ -136,7 +136,10 @@ impl Planner<'_> {
         if state.modal.polar == Polar::On {
             self.resolve_polar(state, &mut endpoint.programmed)?;
         }
-        if state.end_before_transform.is_some() && state.modal.distance == Distance::Absolute {
+        if state.end_before_transform.is_some()
+            && state.alignment().is_none()
+            && state.modal.distance == Distance::Absolute
+        {
             self.note_axes_left_out(state);
         }
         let machine = self.data.to_machine(state, &endpoint.programmed);
@@ -146,10 +149,27 @@ impl Planner<'_> {
         {
             endpoint.machine[axis] = rolled_machine[axis];
         }
+        if !state.transform.is_identity() {
+            self.check_plane(state, &endpoint.machine)?;
+        }
         if endpoint.machine.0.iter().any(|at| at.abs() > basis.max_coordinate) {
             self.check_coordinate_range(&endpoint.machine, basis.max_coordinate)?;
         }
         Ok(endpoint)
+    }
+
+    /// Raises the alarm of a move while a plane is incomplete, or off the angles of the rotary axes that G53.1 has set.
+    fn check_plane(&self, state: &State, end: &Position) -> ExecResult<()> {
+        if state.transform.plane_entry.is_some() {
+            let what = "a move before the last block of a plane by points or vectors";
+            return Err(Alarm::PlaneFormat { what }.located_at(self.block));
+        }
+        match (state.alignment(), &self.data.settings.kinematics) {
+            (Some((_, alignment)), Some(kinematics)) if !alignment.holds_at(kinematics, end) => {
+                Err(self.not_simulated("a rotary axis off its angle in a plane that G53.1 has set"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Notes an axis that the block doesn't name, if a change of the transform has changed its coordinate.
@@ -300,8 +320,9 @@ impl Planner<'_> {
     ) -> ExecResult<()> {
         let state = &plan.state;
         let (is_mirrored, is_round) = state.transform.arc_effect(plane);
-        if state.transform.tilt.is_some() {
-            return Err(self.not_simulated("an arc in a tilted plane"));
+        if let Some(tilt) = state.transform.tilt {
+            let arc = PlanarArc { plane, centre, sweep };
+            return self.push_arc_in_plane(plan, &tilt, endpoint, arc, radius);
         }
         let mut centre_point = state.programmed_position;
         (centre_point[plane.0], centre_point[plane.1]) = centre;
@@ -322,7 +343,7 @@ impl Planner<'_> {
     }
 
     /// Emits an arc; F is along the arc, and all other axes follow (1403#5 HTG = 0).
-    fn push_arc(&self, plan: &mut BlockPlan, to: Position, arc: PlanarArc, radius: f64) -> ExecResult<()> {
+    pub(super) fn push_arc(&self, plan: &mut BlockPlan, to: Position, arc: PlanarArc, radius: f64) -> ExecResult<()> {
         let length = radius * arc.sweep.0.abs().to_radians();
         let timed = self.data.path_time(&plan.state, length, self.words.has(b'F'));
         let (rate, seconds) = self.locate(timed.map_err(|alarm| match alarm {

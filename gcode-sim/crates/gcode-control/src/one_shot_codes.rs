@@ -99,6 +99,7 @@ impl Planner<'_> {
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
             OneShot::MachineCoordinateSystem => self.plan_machine_move(plan),
+            OneShot::ToolAxis => self.plan_tool_axis(plan),
             OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),
             OneShot::CornerArc => Err(self.not_simulated("G39 without cutter compensation")),
         }

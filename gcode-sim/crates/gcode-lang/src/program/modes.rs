@@ -133,7 +133,7 @@ group!(/// Group 13: spindle speed mode.
 group!(/// Group 15: cutting mode.
     CuttingMode { ExactStop = 610, CornerOverride = 620, Tapping = 630, #[default] Cutting = 640, });
 group!(/// Group 16: coordinate system rotation.
-    Rotation { On = 680, #[default] Off = 690, Tilted = 682, });
+    Rotation { On = 680, #[default] Off = 690, Tilted = 682, TiltedFurther = 684, });
 group!(/// Group 17: polar coordinates.
     Polar { #[default] Off = 150, On = 160, });
 group!(/// Group 22: mirror image.
