@@ -1,7 +1,7 @@
 //! Law of tilted planes: on every machine with two rotary axes the control's machine coordinates lead, by the forward kinematics
 //! of the machine, to the tip and the direction that the program states.
 use gcode_control::Outcome;
-use gcode_inspect::machine::{Machine, Setup};
+use gcode_inspect::machine::{AxisMotion, Machine, Setup};
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{EventKind, Position};
 use gcode_tests::expect::{Ran, run_on};
@@ -62,7 +62,9 @@ impl Arrangement {
         let tables: String = (self.on_head..2).map(|index| link(index, "table")).collect();
         let heads: String = (0..self.on_head).map(|index| link(index, "head.axis")).collect();
         let head = match heads.as_str() {
-            "" => format!("[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\npivot = {:?}\n", self.pivot),
+            "" => {
+                format!("[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\npivot = {:?}\n", self.pivot)
+            }
             _ => format!("[head]\nkind = \"axes\"\npivot = {:?}\n{heads}", self.pivot),
         };
         let text = format!("{tables}{head}[part]\norigin = {:?}\n", self.origin);
@@ -74,7 +76,7 @@ impl Arrangement {
     fn rotary_zero(&self, machine: &Machine) -> Position {
         let mut zero = Position::default();
         for index in self.on_head..2 {
-            zero[machine.axes.find(b"AC"[index]).unwrap()] = self.zeros[index];
+            zero[machine.axes.find(b"AC"[index]).unwrap()] = (self.zeros[index] * 1000.0).round() / 1000.0;
         }
         zero
     }
@@ -85,8 +87,16 @@ fn run(machine: &Machine, program: &str) -> Ran {
     run_on(program.as_bytes(), settings, 1000)
 }
 
+/// The set-up with the length offset along the tool, as it is in the machine position of a tool that has turned.
+fn length_along(machine: &Machine, setup: &Setup, at: &Position) -> Setup {
+    let axis = machine.head.direction(at, setup).unwrap();
+    let mut offset = Position::default();
+    (0..3).for_each(|k| offset[k] = axis[k] * setup.offset[2]);
+    Setup { offset, ..*setup }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
     fn the_tip_and_the_tool_are_where_the_plane_says(
@@ -145,5 +155,55 @@ proptest! {
             let found = pose.axis.unwrap();
             prop_assert!((found.into_inner() - axis.into_inner()).norm() < 1e-6, "{found:?} is not {axis:?}");
         }
+    }
+
+    #[test]
+    fn the_tip_moves_straight_on_the_part_while_the_axes_turn(
+        arrangement in arrangement(),
+        from in prop::array::uniform3(-100.0..100.0_f64),
+        to in prop::array::uniform3(-100.0..100.0_f64),
+        angles in prop::array::uniform4(-120.0..120.0_f64),
+        length in 10.0..250.0_f64,
+    ) {
+        let machine = arrangement.machine();
+        let zero = arrangement.rotary_zero(&machine);
+        let written = |value: f64| (value * 1000.0).round() / 1000.0;
+        let origin = machine.part_frame(&zero) * Point3::origin() + Vector3::z() * arrangement.pivot;
+        let work = origin.coords.map(written);
+        let ([x, y, z], [u, v, w], [a, c, e, g]) = (from.map(written), to.map(written), angles);
+        let program = format!(
+            "O1\n#5221={:.3}\n#5222={:.3}\n#5223={:.3}\n#5224={:.3}\n#5226={:.3}\n#11001={length:.3}\nG90 G21\n\
+             G43.4 H1\nG00 X{x:.3} Y{y:.3} Z{z:.3} A{a:.3} C{c:.3}\nM00\n\
+             G01 X{u:.3} Y{v:.3} Z{w:.3} A{e:.3} C{g:.3} F1000\nM30\n",
+            work.x, work.y, work.z, zero[3], zero[5]
+        );
+        let ran = run(&machine, &program);
+        prop_assert!(matches!(ran.outcome, Outcome::End), "{:?}\n{program}", ran.outcome);
+        let on_part = |point: [f64; 3]| {
+            let placed = Point3::from(Vector3::from(point) + work) - Vector3::z() * arrangement.pivot;
+            machine.part_frame(&zero).inverse_transform_point(&placed)
+        };
+        let (start, end) = (on_part([x, y, z]), on_part([u, v, w]));
+        let mut offset = Position::default();
+        offset[2] = written(length);
+        let setup = Setup { offset, ..Setup::default() };
+        let along = end - start;
+        let aside = |tip: Point3<f64>| {
+            let t = ((tip - start).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            (tip - (start + along * t)).norm()
+        };
+        let mut last = None;
+        for (kind, at) in ran.recorder.moves() {
+            if let (Some(from), 'F') = (last, kind) {
+                let chord = AxisMotion { from: &from, to: at, arc: None };
+                let middle = machine.forward(&chord.position(0.5), &length_along(&machine, &setup, &chord.position(0.5)));
+                prop_assert!(aside(middle.tip) < 0.001, "{}\n{program}", aside(middle.tip));
+                let tip = machine.forward(at, &length_along(&machine, &setup, at)).tip;
+                prop_assert!(aside(tip) < 1e-6, "{}\n{program}", aside(tip));
+            }
+            last = Some(*at);
+        }
+        let at = last.unwrap();
+        prop_assert!((machine.forward(&at, &length_along(&machine, &setup, &at)).tip - end).norm() < 1e-6);
     }
 }

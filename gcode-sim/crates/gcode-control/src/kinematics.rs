@@ -26,7 +26,7 @@ pub(super) fn scaled(a: Vector, factor: f64) -> Vector {
 }
 
 /// Returns the vector with length 1; `None` for one without a direction.
-pub(super) fn normalized(a: Vector) -> Option<Vector> {
+pub(super) fn unit_vector(a: Vector) -> Option<Vector> {
     let length = dot(a, a).sqrt();
     (length > PARALLEL).then(|| scaled(a, 1.0 / length))
 }
@@ -143,10 +143,7 @@ impl Alignment {
         let head = Frame::of_chain(&kinematics.head, at);
         let pivot = scaled(kinematics.direction, kinematics.pivot);
         let out = sum(head.rotation.apply(pivot), scaled(head.shift, -1.0));
-        let frame = Frame {
-            rotation: part.rotation,
-            shift: sum(part.apply(scaled(pivot, -1.0)), out),
-        };
+        let frame = Frame { rotation: part.rotation, shift: sum(part.apply(scaled(pivot, -1.0)), out) };
         Self { frame, tool: head.rotation, at: *at }
     }
 

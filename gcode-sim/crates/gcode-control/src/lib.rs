@@ -41,9 +41,9 @@
 
 mod contour;
 
+mod kinematics;
 pub mod notes;
 mod outcome;
-mod kinematics;
 mod plane;
 mod state;
 mod transform;
@@ -75,6 +75,7 @@ mod planner;
 
 mod block_codes;
 mod calls;
+mod circle_pocket;
 mod cycles;
 mod data_input;
 mod lookahead_request;
@@ -83,6 +84,7 @@ mod one_shot_codes;
 mod plane_codes;
 mod plane_moves;
 mod probing;
+mod tip_control;
 mod transform_codes;
 
 mod executor;

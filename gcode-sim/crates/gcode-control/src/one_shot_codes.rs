@@ -52,6 +52,13 @@ impl Planner<'_> {
     }
 
     fn execute_one_shot(&self, one: OneShot, plan: &mut BlockPlan) -> ExecResult<()> {
+        let is_on_path = matches!(
+            one,
+            OneShot::Skip | OneShot::SingleDirection | OneShot::CirclePocket(_) | OneShot::BoltHoles(_)
+        );
+        if is_on_path && plan.state.controls_tip() {
+            return Err(self.not_simulated("G31 or G60 in tool centre point control"));
+        }
         let cycle = plan.state.modal.cycle.is_some();
         match one {
             OneShot::Dwell => self.plan_dwell(plan),

@@ -213,6 +213,7 @@ impl Registers {
             && !self.state.is_in_parameter_input
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
+            && !self.state.controls_tip()
             && self.state.end_before_transform.is_none()
             && self.lookahead.is_idle()
             && self.data.settings.code_calls.is_empty()

@@ -1,5 +1,5 @@
 //! Tilted working planes of G68.2: from angles, points and vectors to the plane's axes.
-use super::kinematics::{Alignment, Matrix, Vector, cross, dot, normalized, scaled, sum};
+use super::kinematics::{Alignment, Matrix, Vector, cross, dot, scaled, sum, unit_vector};
 use gcode_lang::motion::{AxisIndex, Position};
 
 const X: Vector = [1.0, 0.0, 0.0];
@@ -64,8 +64,8 @@ impl Plane {
     /// points on a line.
     fn by_points([origin, x, y]: [Vector; 3], shift: Vector, angle: f64) -> Option<Self> {
         let from_origin = |point| sum(point, scaled(origin, -1.0));
-        let x = normalized(from_origin(x))?;
-        let z = normalized(cross(x, from_origin(y)))?;
+        let x = unit_vector(from_origin(x))?;
+        let z = unit_vector(cross(x, from_origin(y)))?;
         let matrix = Matrix::from_columns([x, cross(z, x), z]);
         Some(Self {
             origin: sum(origin, matrix.apply(shift)),
@@ -76,11 +76,11 @@ impl Plane {
     /// P3: origin and the directions of X and Z; Z stays, X becomes square to it. `None` if they differ from a right angle by
     /// more than 5°.
     fn by_vectors(origin: Vector, x: Vector, z: Vector) -> Option<Self> {
-        let (x, z) = (normalized(x)?, normalized(z)?);
+        let (x, z) = (unit_vector(x)?, unit_vector(z)?);
         if dot(x, z).abs() > MAX_SKEW {
             return None;
         }
-        let y = normalized(cross(z, x))?;
+        let y = unit_vector(cross(z, x))?;
         Some(Self { origin, matrix: Matrix::from_columns([cross(y, z), y, z]) })
     }
 
@@ -88,7 +88,7 @@ impl Plane {
     /// then all turn by K about Z. `None` if both directions are parallel.
     pub(super) fn by_projection(origin: Vector, [i, j, k]: Vector) -> Option<Self> {
         let x = Matrix::about(Y, i).apply(X);
-        let z = normalized(cross(x, Matrix::about(X, j).apply(Y)))?;
+        let z = unit_vector(cross(x, Matrix::about(X, j).apply(Y)))?;
         let matrix = Matrix::from_columns([x, cross(z, x), z]);
         Some(Self { origin, matrix: matrix.after(&Matrix::about(Z, k)) })
     }
@@ -148,7 +148,8 @@ mod tests {
     }
 
     /// The plane of the block's face towards +x that leans back by 30°: X along +y, Z along (cos 30°, 0, sin 30°).
-    const LEANING: [Vector; 3] = [[0.0, 1.0, 0.0], [-0.5, 0.0, 0.866_025_403_784_438_6], [0.866_025_403_784_438_6, 0.0, 0.5]];
+    const LEANING: [Vector; 3] =
+        [[0.0, 1.0, 0.0], [-0.5, 0.0, 0.866_025_403_784_438_6], [0.866_025_403_784_438_6, 0.0, 0.5]];
 
     fn is_leaning(plane: &Plane) {
         (0..3).for_each(|k| near(plane.matrix.column(k), LEANING[k]));

@@ -37,6 +37,9 @@ impl State {
 impl Planner<'_> {
     /// G68.2, and G68.4 within the plane that is active: the forms P0 to P4.
     pub(super) fn plan_tilt(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        if plan.state.controls_tip() {
+            return Err(self.not_simulated("G68.2 in tool centre point control (command G49 before it)"));
+        }
         let state = &mut plan.state;
         let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
         for (index, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {
@@ -105,7 +108,7 @@ impl Planner<'_> {
     }
 
     fn plane_format(&self, what: &'static str) -> LocatedAlarm {
-        Alarm::PlaneFormat { what }.located_at(self.block)
+        Alarm::PlaneFormat(what).located_at(self.block)
     }
 
     /// Emits the tool length if it has turned with the tool.
@@ -128,7 +131,7 @@ impl Planner<'_> {
     /// G53.1: rotary axes turn by rapid so that the tool points along Z of the plane, which stays on the part. X, Y and Z
     /// don't move.
     pub(super) fn plan_tool_axis(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        let illegal = |what| Alarm::ToolAxisCode { what }.located_at(self.block);
+        let illegal = |what| Alarm::ToolAxisCode(what).located_at(self.block);
         if self.names_axis() {
             return Err(illegal("G53.1 with an axis"));
         }
@@ -143,7 +146,13 @@ impl Planner<'_> {
         state.transform.tilt = Some(tilt);
         let zero = self.data.zeros(state);
         let normal = state.transform.direction_in_plane(&tilt, tilt.axes[2]);
-        let target = self.tool_axis_target(state, kinematics, normal, &zero)?;
+        let side = match self.words.count(b'P')?.unwrap_or(0) {
+            0 => 0.0,
+            1 => 1.0,
+            2 => -1.0,
+            _ => return Err(illegal("P of G53.1 is 0 to 2")),
+        };
+        let target = self.tool_axis_target(state, kinematics, normal, &zero, side)?;
         for axis in kinematics.axes() {
             state.unknown = state.apply_absolute(axis.axis, state.unknown);
         }
@@ -162,21 +171,16 @@ impl Planner<'_> {
     }
 
     /// Returns the position with the rotary axes where the tool points along `normal`, a direction on the machine with the
-    /// table at its work zeros. P1 takes the solution with the plus sign of the choosing axis, P2 the other; without P the
-    /// one with the shortest way of the first axis, then of the second, then the plus sign of the first.
-    fn tool_axis_target(
+    /// table at its work zeros. A positive `side` takes the solution with the plus sign of the choosing axis, a negative one the
+    /// other; 0 the one with the shortest way of the first axis, then of the second, then the plus sign of the first.
+    pub(super) fn tool_axis_target(
         &self,
         state: &State,
         kinematics: &Kinematics,
         normal: Vector,
         zero: &Position,
+        side: f64,
     ) -> ExecResult<Position> {
-        let side = match self.words.count(b'P')?.unwrap_or(0) {
-            0 => 0.0,
-            1 => 1.0,
-            2 => -1.0,
-            _ => return Err(Alarm::ToolAxisCode { what: "P of G53.1 is 0 to 2" }.located_at(self.block)),
-        };
         let from = &state.machine_position;
         let on_table = Alignment::new(kinematics, &Position::default(), zero).frame.rotation.apply(normal);
         let Some(found) = pointing_positions(kinematics, on_table, from) else {

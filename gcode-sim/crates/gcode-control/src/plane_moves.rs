@@ -4,7 +4,6 @@ use super::functions::ExecResult;
 use super::kinematics::{cross, dot};
 use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
-use super::plane::Tilt;
 use super::planner::Planner;
 use super::state::State;
 use gcode_lang::alarm::Alarm;
@@ -51,7 +50,6 @@ impl Planner<'_> {
     pub(super) fn push_arc_in_plane(
         &self,
         plan: &mut BlockPlan,
-        tilt: &Tilt,
         endpoint: &Endpoint,
         arc: PlanarArc,
         radius: f64,
@@ -66,8 +64,11 @@ impl Planner<'_> {
             let mut middle = start;
             (middle[plane.0], middle[plane.1]) = centre;
             let middle = self.data.to_machine_unrounded(state, &middle);
-            let arc =
-                PlanarArc { plane: axes, centre: (middle[axes.0], middle[axes.1]), sweep: Deg(sweep.0 * side) };
+            let arc = PlanarArc {
+                plane: axes,
+                centre: (middle[axes.0], middle[axes.1]),
+                sweep: Deg(sweep.0 * side),
+            };
             return self.push_arc(plan, endpoint.machine, arc, radius);
         }
         let length = radius * sweep.0.abs().to_radians();
@@ -75,7 +76,6 @@ impl Planner<'_> {
         let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.located_at(self.block))?;
         let chords = chord_count(radius, sweep, self.data.settings.chord_tolerance);
         let (x, y) = (start[plane.0] - centre.0, start[plane.1] - centre.1);
-        debug_assert!(tilt.axes.contains(&plane.0));
         for chord in 1..chords {
             let fraction = f64::from(chord) / f64::from(chords);
             let mut point = start;

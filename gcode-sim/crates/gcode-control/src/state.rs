@@ -74,7 +74,9 @@ impl State {
     pub(super) fn length_compensation(&self) -> LengthCompensation {
         match self.modal.length {
             Length::Off => LengthCompensation::Off,
-            Length::Plus => LengthCompensation::Plus(self.modal_words.h),
+            Length::Plus | Length::TipByAngles | Length::TipByVector => {
+                LengthCompensation::Plus(self.modal_words.h)
+            }
             Length::Minus => LengthCompensation::Minus(self.modal_words.h),
         }
     }

@@ -2,8 +2,8 @@
 //! line.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::chain::Chain;
 use super::Setup;
+use super::chain::Chain;
 use super::error::PeriodicError;
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::units::Deg;

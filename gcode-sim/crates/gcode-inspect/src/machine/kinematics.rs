@@ -9,7 +9,8 @@ impl Machine {
     /// Returns the rotary axes for the control; `None` if nothing describes them, if the operator sets the head, or if a slide
     /// isn't along its own direction or lies on a rotary axis. A head of unknown direction counts as a spindle along Z.
     pub fn kinematics(&self) -> Option<Kinematics> {
-        if self.has_default_table && !matches!(self.head.kind, HeadKind::Axis { .. } | HeadKind::Axes { .. }) {
+        if self.has_default_table && !matches!(self.head.kind, HeadKind::Axis { .. } | HeadKind::Axes { .. })
+        {
             return None;
         }
         let (head, direction) = match &self.head.kind {

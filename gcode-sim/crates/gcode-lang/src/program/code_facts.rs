@@ -284,8 +284,12 @@ pub(super) const SKIP: CodeFacts = CodeFacts {
 };
 pub(super) const MACHINE_COORDINATE_SYSTEM: CodeFacts = CodeFacts { coordinates: NotTransformed, ..SKIP };
 /// G53.1.
-pub(super) const TOOL_AXIS: CodeFacts =
-    CodeFacts { lookahead: Refused, timing: Waits, unsimulated: Unsimulated::Code(Letters::of(b"P")), ..ONE_SHOT };
+pub(super) const TOOL_AXIS: CodeFacts = CodeFacts {
+    lookahead: Refused,
+    timing: Waits,
+    unsimulated: Unsimulated::Code(Letters::of(b"P")),
+    ..ONE_SHOT
+};
 pub(super) const SINGLE_DIRECTION: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     without_axes: Nothing,

@@ -121,7 +121,7 @@ group!(/// Group 06: inch or metric.
 group!(/// Group 07: cutter compensation.
     CutterSide { #[default] Off = 400, Left = 410, Right = 420, });
 group!(/// Group 08: tool length compensation.
-    Length { Plus = 430, Minus = 440, #[default] Off = 490, });
+    Length { Plus = 430, Minus = 440, TipByAngles = 434, TipByVector = 435, #[default] Off = 490, });
 group!(/// Group 10: return level of canned cycles.
     ReturnTo { #[default] Initial = 980, R = 990, });
 group!(/// Group 11: scaling.
