@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::link::FileLink;
 use super::{ROTARY_LETTERS, letter};
-use crate::machine::{Chain, Head, HeadKind, LinkMotion};
+use crate::machine::{Chain, Head, HeadKind};
 use gcode_lang::motion::Axes;
 use gcode_lang::units::Deg;
 use gcode_part::reader::FileError;
@@ -19,7 +19,7 @@ use gcode_part::reader::{FileKey, FixedArray, Items, Located, Optional, Reader, 
 #[schemars(transform = by_kind)]
 pub(super) struct FileHead {
     /// free: unknown; fixed: constant; manual: set by hand; axis: by an axis of the control in the plane of X and Y; axes: by
-    /// any rotary axes of the control.
+    /// any axes of the control.
     #[schemars(extend("enum" = names(&KINDS)))]
     kind: Located<String>,
     /// From the head's pivot to the spindle's gauge line, mm [default: 0].
@@ -35,7 +35,7 @@ pub(super) struct FileHead {
     zero: Option<Bounded<Angle>>,
     /// Its angle before the first stop, degrees.
     angle: Option<Bounded<Angle>>,
-    /// Its rotary axes, from the slides outwards.
+    /// Its axes, from the slides outwards.
     #[serde(default, with = "Optional::<Items<Section<FileLink>>>")]
     axis: Option<Vec<FileLink>>,
 }
@@ -109,9 +109,6 @@ impl FileHead {
                 let mut carried = table.clone();
                 for link in links {
                     let link = link.check(reader, axes, &carried, Point3::origin(), "head.axis")?;
-                    if matches!(link.motion, LinkMotion::Linear { .. }) {
-                        return Err(reader.error(&self.kind, "kind = \"axes\": each [[head.axis]] turns"));
-                    }
                     carried.0.push(link.clone());
                     chain.0.push(link);
                 }
