@@ -97,7 +97,7 @@ fn on_a_machine(page: &Page, program: &str) -> Outcome {
         page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
     let machine = Machine::parse(machines[0]).unwrap();
     let mut request = Request::new("example.nc", program.as_bytes(), machine);
-    request.part = Some(ProbedPart::parse(jobs[0]).unwrap().surface);
+    request.part = jobs.first().map(|job| ProbedPart::parse(job).unwrap().surface);
     simulate(&request, &mut NoLibrary, None).unwrap().run.outcome
 }
 

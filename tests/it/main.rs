@@ -26,6 +26,7 @@ mod equivalent_programs;
 mod every_word;
 mod example_pictures;
 mod explain;
+mod five_axes;
 mod flute_sites;
 mod formats;
 mod honeycomb;

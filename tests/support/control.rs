@@ -9,11 +9,14 @@
 //! -- end=normal; #100=1
 //! ```
 //!
-//! A program that doesn't begin with O, `:` or `%` is O0001. [`crate::expect`] has the words behind `--`.
+//! A case with a `machine.toml` runs on the rotary axes of that machine file. A program that doesn't begin with O, `:` or `%` is O0001. [`crate::expect`] has the words behind `--`.
+use gcode_inspect::machine::Machine;
+
 use crate::{Case, expect};
 
 pub(crate) fn run(case: &Case) {
     let text = case.text("cases.txt");
+    let kinematics = case.optional("machine.toml").map(|text| Machine::parse(&text).unwrap().kinematics());
     let mut wrong = String::new();
     let mut names: Vec<&str> = Vec::new();
     for entry in text.split("== ").skip(1) {
@@ -24,7 +27,9 @@ pub(crate) fn run(case: &Case) {
         names.push(name);
         let head = if program.starts_with(['O', ':', '%']) { "" } else { "O0001\n" };
         let program = format!("{head}{program}");
-        for difference in expect::run(program.as_bytes()).differences(expected.trim()) {
+        let mut settings = expect::settings(program.as_bytes());
+        settings.kinematics = kinematics.clone().flatten();
+        for difference in expect::run_on(program.as_bytes(), settings, 100_000).differences(expected.trim()) {
             wrong.push_str(&format!("{name}: {difference}\n"));
         }
     }

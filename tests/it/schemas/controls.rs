@@ -12,7 +12,7 @@ fn is_taken(key: &str, value: &Value) -> bool {
 
 /// Values of every kind of setting; words are separated by `|`.
 const NUMBERS: &str = "-9999 -1 0 1 2 3 4 9 10 15 16 30 31 300 301 999 1000 4095 9000 9001 1000000000";
-const WORDS: &str = "|fanuc-31i|haas-ngc|haas|IS-C|A|AC|A+B|X|X10|X10,Z-5|X.5, Z-5.|1+2|1+|10+1|98000-98499|400-499,900000-907399|98000|L|whole|feed";
+const WORDS: &str = "|fanuc-31i|haas-ngc|haas|IS-C|A|AC|A+B|X|X10|X10,Z-5|X.5, Z-5.|1+2|1+|10+1|98000-98499|400-499,900000-907399|98000|L|whole|feed|first";
 
 #[test]
 fn each_setting_takes_the_values_of_its_schema() {

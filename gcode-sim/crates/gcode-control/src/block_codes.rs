@@ -48,6 +48,7 @@ impl Planner<'_> {
             plan.commanded_groups.insert(group);
         }
         self.check_modes(&before, state)?;
+        let length_before = state.length_offset;
         self.update_coordinates(&before, state);
         if state.modal.cycle.is_some() && !is_cycle_active {
             self.begin_cycle(state)?;
@@ -57,6 +58,7 @@ impl Planner<'_> {
             && axis_use.is_none()
             && state.modal.cycle.is_none()
             && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
+        self.push_turned_length(plan, length_before);
         Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
     }
 
@@ -153,7 +155,8 @@ impl Planner<'_> {
         }
         if modal.rotation == Rotation::Off {
             state.transform.rotation = None;
-            state.transform.tilt = None;
+            state.end_alignment();
+            (state.transform.tilt, state.transform.plane_entry) = (None, None);
         }
         if state.transform.scaling.is_none() && state.transform.rotation.is_none() {
             state.transform.unknown_centre = 0;

@@ -1,5 +1,6 @@
 //! Programmed, work and machine coordinates, and the stored stroke check.
 use super::data::ControlData;
+use super::kinematics::{scaled, sum};
 use super::state::{EndBeforeTransform, State};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::StrokeLimits;
@@ -25,10 +26,13 @@ impl ControlData {
     }
 
     /// Returns a programmed end point in work coordinates; those that rotation or scaling computes are rounded to the least
-    /// input increment.
+    /// input increment, except in a plane that G53.1 has aligned.
     pub(super) fn to_work(&self, state: &State, point: &Position) -> Position {
         let mut work = state.transform.work_position(*point);
         let computed = state.transform.computed_axes();
+        if state.is_turned() {
+            return work;
+        }
         for axis in (0..MAX_AXES).filter(|axis| computed >> axis & 1 == 1) {
             work[axis] = self.round_to_increment(state, axis, work[axis]);
         }
@@ -42,15 +46,21 @@ impl ControlData {
 
     fn work_to_machine(&self, state: &State, work: &Position) -> Position {
         let zero = self.zeros(state);
-        let to_machine = |axis| self.on_machine(work[axis], zero[axis], state.length_offset[axis]);
+        let to_machine = |axis| match state.is_turned() {
+            true => remove_noise(work[axis] + zero[axis] + state.length_offset[axis]),
+            false => self.on_machine(work[axis], zero[axis], state.length_offset[axis]),
+        };
         let mut machine = Position(std::array::from_fn(to_machine));
         for axis in self.settings.rollover_axes() {
             // The shorter rotation from the current position; full rotations stay.
             let from = state.machine_position[axis] - self.zero(state, axis) - state.length_offset[axis];
-            machine[axis] =
-                self.remove_residue(state.machine_position[axis] + shortest_rotation(from, work[axis]));
+            machine[axis] = self
+                .without_residue(state, state.machine_position[axis] + shortest_rotation(from, work[axis]));
         }
-        machine
+        match self.aligned(state, &machine) {
+            Some(aligned) => self.with_tip_at(state, &aligned, work, &machine),
+            None => machine,
+        }
     }
 
     /// Returns a point of a canned cycle in machine coordinates; `start` is the state at the start of its block. An axis that
@@ -75,7 +85,14 @@ impl ControlData {
         let mut work = Position::default();
         for axis in 0..self.settings.axes.len() {
             let at = state.machine_position[axis] - self.zero(state, axis) - state.length_offset[axis];
-            work[axis] = self.wrap_angle(axis, self.remove_residue(at));
+            work[axis] = self.wrap_angle(axis, self.without_residue(state, at));
+        }
+        if let Some(aligned) = self.aligned(state, &state.machine_position) {
+            let position = aligned.axes.map(|axis| state.machine_position[axis]);
+            let turned = sum(position, scaled(aligned.length, -1.0));
+            for (axis, value) in aligned.axes.into_iter().zip(aligned.frame.revert(turned)) {
+                work[axis] = remove_noise(value - self.zero(state, axis));
+            }
         }
         work
     }
@@ -108,7 +125,8 @@ impl ControlData {
         state.programmed_position = state.transform.programmed_position(work);
         if !state.transform.is_identity() {
             for axis in 0..MAX_AXES {
-                state.programmed_position[axis] = self.remove_residue(state.programmed_position[axis]);
+                state.programmed_position[axis] =
+                    self.without_residue(state, state.programmed_position[axis]);
             }
         }
     }
@@ -120,9 +138,14 @@ impl ControlData {
         round(value * grid) / grid
     }
 
+    /// Returns a coordinate without rounding errors, to 1e-9 where kinematics computes it.
+    fn without_residue(&self, state: &State, value: f64) -> f64 {
+        if state.is_turned() { remove_noise(value) } else { self.remove_residue(value) }
+    }
+
     /// Returns a work coordinate, from 0 to 360 on an axis that rolls over.
     pub(super) fn wrap_angle(&self, axis: AxisIndex, value: f64) -> f64 {
-        if self.settings.rolls_over[axis] { self.remove_residue(value.rem_euclid(360.0)) } else { value }
+        if self.settings.rolls_over[axis] { remove_noise(value.rem_euclid(360.0)) } else { value }
     }
 
     /// Returns the end of an axis that goes to a machine coordinate: an axis that rolls over takes the shorter rotation.
@@ -159,16 +182,22 @@ impl ControlData {
         if state.modal.unit == Unit::Inch && !is_rotary { value / 25.4 } else { value }
     }
 
-    /// Returns the length offset of the modal state, on Z.
+    /// Returns the length offset of the modal state, on Z, or along the tool that G53.1 has turned.
     pub(super) fn length_offset(&self, state: &State) -> Result<Position, Alarm> {
         let mut offset = Position::default();
         let sign = match state.modal.length {
-            Length::Plus => 1.0,
+            Length::Plus | Length::TipByAngles | Length::TipByVector => 1.0,
             Length::Minus => -1.0,
             Length::Off => return Ok(offset),
         };
         let axis = self.settings.axes.find(b'Z').ok_or(Alarm::ImproperAddress { letter: 'Z' })?;
         offset[axis] = sign * self.offsets.length(state.modal_words.h)?;
+        if let Some((axes, alignment)) = state.alignment() {
+            let length = alignment.tool.apply(axes.map(|axis| offset[axis]));
+            for (axis, value) in axes.into_iter().zip(length) {
+                offset[axis] = value;
+            }
+        }
         Ok(offset)
     }
 
@@ -232,6 +261,11 @@ fn extremes(arc: &PlanarArc, to: &Position) -> [Option<Position>; 4] {
             })
         },
     )
+}
+
+/// Returns a coordinate that kinematics computes, to 1e-9: finer than any increment, coarser than rounding errors.
+pub(super) fn remove_noise(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
 }
 
 /// Returns the rotation of an axis that rolls over: the shorter one, 180° in the plus direction.

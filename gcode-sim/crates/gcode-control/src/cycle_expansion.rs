@@ -1,6 +1,7 @@
 //! Expands a checked block of a canned cycle: its holes, and the steps of the cycle at each of them.
+use super::coordinates::remove_noise;
 use super::data::ControlData;
-use super::state::{CycleState, PeckSchedule, State, Transform};
+use super::state::{CycleState, PeckSchedule, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind, UnknownAxes};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::ReturnTo;
@@ -30,7 +31,7 @@ impl CyclePlan {
         let mut motion = CycleMotion {
             data,
             position: state.machine_position,
-            transform: &state.transform,
+            state,
             unknown: state.unknown,
             stated_unknown: state.stated_unknown,
             waits_for_move: false,
@@ -47,7 +48,7 @@ impl CyclePlan {
                 data.cycle_point(state, &point)
             };
             let mut above_hole = point_at(r);
-            above_hole[self.axis] = motion.position[self.axis];
+            above_hole = state.at_level_of(self.axis, above_hole, &motion.position);
             motion.rapid(above_hole);
             if self.cycle.rapids_to_r_first {
                 motion.set_unknown(self.axis, cycle.r_unknown(state.unknown_after_absolute(self.axis)));
@@ -115,7 +116,15 @@ impl CyclePlan {
                 let (axis, distance) = self.bore_shift;
                 let distance = if step == CycleStep::Shift { distance } else { -distance };
                 let mut to = motion.position;
-                to[axis] = data.remove_residue(to[axis] + distance);
+                match &state.transform.tilt {
+                    Some(tilt) => {
+                        let direction = state.transform.direction_in_plane(tilt, axis);
+                        for (axis, part) in tilt.axes.into_iter().zip(direction) {
+                            to[axis] = remove_noise(to[axis] + part * distance);
+                        }
+                    }
+                    None => to[axis] = data.remove_residue(to[axis] + distance),
+                }
                 motion.rapid(to);
             }
             CycleStep::SpindleStop => (motion.emit)(spindle(SpindleDirection::Off), 0.0),
@@ -186,7 +195,8 @@ impl CyclePlan {
 struct CycleMotion<'c, T> {
     data: &'c ControlData,
     position: Position,
-    transform: &'c Transform,
+    /// State at the start of the block.
+    state: &'c State,
     /// Axes of unknown position, in programmed coordinates, and those that the last event has stated.
     unknown: UnknownAxes,
     stated_unknown: UnknownAxes,
@@ -205,7 +215,7 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 
     /// Emits the axes that are unknown after the next move, if they have changed.
     fn state_unknown(&mut self) {
-        let axes = self.transform.spread(self.unknown);
+        let axes = self.state.transform.spread(self.unknown);
         if axes != self.stated_unknown {
             self.stated_unknown = axes;
             self.waits_for_move = true;
@@ -231,9 +241,7 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 
     /// Moves along the drilling axis only; the plane keeps its shift.
     fn rapid_along_axis(&mut self, to: Position, axis: AxisIndex) {
-        let mut point = self.position;
-        point[axis] = to[axis];
-        self.rapid(point);
+        self.rapid(self.state.at_level_of(axis, self.position, &to));
     }
 
     fn feed(&mut self, to: Position) {

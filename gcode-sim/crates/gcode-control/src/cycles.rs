@@ -107,7 +107,7 @@ impl Planner<'_> {
         if repeats == 0 {
             // K0 of some controls: a position only.
             let mut to = self.data.cycle_point(&start_state, &plan.state.programmed_position);
-            to[axis] = from.machine_position[axis];
+            to = start_state.at_level_of(axis, to, &from.machine_position);
             self.wrap_position(&mut plan.state);
             plan.state.machine_position = from.machine_position;
             self.push_unknown_axes(plan);
@@ -257,8 +257,8 @@ fn scale_factor_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Resul
     let is_mirrored = scale_factor < 0.0 || transform.mirrored_axes >> axis & 1 == 1;
     // G51 excepts cycles with a shift; the manual doesn't say how far.
     let has_scaled_shift = scale_factor != 1.0 && cycle.steps.contains(&CycleStep::Shift);
-    if transform.tilt.is_some() || is_mirrored || has_scaled_shift {
-        let what = "a canned cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
+    if is_mirrored || has_scaled_shift {
+        let what = "a canned cycle whose axis is mirrored, or one with a shift that is scaled";
         return Err(Alarm::NotSimulated { what: what.into() });
     }
     Ok(scale_factor)

@@ -41,9 +41,12 @@
 
 mod contour;
 
+mod kinematics;
 pub mod notes;
 mod outcome;
+mod plane;
 mod state;
+mod transform;
 mod variables;
 
 mod functions;
@@ -72,13 +75,17 @@ mod planner;
 
 mod block_codes;
 mod calls;
+mod circle_pocket;
 mod cycles;
 mod data_input;
 mod lookahead_request;
 mod move_repeats;
 mod moves;
 mod one_shot_codes;
+mod plane_codes;
+mod plane_moves;
 mod probing;
+mod tip_control;
 mod transform_codes;
 
 mod executor;

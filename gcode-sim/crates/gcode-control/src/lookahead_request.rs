@@ -9,6 +9,7 @@ use super::state::State;
 use crate::contour::Point;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::DeclaredEffect;
+use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::code_facts::LookaheadUse;
 use gcode_lang::program::g_codes;
 use gcode_lang::program::g_codes::Effect;
@@ -47,9 +48,6 @@ impl Planner<'_> {
         if self.registers.lookahead.is_idle() && distance.is_none() && plan.corner.is_none() {
             return Ok(());
         }
-        if plan.state.transform.tilt.is_some() && distance.is_some_and(|d| d != 0.0) {
-            return Err(self.not_simulated("cutter compensation in a tilted plane"));
-        }
         let motion = plan.state.modal.motion;
         let uses =
             |lookahead: LookaheadUse| self.words.g_codes().find(|row| row.facts.lookahead == lookahead);
@@ -61,7 +59,9 @@ impl Planner<'_> {
         {
             return Err(self.not_simulated(format!("{code} in cutter compensation")));
         }
-        let plane = self.locate(self.data.plane_axes(plan.state.modal.plane))?;
+        let programmed_plane = self.locate(self.data.plane_axes(plan.state.modal.plane))?;
+        let (plane, side) = self.compensation_plane(&plan.state)?;
+        let distance = distance.map(|distance| distance * side);
         let is_restated = self.words.g_codes().any(|row| {
             matches!(row.effect, Effect::Cutter(side) if side != CutterSide::Off)
                 && self.registers.state.modal.cutter == plan.state.modal.cutter
@@ -83,7 +83,8 @@ impl Planner<'_> {
                 || uses(LookaheadUse::Blocks).is_some()
                 || self.waits_for_m_code(),
             counts_as_block: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
-            has_zero_length: axis_word_use.is_none() && (self.names(plane.0) || self.names(plane.1)),
+            has_zero_length: axis_word_use.is_none()
+                && (self.names(programmed_plane.0) || self.names(programmed_plane.1)),
             is_cut: axis_word_use.is_none()
                 && matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise),
             is_dwell: uses(LookaheadUse::Dwell).is_some(),
@@ -103,6 +104,14 @@ impl Planner<'_> {
             drill.start_state.machine_position = plan.lookahead.end_path();
         }
         Ok(())
+    }
+
+    /// Returns the machine axes of the active plane, and −1 if it is seen there from behind.
+    fn compensation_plane(&self, state: &State) -> ExecResult<((AxisIndex, AxisIndex), f64)> {
+        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        state.machine_plane(plane).ok_or_else(|| {
+            self.not_simulated("cutter compensation or a corner word in a plane askew to the machine's axes")
+        })
     }
 
     /// Returns the distance of the tool centre to the left of the path; `None` without compensation.
@@ -135,8 +144,9 @@ impl Planner<'_> {
         let mut tip = state.programmed_position;
         tip[plane.0] += first;
         tip[plane.1] += second;
-        let (from, to) =
-            (state.transform.work_position(state.programmed_position), state.transform.work_position(tip));
+        let from = self.data.to_machine_unrounded(state, &state.programmed_position);
+        let to = self.data.to_machine_unrounded(state, &tip);
+        let (plane, _) = self.compensation_plane(state)?;
         Ok(Some(Point::new(to[plane.0] - from[plane.0], to[plane.1] - from[plane.1])))
     }
 

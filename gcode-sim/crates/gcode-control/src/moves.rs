@@ -30,7 +30,7 @@ impl Planner<'_> {
     #[inline(never)]
     fn plan_length_offset(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
         let is_compensation_on =
-            |row: &&GCodeRow| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
+            |row: &&GCodeRow| matches!(row.effect, Effect::Length(length) if length != Length::Off);
         if let Some(row) = self.words.g_codes().find(is_compensation_on)
             && plan.state.modal_words.h == 0
             && !self.words.has(b'H')
@@ -43,11 +43,19 @@ impl Planner<'_> {
             plan.push_event(EventKind::ToolLength { offset, compensation: by });
         }
         plan.state.length_offset = offset;
+        if plan.state.controls_tip() || self.registers.state.controls_tip() {
+            // The tool stays: tool centre point control starts and ends without a move.
+            self.data.recompute_position(&mut plan.state);
+            return Ok(false);
+        }
         Ok(changed)
     }
 
     /// 4. Plans a move by the modal codes: a canned cycle, or group 01.
     pub(super) fn plan_motion(&self, plan: &mut BlockPlan, has_new_length: bool) -> ExecResult<()> {
+        if plan.state.controls_tip() {
+            self.check_tip_control(&plan.state)?;
+        }
         if let Some(cycle) = plan.state.modal.cycle {
             // A block drills if it names an axis or R.
             if self.words.has(b'R') || self.names_axis() {
@@ -72,12 +80,14 @@ impl Planner<'_> {
         if overrules_cycle {
             self.words.mark_read(Letters::of(b"KPQR"));
         }
-        if !(names_axis || is_arc && self.words.has_any(b"IJKR")) {
+        let points_tool =
+            !is_arc && plan.state.modal.length == Length::TipByVector && self.words.has_any(b"IJK");
+        if !(names_axis || points_tool || is_arc && self.words.has_any(b"IJKR")) {
             return self.move_by_length_change(plan, has_new_length);
         }
         // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
         let takes_vector = self.words.has_non_motion_code(|effect| effect == Effect::Cutter(CutterSide::Off));
-        if !(is_arc || takes_vector || overrules_cycle)
+        if !(is_arc || takes_vector || overrules_cycle || points_tool)
             && let Some(letter) = self.words.first_present(Letters::of(b"IJKR").bits())
         {
             let what = format!("{} in a block with a straight move", char::from(letter));
@@ -86,7 +96,10 @@ impl Planner<'_> {
         if self.words.has(b'L') {
             self.plan_repeated_moves(plan)?;
         }
-        let endpoint = self.resolve_endpoint(plan)?;
+        let mut endpoint = self.resolve_endpoint(plan)?;
+        if points_tool {
+            self.point_tool(&plan.state, &mut endpoint)?;
+        }
         if motion == Motion::Thread && self.words.corner.is_some() {
             return Err(Alarm::CornerInThread.located_at(self.block));
         }
@@ -94,6 +107,9 @@ impl Planner<'_> {
             plan.corner = self.corner_word(&plan.state)?;
         }
         match motion {
+            Motion::Rapid | Motion::Linear if plan.state.controls_tip() => {
+                self.push_tip_path(plan, &endpoint, None)?
+            }
             Motion::Rapid => self.push_rapid(plan, &endpoint.machine),
             Motion::Thread => self.plan_thread(plan, endpoint.machine)?,
             Motion::Linear => self.locate(self.push_feed(plan, &endpoint.machine))?,
@@ -139,7 +155,10 @@ impl Planner<'_> {
         if state.modal.polar == Polar::On {
             self.resolve_polar(state, &mut endpoint.programmed)?;
         }
-        if state.end_before_transform.is_some() && state.modal.distance == Distance::Absolute {
+        if state.end_before_transform.is_some()
+            && state.alignment().is_none()
+            && state.modal.distance == Distance::Absolute
+        {
             self.note_axes_left_out(state);
         }
         let machine = self.data.to_machine(state, &endpoint.programmed);
@@ -149,10 +168,27 @@ impl Planner<'_> {
         {
             endpoint.machine[axis] = rolled_machine[axis];
         }
+        if !state.transform.is_identity() {
+            self.check_plane(state, &endpoint.machine)?;
+        }
         if endpoint.machine.0.iter().any(|at| at.abs() > basis.max_coordinate) {
             self.check_coordinate_range(&endpoint.machine, basis.max_coordinate)?;
         }
         Ok(endpoint)
+    }
+
+    /// Raises the alarm of a move while a plane is incomplete, or off the angles of the rotary axes that G53.1 has set.
+    fn check_plane(&self, state: &State, end: &Position) -> ExecResult<()> {
+        if state.transform.plane_entry.is_some() {
+            let what = "a move before the last block of a plane by points or vectors";
+            return Err(Alarm::PlaneFormat(what).located_at(self.block));
+        }
+        match (state.alignment(), &self.data.settings.kinematics) {
+            (Some((_, alignment)), Some(kinematics)) if !alignment.holds_at(kinematics, end) => {
+                Err(self.not_simulated("a rotary axis off its angle in a plane that G53.1 has set"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Notes an axis that the block doesn't name, if a change of the transform has changed its coordinate.
@@ -309,8 +345,12 @@ impl Planner<'_> {
     ) -> ExecResult<()> {
         let state = &plan.state;
         let (is_mirrored, is_round) = state.transform.arc_effect(plane);
+        if state.controls_tip() {
+            return self.push_tip_path(plan, endpoint, Some((PlanarArc { plane, centre, sweep }, radius)));
+        }
         if state.transform.tilt.is_some() {
-            return Err(self.not_simulated("an arc in a tilted plane"));
+            let arc = PlanarArc { plane, centre, sweep };
+            return self.push_arc_in_plane(plan, endpoint, arc, radius);
         }
         let mut centre_point = state.programmed_position;
         (centre_point[plane.0], centre_point[plane.1]) = centre;
@@ -331,7 +371,13 @@ impl Planner<'_> {
     }
 
     /// Emits an arc; F is along the arc, and all other axes follow (1403#5 HTG = 0).
-    fn push_arc(&self, plan: &mut BlockPlan, to: Position, arc: PlanarArc, radius: f64) -> ExecResult<()> {
+    pub(super) fn push_arc(
+        &self,
+        plan: &mut BlockPlan,
+        to: Position,
+        arc: PlanarArc,
+        radius: f64,
+    ) -> ExecResult<()> {
         let length = radius * arc.sweep.0.abs().to_radians();
         let timed = self.data.path_time(&plan.state, length, self.words.has(b'F'));
         let (rate, seconds) = self.locate(timed.map_err(|alarm| match alarm {
@@ -379,93 +425,6 @@ fn sweep(start: (f64, f64), end: (f64, f64), centre: (f64, f64), clockwise: bool
         (false, 0.0) => 360.0,
         (true, rotation) => rotation - 360.0,
         (false, rotation) => rotation,
-    }
-}
-
-/// Largest number of circles in one block; more are a typing error.
-const MAX_CIRCLES: f64 = 10_000.0;
-
-impl Planner<'_> {
-    /// G12 and G13: at the centre the tool feeds to Z, then mills a circle of radius I, and with K and Q larger ones up to
-    /// K; all of it L times, inside by the radius of D. The circles are those of the manual; the half circles out to X+ and
-    /// back are a choice of this simulator.
-    pub(super) fn plan_circle_pocket(&self, motion: Motion, plan: &mut BlockPlan) -> ExecResult<()> {
-        let clockwise = motion == Motion::Clockwise;
-        let code = if clockwise { "G12" } else { "G13" };
-        let modal = &plan.state.modal;
-        let is_allowed = modal.plane == Plane::Xy
-            && modal.cycle.is_none()
-            && modal.cutter == CutterSide::Off
-            && plan.state.transform.is_identity();
-        if !is_allowed || self.words.has_any(b"XY") {
-            return Err(self.not_simulated(format!(
-                "{code} with X, Y, another plane, compensation, rotation or a canned cycle"
-            )));
-        }
-        let radii = self.radii(code, plan)?;
-        let passes = self.words.count(b'L')?.unwrap_or(1);
-        if f64::from(passes) * radii.len() as f64 > MAX_CIRCLES {
-            return Err(self.not_simulated(format!("{code} with this number of circles")));
-        }
-        for _ in 0..passes {
-            let endpoint = self.resolve_endpoint(plan)?;
-            self.locate(self.push_feed(plan, &endpoint.machine))?;
-            plan.state.programmed_position = endpoint.programmed;
-            for radius in &radii {
-                let start = plan.state.machine_position;
-                let (centre, half_circle_centre) =
-                    ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
-                let mut edge = start;
-                edge[0] = self.data.remove_residue(centre.0 + radius);
-                let arcs = [
-                    (edge, half_circle_centre, radius / 2.0, 180.0),
-                    (edge, centre, *radius, 360.0),
-                    (start, half_circle_centre, radius / 2.0, 180.0),
-                ];
-                for (to, centre, radius, degrees) in arcs {
-                    let sweep = Deg(if clockwise { -degrees } else { degrees });
-                    self.push_arc(plan, to, PlanarArc { plane: (0, 1), centre, sweep }, radius)?;
-                }
-            }
-        }
-        plan.commands_axes = true;
-        Ok(())
-    }
-
-    /// Returns the radii of the tool centre's circles, from the inside out.
-    fn radii(&self, code: &'static str, plan: &BlockPlan) -> ExecResult<Vec<f64>> {
-        let missing = |letter| Alarm::MissingWord { code, letter }.located_at(self.block);
-        let state = &plan.state;
-        let first = self.dimension(b'I', state)?.ok_or_else(|| missing('I'))?;
-        let (last, step) = match (self.dimension(b'K', state)?, self.dimension(b'Q', state)?) {
-            (None, None) => (first, 0.0),
-            (Some(last), Some(step)) => (last, step),
-            (Some(_), None) => return Err(missing('Q')),
-            (None, Some(_)) => return Err(missing('K')),
-        };
-        let number = state.modal_words.d;
-        let unknown = || Alarm::OffsetNumber { number: i64::from(number) }.located_at(self.block);
-        let tool = self.data.offset_radius(number).ok_or_else(unknown)?;
-        let out_of_range = |letter: char, value| {
-            Alarm::OutOfRange { function: format!("{letter} of {code}"), value }.located_at(self.block)
-        };
-        if first <= tool {
-            return Err(Alarm::PocketTooSmall { code, radius: first, tool }.located_at(self.block));
-        }
-        if last < first {
-            return Err(out_of_range('K', last));
-        }
-        if last > first && (step <= 0.0 || (last - first) / step > MAX_CIRCLES) {
-            return Err(out_of_range('Q', step));
-        }
-        let mut radii = Vec::new();
-        let mut count = 0.0;
-        while first + count * step < last - 1e-9 {
-            radii.push(self.data.remove_residue(first + count * step - tool));
-            count += 1.0;
-        }
-        radii.push(self.data.remove_residue(last - tool));
-        Ok(radii)
     }
 }
 

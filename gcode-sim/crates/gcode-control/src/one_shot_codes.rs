@@ -67,6 +67,13 @@ impl Planner<'_> {
     }
 
     fn execute_one_shot(&self, one: OneShot, plan: &mut BlockPlan) -> ExecResult<()> {
+        let is_on_path = matches!(
+            one,
+            OneShot::Skip | OneShot::SingleDirection | OneShot::CirclePocket(_) | OneShot::BoltHoles(_)
+        );
+        if is_on_path && plan.state.controls_tip() {
+            return Err(self.not_simulated("G31 or G60 in tool centre point control"));
+        }
         let cycle = plan.state.modal.cycle.is_some();
         match one {
             OneShot::Dwell => self.plan_dwell(plan),
@@ -115,6 +122,7 @@ impl Planner<'_> {
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
             OneShot::MachineCoordinateSystem => self.plan_machine_move(plan),
+            OneShot::ToolAxis => self.plan_tool_axis(plan),
             OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),
             OneShot::CornerArc => Err(self.not_simulated("G39 without cutter compensation")),
         }

@@ -104,7 +104,7 @@ impl Control {
 mod tests {
     use super::*;
     use crate::{Limits, Outcome, Value};
-    use gcode_lang::control::{Dialect, Settings};
+    use gcode_lang::control::{Dialect, Kinematics, Settings};
     use gcode_lang::program::g_codes::{Effect, find, name};
     use gcode_lang::program::modes::{Mirror, Rotation, Scaling};
     use gcode_lang::program::{Memory, NoLibrary};
@@ -113,6 +113,8 @@ mod tests {
     fn after(dialect: Dialect, block: &str) -> Control {
         let mut settings = Settings::default();
         settings.apply_dialect(dialect);
+        let (table, head, direction) = (Vec::new(), Vec::new(), [0.0, 0.0, 1.0]);
+        settings.kinematics = Some(Kinematics { table, head, direction, pivot: 0.0 });
         let mut memory = Memory::default();
         memory.load("O1.nc", format!("O1\n{block}\n").into_bytes());
         let mut control = Control::new(memory, settings);
@@ -134,7 +136,11 @@ mod tests {
                     Effect::Rotation(Rotation::Tilted) => (" X0 Y0 Z0 I0 J0 K0", row.code),
                     _ => ("", row.code),
                 };
-                let (block, expected) = (format!("{}{words}", name(row.code)), f64::from(code) / 10.0);
+                let plane = match row.effect {
+                    Effect::Rotation(Rotation::TiltedFurther) => "G68.2 J30.\n",
+                    _ => "",
+                };
+                let (block, expected) = (format!("{plane}{}{words}", name(row.code)), f64::from(code) / 10.0);
                 let control = after(dialect, &block);
                 // A Haas has no number for G154.
                 if code != 541 || dialect != Dialect::HaasNgc {

@@ -1,14 +1,14 @@
 //! State that one block can change besides variables and offset tables: modes, positions, codes with a number, the transform
 //! of coordinates. It is small enough to copy, so that a block that raises an alarm leaves no trace.
 use super::axis_word_use::AxisWordUse;
-use gcode_lang::motion::{AxisIndex, LengthCompensation, MAX_AXES, Position, SpindleDirection, UnknownAxes};
+use super::transform::Transform;
+use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::program::cycles::Cycle;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::{
     CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, ModalGroup, Motion, Plane, Polar,
     ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
 };
-use gcode_lang::units::Deg;
 
 /// Control between two blocks; lengths in mm even with G20.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,7 +75,9 @@ impl State {
     pub(super) fn length_compensation(&self) -> LengthCompensation {
         match self.modal.length {
             Length::Off => LengthCompensation::Off,
-            Length::Plus => LengthCompensation::Plus(self.modal_words.h),
+            Length::Plus | Length::TipByAngles | Length::TipByVector => {
+                LengthCompensation::Plus(self.modal_words.h)
+            }
             Length::Minus => LengthCompensation::Minus(self.modal_words.h),
         }
     }
@@ -236,7 +238,7 @@ impl Modal {
                 return match rotation {
                     Rotation::Off => None,
                     Rotation::On => Some(AxisWordUse::Rotate),
-                    Rotation::Tilted => Some(AxisWordUse::Tilt),
+                    Rotation::Tilted | Rotation::TiltedFurther => Some(AxisWordUse::Tilt),
                 };
             }
             Effect::Mirror(mirror) => {
@@ -290,166 +292,6 @@ impl Modal {
     }
 }
 
-/// Transform from programmed to work coordinates.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Transform {
-    /// Mirrored axes, as bits.
-    pub(super) mirrored_axes: u8,
-    pub(super) mirror_position: Position,
-    pub(super) scaling: Option<Scale>,
-    pub(super) rotation: Option<PlaneRotation>,
-    pub(super) tilt: Option<Tilt>,
-    /// Axes whose centre of rotation or scaling is an unknown position, as bits.
-    pub(super) unknown_centre: u8,
-}
-
-/// G68.2: p = o + Rz(I)·Rx(J)·Rz(K)·q in the coordinates of X, Y and Z.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Tilt {
-    pub(super) axes: [AxisIndex; 3],
-    origin: [f64; 3],
-    matrix: [[f64; 3]; 3],
-}
-
-impl Tilt {
-    pub(super) fn new(axes: [AxisIndex; 3], origin: [f64; 3], angles: [f64; 3]) -> Self {
-        let [(si, ci), (sj, cj), (sk, ck)] = angles.map(sine_cosine);
-        let rows = [
-            [ci * ck - si * cj * sk, -ci * sk - si * cj * ck, si * sj],
-            [si * ck + ci * cj * sk, -si * sk + ci * cj * ck, -ci * sj],
-            [sj * sk, sj * ck, cj],
-        ];
-        Self { axes, origin, matrix: rows }
-    }
-
-    fn apply(&self, point: &mut Position) {
-        let feature = self.axes.map(|axis| point[axis]);
-        for (i, axis) in self.axes.into_iter().enumerate() {
-            let rotated: f64 = (0..3).map(|k| self.matrix[i][k] * feature[k]).sum();
-            point[axis] = self.origin[i] + rotated;
-        }
-    }
-
-    fn revert(&self, point: &mut Position) {
-        let from = [0, 1, 2].map(|i| point[self.axes[i]] - self.origin[i]);
-        for (i, axis) in self.axes.into_iter().enumerate() {
-            point[axis] = (0..3).map(|k| self.matrix[k][i] * from[k]).sum();
-        }
-    }
-}
-
-/// Returns sine and cosine; exact for multiples of 90°, as on a control.
-fn sine_cosine(angle: f64) -> (f64, f64) {
-    match angle.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        _ => (Deg(angle).sin(), Deg(angle).cos()),
-    }
-}
-
-/// Scaling of G51.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
-    pub(super) centre: Position,
-    pub(super) factor: Position,
-}
-
-/// Rotation of G68 in the plane of two axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PlaneRotation {
-    pub(super) plane: (AxisIndex, AxisIndex),
-    pub(super) centre: (f64, f64),
-    pub(super) angle: f64,
-    sine: f64,
-    cosine: f64,
-}
-
-impl PlaneRotation {
-    pub(super) fn new(plane: (AxisIndex, AxisIndex), centre: (f64, f64), angle: f64) -> Self {
-        let (sine, cosine) = sine_cosine(angle);
-        Self { plane, centre, angle, sine, cosine }
-    }
-
-    fn apply(&self, point: &mut Position, sine: f64) {
-        let (a, b) = (point[self.plane.0] - self.centre.0, point[self.plane.1] - self.centre.1);
-        point[self.plane.0] = self.centre.0 + a * self.cosine - b * sine;
-        point[self.plane.1] = self.centre.1 + a * sine + b * self.cosine;
-    }
-}
-
-impl Transform {
-    #[inline]
-    pub(super) fn is_identity(&self) -> bool {
-        self.mirrored_axes == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
-    }
-
-    /// Returns the axes, as bits, whose work coordinates are products: scaled, or of a rotated plane.
-    pub(super) fn computed_axes(&self) -> u8 {
-        let rotated = self.rotation.map_or(0, |rotation| 1 << rotation.plane.0 | 1 << rotation.plane.1);
-        let tilted = self.tilt.map_or(0, |tilt| tilt.axes.iter().fold(0, |axes, axis| axes | 1 << axis));
-        let scaled = self.scaling.map_or(0, |scale| {
-            let is_scaled = |axis: &AxisIndex| scale.factor[*axis].abs() != 1.0;
-            (0..MAX_AXES).filter(is_scaled).fold(0, |axes, axis| axes | 1 << axis)
-        });
-        rotated | tilted | scaled
-    }
-
-    pub(super) fn work_position(&self, mut point: Position) -> Position {
-        if self.is_identity() {
-            return point;
-        }
-        self.reflect(&mut point);
-        if let Some(scale) = &self.scaling {
-            for axis in 0..MAX_AXES {
-                point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) * scale.factor[axis];
-            }
-        }
-        if let Some(rotation) = &self.rotation {
-            rotation.apply(&mut point, rotation.sine);
-        }
-        if let Some(tilt) = &self.tilt {
-            tilt.apply(&mut point);
-        }
-        point
-    }
-
-    pub(super) fn programmed_position(&self, mut point: Position) -> Position {
-        if self.is_identity() {
-            return point;
-        }
-        if let Some(tilt) = &self.tilt {
-            tilt.revert(&mut point);
-        }
-        if let Some(rotation) = &self.rotation {
-            rotation.apply(&mut point, -rotation.sine);
-        }
-        if let Some(scale) = &self.scaling {
-            for axis in 0..MAX_AXES {
-                point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) / scale.factor[axis];
-            }
-        }
-        self.reflect(&mut point);
-        point
-    }
-
-    fn reflect(&self, point: &mut Position) {
-        for axis in (0..MAX_AXES).filter(|axis| self.mirrored_axes >> axis & 1 == 1) {
-            point[axis] = 2.0 * self.mirror_position[axis] - point[axis];
-        }
-    }
-
-    /// Returns whether arcs in a plane change their direction, and whether they stay circles.
-    pub(super) fn arc_effect(&self, plane: (AxisIndex, AxisIndex)) -> (bool, bool) {
-        let bit = |axis: AxisIndex| self.mirrored_axes >> axis & 1 == 1;
-        let factor = |axis: AxisIndex| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
-        let (a, b) = (factor(plane.0), factor(plane.1));
-        let is_reversed = bit(plane.0) ^ bit(plane.1) ^ (a < 0.0) ^ (b < 0.0);
-        (is_reversed, a.abs() == b.abs())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -464,16 +306,5 @@ mod tests {
             1600, 131, 501,
         ];
         assert_eq!(codes, expected);
-    }
-
-    #[test]
-    fn a_rotation_by_90_degrees_takes_x_to_y() {
-        let rotation = PlaneRotation::new((0, 1), (0.0, 0.0), 90.0);
-        let transform = Transform { rotation: Some(rotation), ..Transform::default() };
-        let mut point = Position::default();
-        point[0] = 10.0;
-        let rotated = transform.work_position(point);
-        assert_eq!((rotated[0], rotated[1]), (0.0, 10.0));
-        assert_eq!(transform.programmed_position(rotated), point);
     }
 }

@@ -1,9 +1,10 @@
-//! G68, G68.2, G51 and G51.1: their words to a [`Transform`], and the codes that manuals rule out beside them.
+//! G68, G51 and G51.1: their words to a [`Transform`], and the codes that manuals rule out beside them.
 use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::state::{Modal, PlaneRotation, Scale, State, Tilt, Transform};
+use super::state::{Modal, State};
+use super::transform::{PlaneRotation, Scale, Transform};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{MAX_AXES, Position};
 use gcode_lang::program::code_facts::CoordinateUse;
@@ -34,23 +35,6 @@ impl Planner<'_> {
         }
         state.transform.rotation = Some(PlaneRotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
         self.data.apply_transform_change(state);
-        Ok(())
-    }
-
-    /// G68.2 with Euler angles; its other forms have a P.
-    pub(super) fn plan_tilt(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        if self.words.has_any(b"PQR") {
-            return Err(self.not_simulated("G68.2 (tilted plane other than by Euler angles)"));
-        }
-        let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
-        for (index, (letter, angle)) in [(b'X', b'I'), (b'Y', b'J'), (b'Z', b'K')].into_iter().enumerate() {
-            let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            axes[index] = self.locate(self.data.settings.axes.find(letter).ok_or(missing))?;
-            origin[index] = self.dimension(letter, &plan.state)?.unwrap_or(0.0);
-            angles[index] = self.angle(angle)?.unwrap_or(0.0);
-        }
-        plan.state.transform.tilt = Some(Tilt::new(axes, origin, angles));
-        self.data.apply_transform_change(&mut plan.state);
         Ok(())
     }
 
@@ -111,6 +95,7 @@ impl Planner<'_> {
         let is_rotated = before.rotation == Rotation::On && modal.rotation == Rotation::On;
         let is_mirrored = before.mirror == Mirror::On;
         let was_scaled = before.scaling == Scaling::On;
+        let is_aligned = state.transform.tilt.is_some_and(|tilt| tilt.alignment.is_some());
         let is_scaled = was_scaled && modal.scaling == Scaling::On;
         for row in self.words.g_codes() {
             // G53 without an axis only waits.
@@ -120,7 +105,20 @@ impl Planner<'_> {
             let is_bound = row.facts.coordinates == CoordinateUse::NotTransformed;
             let is_mirror = |mirror| row.effect == Effect::Mirror(mirror);
             let is_scaling = |scaling| row.effect == Effect::Scaling(scaling);
-            let (active, cancel) = if is_rotated
+            let is_shift = is_bound
+                && !matches!(
+                    row.effect,
+                    Effect::OneShot(
+                        OneShot::MachineCoordinateSystem
+                            | OneShot::CheckReference
+                            | OneShot::Reference
+                            | OneShot::FromReference
+                            | OneShot::SecondReference
+                    )
+                );
+            let (active, cancel) = if is_shift && is_aligned {
+                ("G53.1", "G69")
+            } else if is_rotated
                 && (is_bound
                     || is_mirror(Mirror::On)
                     || is_scaling(Scaling::On)

@@ -3,7 +3,8 @@ use super::control::Control;
 use super::executor::Executor;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::state::{State, Transform};
+use super::state::State;
+use super::transform::Transform;
 use gcode_lang::motion::{AxisIndex, EventKind, EventSink, UnknownAxes};
 
 impl State {

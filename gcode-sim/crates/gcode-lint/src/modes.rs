@@ -246,7 +246,7 @@ fn uses_axis_words(row: &GCodeRow) -> bool {
     let is_transform = matches!(
         row.effect,
         Effect::Scaling(Scaling::On)
-            | Effect::Rotation(Rotation::On | Rotation::Tilted)
+            | Effect::Rotation(Rotation::On | Rotation::Tilted | Rotation::TiltedFurther)
             | Effect::Mirror(_)
             | Effect::StrokeCheck(StrokeCheck::On)
     );

@@ -78,8 +78,12 @@ pub struct Request {
 impl Request {
     /// Builds a request with the machine's control and the limits of [`Limits::default`].
     pub fn new(name: impl Into<String>, bytes: impl Into<Bytes>, machine: Machine) -> Self {
-        let mut settings =
-            Settings { axes: machine.axes.clone(), increment: machine.increment, ..Settings::default() };
+        let mut settings = Settings {
+            axes: machine.axes.clone(),
+            increment: machine.increment,
+            kinematics: machine.kinematics(),
+            ..Settings::default()
+        };
         settings.apply_dialect(machine.dialect);
         settings.is_inch_at_power_on = machine.unit.map(|unit| unit == Unit::Inch);
         Self {

@@ -88,6 +88,7 @@ impl Slice {
             Some(OneShot::Dwell | OneShot::DataInputEnd | OneShot::CheckReference) => return,
             Some(
                 OneShot::FromReference
+                | OneShot::ToolAxis
                 | OneShot::CornerArc
                 | OneShot::CirclePocket(_)
                 | OneShot::BoltHoles(_),

@@ -7,7 +7,7 @@ use super::rapids::{PLUNGE_COSINE, error_if, format_point};
 use super::tool_lines::lines;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
-use crate::machine::{AxisMotion, RapidPath, TOUCH_DEPTH, ToolCylinder, arrivals};
+use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolCylinder, arrivals};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};

@@ -1,8 +1,9 @@
 //! The head that holds the tool: the direction of the tool, and the distance of the pivot from the gauge
 //! line.
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::Setup;
+use super::chain::Chain;
 use super::error::PeriodicError;
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::units::Deg;
@@ -29,6 +30,13 @@ pub enum HeadKind {
     Manual {
         /// Angle before the first stop.
         start: Option<Deg>,
+    },
+    /// Rotary axes of the control.
+    Axes {
+        /// The axes, from the slides outwards; their centres count from the pivot.
+        chain: Chain,
+        /// Direction from the tip to the spindle with the axes at 0.
+        direction: Unit<Vector3<f64>>,
     },
     /// An axis of the control that tilts the tool in the plane of X and Y.
     Axis {
@@ -77,8 +85,44 @@ impl Head {
         match &self.kind {
             HeadKind::Free => setup.head_angle.map(|angle| self.direction_at(angle)),
             HeadKind::Fixed(direction) => Some(*direction),
+            HeadKind::Axes { chain, direction } => Some(chain.frame(at).rotation * *direction),
             HeadKind::Manual { start } => setup.head_angle.or(*start).map(|angle| self.direction_at(angle)),
             HeadKind::Axis { axis, sign, zero } => Some(self.direction_at(Deg(sign * at[*axis]) + *zero)),
+        }
+    }
+
+    /// Returns the tip's displacement from the pivot of a tool that reaches `reach` beyond it against `axis`.
+    pub(crate) fn tip_displacement(
+        &self,
+        at: &Position,
+        axis: &Unit<Vector3<f64>>,
+        reach: f64,
+    ) -> Vector3<f64> {
+        match &self.kind {
+            HeadKind::Axes { chain, direction } => {
+                (chain.frame(at) * Point3::from(direction.into_inner() * -reach)).coords
+            }
+            HeadKind::Free | HeadKind::Fixed(_) | HeadKind::Manual { .. } | HeadKind::Axis { .. } => {
+                axis.into_inner() * -reach
+            }
+        }
+    }
+
+    /// Returns true if an axis of the control moves the head.
+    pub(crate) fn has_axis(&self, moved: AxisIndex) -> bool {
+        match &self.kind {
+            HeadKind::Axes { chain, .. } => chain.has_axis(moved),
+            HeadKind::Axis { axis, .. } => *axis == moved,
+            HeadKind::Free | HeadKind::Fixed(_) | HeadKind::Manual { .. } => false,
+        }
+    }
+
+    /// Returns the sum of the rotations of the head's axes between two positions.
+    pub(super) fn total_rotation(&self, a: &Position, b: &Position) -> Deg {
+        match &self.kind {
+            HeadKind::Axes { chain, .. } => chain.total_rotation(a, b),
+            HeadKind::Axis { axis, .. } => Deg(b[*axis] - a[*axis]).abs(),
+            HeadKind::Free | HeadKind::Fixed(_) | HeadKind::Manual { .. } => Deg::ZERO,
         }
     }
 

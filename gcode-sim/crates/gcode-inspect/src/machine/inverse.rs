@@ -23,6 +23,7 @@ impl Machine {
         let mut angles = match &self.head.kind {
             HeadKind::Fixed(direction) => angle_between(about, axis, direction.into_inner()),
             HeadKind::Free | HeadKind::Manual { .. } | HeadKind::Axis { .. } => angles_to_plane(about, axis),
+            HeadKind::Axes { .. } => return Vec::new(),
         };
         if angles.is_empty() {
             angles = angles_to_plane(about, arm);
@@ -51,6 +52,7 @@ impl Machine {
         let angle = Deg::atan2(axis.y, axis.x);
         let mut setup = *setup;
         match self.head.kind {
+            HeadKind::Axes { .. } => return None,
             HeadKind::Free | HeadKind::Manual { .. } => setup.head_angle = Some(angle),
             HeadKind::Axis { axis: head, sign, zero } => at[head] = sign * (angle - zero).0,
             HeadKind::Fixed(direction) => {

@@ -7,6 +7,7 @@ mod file;
 mod from_job;
 mod head;
 mod inverse;
+mod kinematics;
 mod path;
 mod probe;
 mod random;
@@ -210,7 +211,7 @@ impl Machine {
         match self.head.direction(at, setup) {
             Some(axis) => {
                 let reach = self.head.pivot + self.tip_distance(setup, &axis);
-                Pose { tip: carried - axis.into_inner() * reach, axis: Some(axis) }
+                Pose { tip: carried + self.head.tip_displacement(at, &axis, reach), axis: Some(axis) }
             }
             None => Pose { tip: carried - self.slides.displacement(&setup.offset), axis: None },
         }
@@ -274,10 +275,9 @@ impl Machine {
 
     /// Returns true if the axis moves the tool, the part, the head or the wheel.
     pub(crate) fn is_axis_used(&self, axis: AxisIndex) -> bool {
-        let head = matches!(self.head.kind, HeadKind::Axis { axis: head, .. } if head == axis);
         let wheel =
             self.wheel.is_some_and(|wheel| wheel.swivel_axis.is_some_and(|(swivel, _)| swivel == axis));
-        head || wheel || self.table.has_axis(axis) || self.slides.has_axis(axis)
+        self.head.has_axis(axis) || wheel || self.table.has_axis(axis) || self.slides.has_axis(axis)
     }
 }
 

@@ -68,11 +68,7 @@ impl Machine {
     }
 
     fn total_rotation(&self, travel: &AxisMotion<'_>) -> Deg {
-        let head = match self.head.kind {
-            HeadKind::Axis { axis, .. } => Deg(travel.to[axis] - travel.from[axis]).abs(),
-            HeadKind::Free | HeadKind::Fixed(_) | HeadKind::Manual { .. } => Deg::ZERO,
-        };
-        self.table.total_rotation(travel.from, travel.to) + head
+        self.table.total_rotation(travel.from, travel.to) + self.head.total_rotation(travel.from, travel.to)
     }
 
     /// Returns the number of chords from which the path deviates by at most `tolerance` mm.

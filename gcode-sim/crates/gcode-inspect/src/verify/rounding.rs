@@ -1,6 +1,6 @@
 //! Largest deviation of a hole due to the control's least increment: half an increment of each axis, and of the angle of a
 //! head set by hand, with the worst signs.
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::{Comparison, HolePair, bottom};
 use crate::holes::DrilledHole;
@@ -103,6 +103,14 @@ fn half_increment_shift(
             let out = frame.rotation * drilled.axis.into_inner();
             Vector3::new(-out.y, out.x, 0.0) * (lever * Deg(half[axis]).to_rad())
         }
+        HeadKind::Axes { .. } if machine.head.has_axis(axis) => {
+            let reach = machine.head.pivot + machine.length_of(drilled.tool).unwrap_or(0.0) - height;
+            let mut next = drilled.axis_position;
+            next[axis] += half[axis];
+            let out = Unit::new_normalize(frame.rotation * drilled.axis.into_inner());
+            machine.head.tip_displacement(&next, &out, reach)
+                - machine.head.tip_displacement(&drilled.axis_position, &out, reach)
+        }
         _ => machine.slides.displacement(&half),
     };
     frame.rotation.inverse_transform_vector(&shift)
@@ -115,7 +123,7 @@ fn manual_head_shift(machine: &Machine, drilled: &DrilledHole, frame: &Frame) ->
     let set = match machine.head.kind {
         HeadKind::Manual { .. } => true,
         HeadKind::Free => drilled.tool_axis_deviation != Deg::ZERO,
-        HeadKind::Fixed(_) | HeadKind::Axis { .. } => false,
+        HeadKind::Fixed(_) | HeadKind::Axis { .. } | HeadKind::Axes { .. } => false,
     };
     let out = frame.rotation * drilled.axis.into_inner();
     let angle = Deg::atan2(out.y, out.x).0;

@@ -65,6 +65,12 @@ pub enum Alarm {
         /// Letter of the missing word.
         letter: char,
     },
+    /// A tilted plane is commanded in a wrong form; the rule that it breaks.
+    PlaneFormat(&'static str),
+    /// G53.1 is commanded where it is not allowed; the rule that it breaks.
+    ToolAxisCode(&'static str),
+    /// No angles of the rotary axes point the tool along Z of the tilted plane.
+    ToolAxisUnreachable,
     /// A pattern of holes has no canned cycle.
     NoCycle {
         /// Code of the pattern.

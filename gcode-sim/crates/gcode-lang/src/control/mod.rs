@@ -3,6 +3,7 @@ mod code_calls;
 mod common_ranges;
 mod declared_codes;
 mod dialect;
+mod kinematics;
 mod machine_values;
 mod parameters;
 mod table;
@@ -14,6 +15,7 @@ pub use code_calls::{
     ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
 };
 pub use declared_codes::{DeclaredCodes, DeclaredEffect};
+pub use kinematics::{Kinematics, RotaryAxis};
 pub use machine_values::{MachineValue, MachineValues, has_items};
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
@@ -139,6 +141,24 @@ impl ArgumentScale {
         [("whole", Self::Whole), ("feed", Self::Feed), ("increments", Self::Increments)];
 }
 
+/// Rotary axis whose sign P1 (plus) and P2 (minus) of G53.1 choose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToolAxisChoice {
+    /// First axis that changes the tool's angle to the axis of the spindle.
+    #[default]
+    Tilting,
+    /// First rotary axis: of the head before the table, each from its base.
+    First,
+    /// Second rotary axis.
+    Second,
+}
+
+impl ToolAxisChoice {
+    /// All choices with their names on the command line.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("tilting", Self::Tilting), ("first", Self::First), ("second", Self::Second)];
+}
+
 /// Stroke limits in machine coordinates, mm or degrees; `None` for an axis without a limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrokeLimits {
@@ -262,6 +282,12 @@ with_defaults! {
         pub rapid: MmPerMin = MmPerMin(24_000.0),
         /// 1420: rapid rate of the rotary axes, degrees per minute.
         pub rapid_rotary: f64 = 3_600.0,
+        /// Rotary axes that turn part and tool; `None` if they are unknown.
+        pub kinematics: Option<Kinematics> = None,
+        /// Rotary axis whose sign P1 and P2 of G53.1 choose.
+        pub tool_axis_choice: ToolAxisChoice = Default::default(),
+        /// Largest deviation of the chords that replace an arc in a plane that is not one of the machine's, mm.
+        pub chord_tolerance: f64 = 0.001,
         /// 3410: largest difference between the radii at start and end of an arc, mm.
         pub arc_tolerance: f64 = 0.02,
         /// CIR 3403#5: an arc without R, I, J and K raises PS0022; otherwise it is a straight cut.

@@ -1,7 +1,7 @@
 //! Named settings: the parameter in the manual, the key on the command line, and how the value is read.
 use super::common_ranges;
 use super::machine_values::MachineValues;
-use super::{ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetVariables, Settings};
+use super::{ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetVariables, Settings, ToolAxisChoice};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
@@ -218,6 +218,8 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("LRP", "1401#1: a rapid is a straight line; without it `verify` takes every path that the axes can take", rapids_are_straight),
     number!("RAPID", "1420: rapid rate of linear axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
     number!("RAPID-ROTARY", "1420: rapid rate of rotary axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
+    choice!("G53.1-P", "the rotary axis of which P1 of G53.1 takes the solution with the plus sign, P2 the other", ToolAxisChoice::ALL, |s, v| s.tool_axis_choice = v),
+    number!("CHORDS", "largest deviation of the chords that replace an arc in a plane that is not one of the machine's", 1e-6, 1.0, "0.000001 to 1 mm", |s, v| s.chord_tolerance = v),
     number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
     switch!("CIR", "3403#5: an arc without R, I, J and K raises PS0022, otherwise it is a straight cut", alarms_without_centre),
     row!("5440", "overrun of G60 single direction positioning, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.single_direction_overrun = point(s, v)?),

@@ -212,7 +212,7 @@ pub(super) const ROTATION: CodeFacts = CodeFacts {
     ..MODAL
 };
 pub(super) const TILT: CodeFacts =
-    CodeFacts { words: CodeWords { angles: Letters::of(b"IJK"), ..CodeWords::NONE }, ..MODAL };
+    CodeFacts { words: CodeWords { angles: Letters::of(b"IJKR"), ..CodeWords::NONE }, ..MODAL };
 
 /// Mode that takes no words and has no effect in a run.
 pub(super) const MODE_WITHOUT_EFFECT: CodeFacts =
@@ -302,6 +302,13 @@ pub(super) const SKIP: CodeFacts = CodeFacts {
 };
 pub(super) const MACHINE_COORDINATE_SYSTEM: CodeFacts =
     CodeFacts { without_axes: WithoutAxes::Waits, coordinates: NotTransformed, ..SKIP };
+/// G53.1.
+pub(super) const TOOL_AXIS: CodeFacts = CodeFacts {
+    lookahead: Refused,
+    timing: Waits,
+    unsimulated: Unsimulated::Code(Letters::of(b"P")),
+    ..ONE_SHOT
+};
 pub(super) const SINGLE_DIRECTION: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     without_axes: Nothing,

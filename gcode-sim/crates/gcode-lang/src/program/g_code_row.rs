@@ -153,6 +153,8 @@ pub enum OneShot {
     MachineCoordinateSystem,
     /// G92: set the work coordinate system.
     SetWorkCoordinateSystem,
+    /// G53.1: rotary axes point the tool along Z of the tilted plane.
+    ToolAxis,
     /// G39: corner arc in cutter compensation.
     CornerArc,
     /// G92.1: preset the work coordinate system.

@@ -1,28 +1,30 @@
 //! The machine file's `[head]`: its kind, and the keys of each kind.
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::json;
 
+use super::link::FileLink;
 use super::{ROTARY_LETTERS, letter};
 use crate::machine::{Chain, Head, HeadKind};
 use gcode_lang::motion::Axes;
 use gcode_lang::units::Deg;
 use gcode_part::reader::FileError;
 use gcode_part::reader::bounds::{Angle, Bounded, PivotLength, Sign};
-use gcode_part::reader::{FixedArray, Located, Reader, names};
+use gcode_part::reader::{FileKey, FixedArray, Items, Located, Optional, Reader, Section, names};
 
 /// The head and the inclination of the tool.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = by_kind)]
 pub(super) struct FileHead {
-    /// free: unknown; fixed: constant; manual: set by hand; axis: by an axis of the control.
+    /// free: unknown; fixed: constant; manual: set by hand; axis: by an axis of the control in the plane of X and Y; axes: by
+    /// any axes of the control.
     #[schemars(extend("enum" = names(&KINDS)))]
     kind: Located<String>,
     /// From the head's pivot to the spindle's gauge line, mm [default: 0].
     pivot: Option<Bounded<PivotLength>>,
-    /// From the tip to the spindle, not all 0.
+    /// From the tip to the spindle with all axes at 0, not all 0 [default for kind axes: along z].
     direction: Option<Located<FixedArray<f64, 3>>>,
     /// The axis, A, B or C.
     #[schemars(extend("enum" = ROTARY_LETTERS))]
@@ -33,6 +35,9 @@ pub(super) struct FileHead {
     zero: Option<Bounded<Angle>>,
     /// Its angle before the first stop, degrees.
     angle: Option<Bounded<Angle>>,
+    /// Its axes, from the slides outwards.
+    #[serde(default, with = "Optional::<Items<Section<FileLink>>>")]
+    axis: Option<Vec<FileLink>>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -41,23 +46,26 @@ enum FileHeadKind {
     Fixed,
     Manual,
     Axis,
+    Axes,
 }
 
-const KINDS: [(&str, FileHeadKind); 4] = [
+const KINDS: [(&str, FileHeadKind); 5] = [
     ("free", FileHeadKind::Free),
     ("fixed", FileHeadKind::Fixed),
     ("manual", FileHeadKind::Manual),
     ("axis", FileHeadKind::Axis),
+    ("axes", FileHeadKind::Axes),
 ];
 
 /// Kinds to which each key belongs, in the order of [`FileHead`].
-const KEYS: [(&str, &[FileHeadKind]); 6] = [
-    ("pivot", &[FileHeadKind::Fixed, FileHeadKind::Manual, FileHeadKind::Axis]),
-    ("direction", &[FileHeadKind::Fixed]),
+const KEYS: [(&str, &[FileHeadKind]); 7] = [
+    ("pivot", &[FileHeadKind::Fixed, FileHeadKind::Manual, FileHeadKind::Axis, FileHeadKind::Axes]),
+    ("direction", &[FileHeadKind::Fixed, FileHeadKind::Axes]),
     ("letter", &[FileHeadKind::Axis]),
     ("sign", &[FileHeadKind::Axis]),
     ("zero", &[FileHeadKind::Axis]),
     ("angle", &[FileHeadKind::Manual]),
+    ("axis", &[FileHeadKind::Axes]),
 ];
 
 /// Returns the key that a kind requires.
@@ -66,6 +74,7 @@ fn required_key(kind: FileHeadKind) -> Option<&'static str> {
         FileHeadKind::Free | FileHeadKind::Manual => None,
         FileHeadKind::Fixed => Some("direction"),
         FileHeadKind::Axis => Some("letter"),
+        FileHeadKind::Axes => Some("axis"),
     }
 }
 
@@ -91,11 +100,20 @@ impl FileHead {
         let kind = match kind {
             FileHeadKind::Free => HeadKind::Free,
             FileHeadKind::Fixed => {
-                let direction = self.direction.as_ref().ok_or_else(|| needs("direction"))?;
-                let unit =
-                    Unit::try_new(Vector3::from(direction.as_ref().0), 1e-9).filter(|u| u.norm().is_finite());
-                let allowed = "key 'head.direction' is [x, y, z] from the tip to the spindle, not all 0";
-                HeadKind::Fixed(unit.ok_or_else(|| reader.error(direction, allowed))?)
+                let direction = self.direction(reader)?;
+                HeadKind::Fixed(direction.ok_or_else(|| needs("direction"))?)
+            }
+            FileHeadKind::Axes => {
+                let links = self.axis.as_ref().ok_or_else(|| needs("axis"))?;
+                let mut chain = Chain::default();
+                let mut carried = table.clone();
+                for link in links {
+                    let link = link.check(reader, axes, &carried, Point3::origin(), "head.axis")?;
+                    carried.0.push(link.clone());
+                    chain.0.push(link);
+                }
+                let direction = self.direction(reader)?.unwrap_or_else(Vector3::z_axis);
+                HeadKind::Axes { chain, direction }
             }
             FileHeadKind::Manual => {
                 HeadKind::Manual { start: self.angle.as_ref().map(|angle| Deg(angle.get())) }
@@ -121,6 +139,14 @@ impl FileHead {
         Ok(Head::new(kind, pivot))
     }
 
+    /// Returns the key `direction` with length 1.
+    fn direction(&self, reader: &Reader<'_>) -> Result<Option<Unit<Vector3<f64>>>, FileError> {
+        let Some(direction) = &self.direction else { return Ok(None) };
+        let unit = Unit::try_new(Vector3::from(direction.as_ref().0), 1e-9).filter(|u| u.norm().is_finite());
+        let allowed = "key 'head.direction' is [x, y, z] from the tip to the spindle, not all 0";
+        unit.map(Some).ok_or_else(|| reader.error(direction, allowed))
+    }
+
     /// Rejects a key that has no meaning for this kind of head.
     fn check_keys(&self, reader: &Reader<'_>, kind: FileHeadKind) -> Result<(), FileError> {
         let given = [
@@ -130,6 +156,7 @@ impl FileHead {
             self.sign.as_ref().map(|sign| start(sign)),
             self.zero.as_ref().map(|zero| start(zero)),
             self.angle.as_ref().map(|angle| start(angle)),
+            self.axis.as_ref().and_then(|links| links.first()).map(FileLink::start),
         ];
         for (place, (key, kinds)) in given.into_iter().zip(KEYS) {
             if let (Some(place), false) = (place, kinds.contains(&kind)) {

@@ -125,7 +125,7 @@ impl Machine {
             Some(links) => {
                 let mut table = Chain::default();
                 for link in links {
-                    let link = link.check(&reader, &axes, &table, part.origin)?;
+                    let link = link.check(&reader, &axes, &table, part.origin, "table")?;
                     table.0.push(link);
                 }
                 table

@@ -1,0 +1,112 @@
+//! Arcs and machine planes under a tilted plane: an arc stays one where the plane is that of two machine axes.
+use super::coordinates::remove_noise;
+use super::functions::ExecResult;
+use super::kinematics::{cross, dot};
+use super::linear_motion::Endpoint;
+use super::plan::BlockPlan;
+use super::planner::Planner;
+use super::state::State;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
+use gcode_lang::units::Deg;
+
+/// Directions with a smaller component square to a machine plane lie in it.
+const IN_PLANE: f64 = 1e-9;
+
+impl State {
+    /// Returns the two machine axes in whose plane that of two programmed axes lies, in right-handed order, and −1 if it is
+    /// seen there from behind; `None` if the plane of a tilted plane's axes is askew.
+    pub(super) fn machine_plane(
+        &self,
+        plane: (AxisIndex, AxisIndex),
+    ) -> Option<((AxisIndex, AxisIndex), f64)> {
+        let Some(tilt) = &self.transform.tilt else { return Some((plane, 1.0)) };
+        let first = self.transform.direction_in_plane(tilt, plane.0);
+        let second = self.transform.direction_in_plane(tilt, plane.1);
+        let normal = (0..3).find(|k| first[*k].abs() < IN_PLANE && second[*k].abs() < IN_PLANE)?;
+        let axes = (tilt.axes[(normal + 1) % 3], tilt.axes[(normal + 2) % 3]);
+        Some((axes, cross(first, second)[normal].signum()))
+    }
+}
+
+impl State {
+    /// Returns a point at the height of another one along a programmed axis.
+    pub(super) fn at_level_of(&self, axis: AxisIndex, mut point: Position, level: &Position) -> Position {
+        let Some(tilt) = &self.transform.tilt else {
+            point[axis] = level[axis];
+            return point;
+        };
+        let direction = self.transform.direction_in_plane(tilt, axis);
+        let height = dot(direction, tilt.axes.map(|axis| level[axis] - point[axis]));
+        for (axis, part) in tilt.axes.into_iter().zip(direction) {
+            point[axis] = remove_noise(point[axis] + part * height);
+        }
+        point
+    }
+}
+
+impl Planner<'_> {
+    /// Emits an arc of a tilted plane: an arc in a plane of two machine axes, otherwise chords.
+    pub(super) fn push_arc_in_plane(
+        &self,
+        plan: &mut BlockPlan,
+        endpoint: &Endpoint,
+        arc: PlanarArc,
+        radius: f64,
+    ) -> ExecResult<()> {
+        let state = &plan.state;
+        if state.transform.mirrored_axes != 0 || state.transform.scaling.is_some() {
+            return Err(self.not_simulated("an arc in a tilted plane with mirror image or scaling"));
+        }
+        let start = state.programmed_position;
+        let PlanarArc { plane, centre, sweep } = arc;
+        if let Some((axes, side)) = state.machine_plane(plane) {
+            let mut middle = start;
+            (middle[plane.0], middle[plane.1]) = centre;
+            let middle = self.data.to_machine_unrounded(state, &middle);
+            let arc = PlanarArc {
+                plane: axes,
+                centre: (middle[axes.0], middle[axes.1]),
+                sweep: Deg(sweep.0 * side),
+            };
+            return self.push_arc(plan, endpoint.machine, arc, radius);
+        }
+        let length = radius * sweep.0.abs().to_radians();
+        let timed = self.data.path_time(state, length, self.words.has(b'F'));
+        let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.located_at(self.block))?;
+        let chords = chord_count(radius, sweep, self.data.settings.chord_tolerance);
+        let (x, y) = (start[plane.0] - centre.0, start[plane.1] - centre.1);
+        for chord in 1..chords {
+            let fraction = f64::from(chord) / f64::from(chords);
+            let mut point = start;
+            for axis in 0..self.data.settings.axes.len() {
+                point[axis] += (endpoint.programmed[axis] - start[axis]) * fraction;
+            }
+            let turned = Deg(sweep.0 * fraction);
+            point[plane.0] = centre.0 + x * turned.cos() - y * turned.sin();
+            point[plane.1] = centre.1 + x * turned.sin() + y * turned.cos();
+            let to = self.data.to_machine_unrounded(&plan.state, &point);
+            plan.push_move(EventKind::Feed { to, rate }, seconds / f64::from(chords));
+        }
+        plan.push_move(EventKind::Feed { to: endpoint.machine, rate }, seconds / f64::from(chords));
+        Ok(())
+    }
+}
+
+/// Returns the number of chords from which an arc deviates by at most `tolerance`: r·(1 − cos(half a chord's angle)).
+fn chord_count(radius: f64, sweep: Deg, tolerance: f64) -> u32 {
+    let half = libm::acos((1.0 - tolerance / radius.max(tolerance)).clamp(0.0, 1.0));
+    (sweep.0.abs().to_radians() / (2.0 * half)).ceil().clamp(1.0, 1e6) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_of_radius_50_has_125_chords_of_a_micron() {
+        // Half a chord's angle is acos(1 − 0.001/50) = 0.006324566, so that 1.570796/0.012649 = 124.18 chords would do.
+        assert_eq!(chord_count(50.0, Deg(90.0), 0.001), 125);
+        assert_eq!(chord_count(0.0005, Deg(90.0), 0.001), 1);
+    }
+}

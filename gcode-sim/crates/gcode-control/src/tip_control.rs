@@ -1,0 +1,227 @@
+//! Tool centre point control, G43.4 and G43.5: the program moves the tip on the part, and the rotary axes turn on the way.
+use super::coordinates::remove_noise;
+use super::data::ControlData;
+use super::functions::ExecResult;
+use super::kinematics::{Alignment, Frame, Vector, dot, scaled, sum, unit_vector};
+use super::linear_motion::Endpoint;
+use super::plan::BlockPlan;
+use super::planner::Planner;
+use super::state::State;
+use gcode_lang::control::Kinematics;
+use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
+use gcode_lang::program::modes::{CutterSide, Length, Motion};
+use gcode_lang::units::MmPerMin;
+
+/// Part and tool with the rotary axes at fixed angles, as G53.1 or tool centre point control sets them.
+pub(super) struct Aligned {
+    /// X, Y and Z.
+    pub(super) axes: [AxisIndex; 3],
+    /// From machine coordinates with the rotary axes at their work zeros, without the tool's length.
+    pub(super) frame: Frame,
+    /// Tool length offset, along the tool.
+    pub(super) length: Vector,
+}
+
+impl State {
+    /// Returns true if the program moves the tip of the tool on the part.
+    #[inline]
+    pub(super) fn controls_tip(&self) -> bool {
+        matches!(self.modal.length, Length::TipByAngles | Length::TipByVector)
+    }
+
+    /// Returns true if X, Y and Z depend on the angles of the rotary axes.
+    #[inline]
+    pub(super) fn is_turned(&self) -> bool {
+        self.controls_tip() || self.alignment().is_some()
+    }
+}
+
+impl ControlData {
+    /// Returns part and tool with the rotary axes at `at`; `None` if X, Y and Z don't depend on them.
+    #[inline]
+    pub(super) fn aligned(&self, state: &State, at: &Position) -> Option<Aligned> {
+        if state.controls_tip() {
+            return self.tip_alignment(state, at);
+        }
+        let (axes, alignment) = state.alignment()?;
+        Some(Aligned { axes, frame: alignment.frame, length: axes.map(|axis| state.length_offset[axis]) })
+    }
+
+    fn tip_alignment(&self, state: &State, at: &Position) -> Option<Aligned> {
+        let kinematics = self.settings.kinematics.as_ref()?;
+        let axes = self.linear_axes()?;
+        let alignment = Alignment::new(kinematics, at, &self.zeros(state));
+        let length = alignment.tool.apply(axes.map(|axis| state.length_offset[axis]));
+        Some(Aligned { axes, frame: alignment.frame, length })
+    }
+
+    /// Returns X, Y and Z; `None` if the control lacks one of them.
+    pub(super) fn linear_axes(&self) -> Option<[AxisIndex; 3]> {
+        let find = |letter| self.settings.axes.find(letter);
+        Some([find(b'X')?, find(b'Y')?, find(b'Z')?])
+    }
+
+    /// Returns `at`, a position of the rotary axes, with X, Y and Z where the tip is at a work position.
+    pub(super) fn with_tip_at(
+        &self,
+        state: &State,
+        aligned: &Aligned,
+        work: &Position,
+        at: &Position,
+    ) -> Position {
+        let mut machine = *at;
+        let turned = aligned.frame.apply(aligned.axes.map(|axis| work[axis] + self.zero(state, axis)));
+        for (axis, value) in aligned.axes.into_iter().zip(sum(turned, aligned.length)) {
+            machine[axis] = remove_noise(value);
+        }
+        machine
+    }
+
+    /// Returns the number of chords from which the tip deviates by at most the tolerance.
+    ///
+    /// On the part the tip is at r = T⁻¹·(p − t): the position p moves along a chord by b at most, and part and tool turn by γ in
+    /// all on levers of ρ, so that |r''| ≤ 3·γ²·ρ + 2·γ·b + s²·R with an arc of sweep s and radius R.
+    fn tip_chords(
+        &self,
+        kinematics: &Kinematics,
+        ends: [&Position; 2],
+        state: &State,
+        arc: (f64, f64),
+    ) -> u32 {
+        let Some(axes) = self.linear_axes() else { return 1 };
+        let [from, to] = ends;
+        let turn: f64 =
+            kinematics.axes().map(|axis| (to[axis.axis] - from[axis.axis]).abs().to_radians()).sum();
+        let norm = |v: Vector| dot(v, v).sqrt();
+        let at = |position: &Position| axes.map(|axis| position[axis]);
+        let tool = norm(axes.map(|axis| state.length_offset[axis]))
+            + kinematics.pivot
+            + kinematics.head.iter().map(|axis| norm(axis.point)).sum::<f64>();
+        let arm = |end: &Position| {
+            let arms = kinematics.table.iter().map(|axis| norm(sum(at(end), scaled(axis.point, -1.0))));
+            arms.fold(0.0, f64::max)
+        };
+        let travel = norm(sum(at(to), scaled(at(from), -1.0))) + arc.0 * arc.1;
+        let lever = tool + arm(from).max(arm(to)) + travel;
+        let bend = 3.0 * turn * turn * lever + 2.0 * turn * travel + arc.1 * arc.1 * arc.0;
+        (bend / (8.0 * self.settings.chord_tolerance)).sqrt().ceil().clamp(1.0, 100_000.0) as u32
+    }
+}
+
+impl Planner<'_> {
+    /// Checks that the block can start or keep tool centre point control.
+    pub(super) fn check_tip_control(&self, state: &State) -> ExecResult<()> {
+        let code = if state.modal.length == Length::TipByVector { "G43.5" } else { "G43.4" };
+        self.kinematics(code)?;
+        let with = if !state.transform.is_identity() {
+            "with G51, G51.1, G68 or G68.2"
+        } else if state.modal.cutter != CutterSide::Off || self.words.corner.is_some() {
+            "with cutter compensation or a corner word"
+        } else if state.modal.cycle.is_some() {
+            "with a canned cycle"
+        } else if state.modal.motion == Motion::Thread {
+            "with G33"
+        } else {
+            return Ok(());
+        };
+        Err(self.not_simulated(format!("{code} (tool centre point control) {with}")))
+    }
+
+    /// G43.5: turns the rotary axes of an end point so that the tool points along I J K.
+    pub(super) fn point_tool(&self, state: &State, endpoint: &mut Endpoint) -> ExecResult<()> {
+        let mut vector = [0.0; 3];
+        for (part, letter) in vector.iter_mut().zip([b'I', b'J', b'K']) {
+            *part = self.dimension(letter, state)?.unwrap_or(0.0);
+        }
+        let Some(vector) = unit_vector(vector) else {
+            return Err(self.not_simulated("G43.5 with I J K of length 0"));
+        };
+        let kinematics = self.kinematics("G43.5")?;
+        let target = self.tool_axis_target(state, kinematics, vector, &self.data.zeros(state), 0.0)?;
+        for axis in kinematics.axes() {
+            let axis = axis.axis;
+            if self.names(axis) {
+                return Err(self.not_simulated("G43.5 with I J K and a rotary axis"));
+            }
+            endpoint.machine[axis] = target[axis];
+            let work = target[axis] - self.data.zero(state, axis);
+            endpoint.programmed[axis] = self.data.wrap_angle(axis, work);
+        }
+        if let Some(aligned) = self.data.aligned(state, &endpoint.machine) {
+            endpoint.machine =
+                self.data.with_tip_at(state, &aligned, &endpoint.programmed, &endpoint.machine);
+        }
+        Ok(())
+    }
+
+    /// Emits the chords of a straight move of the tip on the part, or of an arc with its radius, while the rotary axes turn
+    /// evenly. F is along the tip's path; where the tip stands, along the rotary axes.
+    pub(super) fn push_tip_path(
+        &self,
+        plan: &mut BlockPlan,
+        endpoint: &Endpoint,
+        arc: Option<(PlanarArc, f64)>,
+    ) -> ExecResult<()> {
+        let kinematics = self.kinematics("G43.4")?;
+        let (from, start) = (plan.state.machine_position, plan.state.programmed_position);
+        let (to, end) = (endpoint.machine, endpoint.programmed);
+        if from == to && arc.is_none() {
+            plan.repeat_unknown_axes();
+            return Ok(());
+        }
+        let is_rotary = |axis: AxisIndex| self.data.settings.axes.is_rotary(axis);
+        let squared = |axes: &dyn Fn(AxisIndex) -> bool| -> f64 {
+            let travel = |axis: AxisIndex| {
+                if is_rotary(axis) { to[axis] - from[axis] } else { end[axis] - start[axis] }
+            };
+            let count = self.data.settings.axes.len();
+            (0..count).filter(|axis| axes(*axis)).map(|axis| travel(axis) * travel(axis)).sum()
+        };
+        let sweep = arc.map_or((0.0, 0.0), |(arc, radius)| (radius, arc.sweep.0.abs().to_radians()));
+        let straight = squared(&|axis| !is_rotary(axis)).sqrt();
+        let length = match (arc, straight) {
+            (Some(_), _) => sweep.0 * sweep.1,
+            (None, length) if length > 0.0 => length,
+            (None, _) => squared(&is_rotary).sqrt(),
+        };
+        let feed = match plan.state.modal.motion {
+            Motion::Rapid => None,
+            _ => {
+                let timed = self.data.path_time(&plan.state, length, self.words.has(b'F'));
+                Some(self.locate(timed)?)
+            }
+        };
+        let chords = self.data.tip_chords(kinematics, [&from, &to], &plan.state, sweep);
+        for chord in 1..=chords {
+            let fraction = f64::from(chord) / f64::from(chords);
+            let between = |a: f64, b: f64| a + (b - a) * fraction;
+            let (mut at, mut work) = (from, start);
+            for axis in 0..self.data.settings.axes.len() {
+                at[axis] = between(from[axis], to[axis]);
+                work[axis] = between(start[axis], end[axis]);
+            }
+            if let Some((PlanarArc { plane, centre, sweep }, _)) = arc {
+                let (x, y, turned) = (start[plane.0] - centre.0, start[plane.1] - centre.1, sweep * fraction);
+                work[plane.0] = centre.0 + x * turned.cos() - y * turned.sin();
+                work[plane.1] = centre.1 + x * turned.sin() + y * turned.cos();
+            }
+            let at = match self.data.aligned(&plan.state, &at) {
+                Some(aligned) if chord < chords => self.data.with_tip_at(&plan.state, &aligned, &work, &at),
+                _ => to,
+            };
+            self.push_chord(plan, at, feed.map(|(rate, seconds)| (rate, seconds / f64::from(chords))));
+        }
+        Ok(())
+    }
+
+    /// Emits a rapid, or a cut with its rate and seconds.
+    fn push_chord(&self, plan: &mut BlockPlan, to: Position, feed: Option<(MmPerMin, f64)>) {
+        match feed {
+            Some((rate, seconds)) => plan.push_move(EventKind::Feed { to, rate }, seconds),
+            None => {
+                let seconds = self.data.rapid_seconds(&plan.state.machine_position, &to);
+                plan.push_move(EventKind::Rapid { to }, seconds);
+            }
+        }
+    }
+}
