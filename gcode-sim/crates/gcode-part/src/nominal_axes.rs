@@ -11,6 +11,9 @@ const CLOSE: f64 = 1.0 - 1e-6;
 /// Distance below which two holes have one axis, mm.
 const SAME_AXIS: f64 = 1e-6;
 
+/// Least depth of a pass that cuts a hole, mm.
+const MIN_DEPTH: f64 = 0.01;
+
 /// Axis of a nominal hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NominalAxis {
@@ -20,6 +23,8 @@ pub struct NominalAxis {
     pub out: Vector3<f64>,
     /// Distance to the nearest parallel axis, mm; infinite from 1 mm on.
     pub spacing: f64,
+    /// Radius of the hole at its widest, mm; `None` if unknown.
+    pub radius: Option<f64>,
 }
 
 /// Axes of all nominal holes.
@@ -40,6 +45,7 @@ impl NominalAxes {
             entry: hole.entry.into(),
             out: hole.axis.into(),
             spacing: f64::INFINITY,
+            radius: hole.widest_diameter().map(|diameter| diameter / 2.0),
         };
         let mut axes: Vec<NominalAxis> = holes.iter().map(axis).collect();
         let tree = PointTree::new(axes.iter().map(|axis| axis.entry));
@@ -65,9 +71,30 @@ impl NominalAxes {
     /// Returns the axis nearest to a pass along `out` that may begin in the hole, with its distance; `None` above `within` mm.
     pub fn nearest(
         &self,
+        pass: [&Point3<f64>; 2],
+        out: &Unit<Vector3<f64>>,
+        within: f64,
+    ) -> Option<(&NominalAxis, f64)> {
+        self.nearest_of(pass, out, within, |_| true)
+    }
+
+    /// Returns the nearest axis of a hole whose entry is above the bottom of a pass; `None` above `within` mm.
+    pub fn nearest_above(
+        &self,
         [start, bottom]: [&Point3<f64>; 2],
         out: &Unit<Vector3<f64>>,
         within: f64,
+    ) -> Option<&NominalAxis> {
+        let is_above = |axis: &NominalAxis| MIN_DEPTH < (axis.entry - bottom).dot(&axis.out);
+        self.nearest_of([start, bottom], out, within, is_above).map(|(axis, _)| axis)
+    }
+
+    fn nearest_of(
+        &self,
+        [start, bottom]: [&Point3<f64>; 2],
+        out: &Unit<Vector3<f64>>,
+        within: f64,
+        is_counted: impl Fn(&NominalAxis) -> bool,
     ) -> Option<(&NominalAxis, f64)> {
         let top = start + out.into_inner() * self.max_depth;
         let margin = Vector3::repeat(within);
@@ -75,7 +102,8 @@ impl NominalAxes {
         let mut best: Option<(&NominalAxis, f64)> = None;
         self.tree.in_box(&low, &high, &mut |index| {
             let axis = &self.axes[index];
-            let distance = axis.distance(bottom, out).filter(|distance| *distance <= within);
+            let distance =
+                axis.distance(bottom, out).filter(|distance| *distance <= within && is_counted(axis));
             if let Some(distance) = distance
                 && best.is_none_or(|(_, least)| distance < least)
             {
@@ -126,5 +154,10 @@ mod tests {
         let (entry, at) = nearest(0.4).unwrap();
         assert!(entry == 0.45 && (at - 0.05).abs() < 1e-12);
         assert_eq!(nearest(1.5), None);
+        let above = |z: f64| {
+            let at = Point3::new(0.0, 0.0, z);
+            axes.nearest_above([&at, &at], &Vector3::z_axis(), 1.0).is_some()
+        };
+        assert!(above(-0.02) && !above(-0.005) && !above(1.0), "the entry is at 0");
     }
 }

@@ -2,6 +2,7 @@
 mod arc_run;
 mod axis_box;
 mod chord_run;
+mod circles;
 mod clamping;
 mod clearance;
 mod core;
@@ -32,6 +33,7 @@ mod swallowed;
 mod tests;
 mod tool_lines;
 pub(crate) mod unknown_axes;
+mod wall_cut;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
