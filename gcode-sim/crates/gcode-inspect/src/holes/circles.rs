@@ -107,12 +107,28 @@ impl HoleExtractor<'_> {
         if !all.iter().all(is_along_tool) {
             return Vec::new();
         }
-        if let Some(circles) = engagement.circles(&all, cutter).filter(HoleCircles::is_whole) {
+        let (threads, rings): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|ring| ring.helix.is_some_and(|helix| helix.is_thread));
+        let mut holes = self.bored_holes(rings, cutter);
+        // A turn along a thread cuts no hole.
+        let is_thread = |ring: &&Ring| {
+            let hole = self.strokes.nominal_of_ring(ring, true);
+            hole.is_some_and(|axis| axis.is_threaded) && self.is_at_nominal_wall(ring, cutter)
+        };
+        let threads = threads.into_iter().filter(is_thread);
+        holes.extend(threads.filter_map(|ring| engagement.circles(&[ring], cutter)));
+        holes
+    }
+
+    /// Returns the circles of each hole among rings that follow no thread.
+    fn bored_holes(&self, rings: Vec<&Ring>, cutter: Option<f64>) -> Vec<HoleCircles> {
+        let engagement = &self.engagement;
+        if let Some(circles) = engagement.circles(&rings, cutter).filter(HoleCircles::is_whole) {
             let is_hole = circles.is_certain || self.is_at_nominal_wall(&circles.widest, cutter);
             return if is_hole { vec![circles] } else { Vec::new() };
         }
         let mut by_hole: Vec<(Point3<f64>, Vec<&Ring>)> = Vec::new();
-        for ring in all {
+        for ring in rings {
             let Some(axis) = self.strokes.nominal_of_ring(ring, true) else { continue };
             match by_hole.iter_mut().find(|(entry, _)| *entry == axis.entry) {
                 Some((_, rings)) => rings.push(ring),

@@ -243,7 +243,8 @@ impl HoleExtractor<'_> {
             // A tool that comes down in rapid begins its feed at the depth of the circle.
             let begin = if begin > ring.level() + LEVEL_TOLERANCE { begin } else { approach_level };
             let length = (begin - ring.level()).max(LEVEL_TOLERANCE);
-            let milled = MilledCut { radius: ring.radius, roundness: ring.roundness, core: None };
+            let Ring { radius, roundness, helix, .. } = *ring;
+            let milled = MilledCut { radius, roundness, core: None, helix };
             let cut = PassCut::new(ring.centre + out.into_inner() * length, ring.centre);
             let pass = DrillPass {
                 cut: PassCut { milled: Some(milled), ..cut },

@@ -153,6 +153,12 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<String> {
             ShapeGap::Undrilled(tool) => {
                 format!("the hole in which {} cuts: the program does not drill {holes}", tool_name(tool))
             }
+            ShapeGap::ThreadLength(tool) => {
+                format!(
+                    "the length of the thread of {holes}: {} goes round once, and a comb mill cuts a longer thread",
+                    tool_name(tool)
+                )
+            }
             ShapeGap::FullThrough(tool) => {
                 format!(
                     "the full diameter of {holes} on the far side: the machine file has no point_angle of {}",

@@ -20,6 +20,8 @@ pub(in crate::verify) enum ShapeGap {
     FullThrough(Option<u32>),
     /// The angle of its countersink is unknown.
     Angle(Option<u32>),
+    /// It may be a comb mill, whose teeth are as long as its thread.
+    ThreadLength(Option<u32>),
     /// It only widens or threads a hole, and the program doesn't drill that.
     Undrilled(Option<u32>),
 }
@@ -242,8 +244,8 @@ impl Judgement<'_> {
             )),
             None => finding.help("add its pass, or correct the tool, the tool table or the reference"),
         };
-        let is_stuck = |cut: &&Cut<'_>| cut.is_tap() && !cut.pass.cut.is_tapping;
-        let stuck = self.near.iter().find(is_stuck).filter(|_| feature.kind == FeatureKind::Tap);
+        let stuck =
+            self.near.iter().find(|cut| cut.is_stuck_tap()).filter(|_| feature.kind == FeatureKind::Tap);
         let finding = stuck.into_iter().fold(finding, |finding, tap| {
             finding.note(format!("the spindle does not reverse while {} is in the hole", tap.name()))
         });
@@ -342,7 +344,7 @@ impl Judgement<'_> {
             let off = cut.pass.diameter.zip(diameter).map(|(own, nominal)| (own - nominal).abs());
             off.is_some_and(|off| !exceeds(off, tolerances.diameter))
         };
-        let (cut, missed) = if let Some(tap) = deepest(self.near.iter().filter(|cut| cut.is_tap())) {
+        let (cut, missed) = if let Some(tap) = deepest(self.near.iter().filter(|cut| cut.is_thread())) {
             (tap, depth - tap.tip)
         } else if let Some(sized) = deepest(self.near.iter().filter(is_sized)) {
             let is_known = self.near.iter().all(|cut| cut.pass.diameter.is_some() || cut.tip <= sized.tip);
@@ -363,7 +365,7 @@ impl Judgement<'_> {
         if !exceeds(missed, tolerances.depth) {
             return;
         }
-        let verb = if cut.is_tap() { "taps" } else { "finishes" };
+        let verb = if cut.is_thread() { "taps" } else { "finishes" };
         let message = format!("hole {}: {} {verb} {:.3} mm of {depth} mm", self.id, cut.name(), cut.tip);
         let finding = Diagnostic::new(&FEATURE_DEPTH, message)
             .note("the reference gives the hole one diameter all the way down")
