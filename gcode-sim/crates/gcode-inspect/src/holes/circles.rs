@@ -5,6 +5,7 @@ use super::HoleExtractor;
 use super::arc_run::{PartArc, Ring};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
+use super::tool_lines::rim;
 
 /// Excess of a path over its circle that is rounding, mm.
 const EXCESS_SLACK: f64 = 0.02;
@@ -116,6 +117,7 @@ impl HoleExtractor<'_> {
             hole.is_some_and(|axis| axis.is_threaded) && self.is_at_nominal_wall(ring, cutter)
         };
         let threads = threads.into_iter().filter(is_thread);
+        holes.retain(|circles| !self.is_in_pocket(&circles.widest, cutter));
         holes.extend(threads.filter_map(|ring| engagement.circles(&[ring], cutter)));
         holes
     }
@@ -137,6 +139,17 @@ impl HoleExtractor<'_> {
         }
         let holes = by_hole.iter().filter_map(|(_, rings)| engagement.circles(rings, cutter));
         holes.filter(|circles| self.is_at_nominal_wall(&circles.widest, cutter)).collect()
+    }
+
+    /// Returns true if a circle is at no nominal hole, and all metal that it removes is in a pocket.
+    fn is_in_pocket(&self, ring: &Ring, cutter: Option<f64>) -> bool {
+        if self.strokes.nominal_of_ring(ring, true).is_some() {
+            return false;
+        }
+        let up = ring.out.into_inner() * self.metal.removed.height_of_metal(&ring.centre, &ring.out);
+        let offsets = rim(&ring.out, &up, ring.radius + cutter.unwrap_or(0.0) / 2.0);
+        let feet = offsets.into_iter().chain([Vector3::zeros()]).map(|offset| ring.centre + offset);
+        feet.into_iter().all(|foot| self.metal.is_in_pocket(&[foot, foot + up]))
     }
 
     /// Returns true if a circle is at a nominal hole and cuts its wall; round it the circle mills something else.

@@ -127,7 +127,13 @@ impl HoleExtractor<'_> {
         findings.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
             let message =
                 format!("the feed ends {depth:.3} mm inside the part and the tool does not retract along it");
-            Diagnostic::new(kind, message).help("retract along the hole before anything else moves")
+            Diagnostic::new(kind, message).help(match is_judged {
+                true => {
+                    "retract along the hole before anything else moves, or state in [[stock.pocket]] what the program \
+                     mills besides the holes"
+                }
+                false => "retract along the hole before anything else moves",
+            })
         });
     }
 

@@ -56,6 +56,8 @@ pub struct Comparison<'a> {
     pub extra: Vec<usize>,
     /// Spring passes in drilled holes.
     pub repeated: Vec<usize>,
+    /// Feeds beside the part, which cut nothing.
+    pub in_air: Vec<usize>,
     /// The nominal hole matched with a line, by the first drilled hole of the line.
     nominal_by_line: Vec<Option<usize>>,
 }
@@ -141,7 +143,18 @@ impl<'a> Comparison<'a> {
         };
         let left_over = (0..actual.len()).filter(|index| !is_taken[*index]);
         let (repeated, extra) = left_over.partition(is_spring_pass);
-        Self { nominal, actual, tolerances, pattern, pairs, missing, extra, repeated, nominal_by_line }
+        Self {
+            nominal,
+            actual,
+            tolerances,
+            pattern,
+            pairs,
+            missing,
+            extra,
+            repeated,
+            in_air: Vec::new(),
+            nominal_by_line,
+        }
     }
 
     /// Returns the diameter of the widest nominal hole that each tool finishes whose own one is unknown.
@@ -167,7 +180,7 @@ impl<'a> Comparison<'a> {
         }
         let (nominal, actual, missing) = (self.nominal, self.actual, &self.missing);
         let widest_by_tool = self.widest_by_tool(machine);
-        self.extra.retain(|index| {
+        let is_left_out = |index: &usize| {
             let end = actual[*index].bottom();
             let is_near = |nominal: &Hole| {
                 let entry = Point3::from(nominal.entry);
@@ -180,8 +193,9 @@ impl<'a> Comparison<'a> {
                     let nominal = widest_by_tool.get(&pass.tool).copied();
                     is_in_air(&pass, surface, machine, nominal)
                 });
-            !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
-        });
+            is_in_air && !missing.iter().any(|missing| is_near(&nominal[*missing]))
+        };
+        (self.in_air, self.extra) = std::mem::take(&mut self.extra).into_iter().partition(is_left_out);
     }
 
     /// Returns the matched pairs with their holes.

@@ -303,7 +303,7 @@ impl Judgement<'_> {
             cut.tip
         );
         let finding = Diagnostic::new(&FEATURE_EXTRA, message).with_backtrace(cut.pass.backtrace.clone());
-        let is_edge_break = cut.kind == Some(ToolKind::SpotDrill) && !exceeds(excess, MAX_EDGE_BREAK);
+        let is_edge_break = cut.kind == Some(ToolKind::SpotDrill) && !exceeds(excess, self.max_edge_break());
         let severity = if is_edge_break { Severity::Warning } else { Severity::Error };
         let finding = match cut.point {
             PointShape::Unknown => {
@@ -313,6 +313,15 @@ impl Judgement<'_> {
         };
         let finding = finding.with_severity(severity);
         self.findings.push(finding.help("remove the pass, or add its feature to the hole in the reference"));
+    }
+
+    /// Returns the width by which a spot drill may break the edge of the hole, mm in diameter: that of a countersink is its
+    /// tolerance.
+    fn max_edge_break(&self) -> f64 {
+        let cones = self.nominal.features.iter().filter(|feature| feature.kind == FeatureKind::Countersink);
+        let slack = self.comparison.tolerances.depth;
+        let widths = cones.filter_map(|cone| Some(2.0 * slack * Deg(cone.angle? / 2.0).tan()));
+        widths.fold(MAX_EDGE_BREAK, f64::min)
     }
 
     /// Reports a cut that makes no feature and goes deeper than `bottom`, the deepest tip that makes one.
@@ -351,11 +360,26 @@ impl Judgement<'_> {
             if !is_known {
                 return;
             }
-            let full = match sized.is_circle() {
-                true => cylinder_depth(&self.near, depth, tolerances.depth),
-                false => depth - POINT_LENGTH * diameter.unwrap_or(0.0),
+            let own = sized.pass.diameter.unwrap_or(0.0);
+            let missed = match (sized.is_circle(), sized.point) {
+                (true, _) => {
+                    let full = cylinder_depth(&self.near, depth, tolerances.depth);
+                    full - sized.full_depth(own).unwrap_or(sized.tip)
+                }
+                // A drill leaves its cone.
+                (false, PointShape::Unknown) if sized.kind == Some(ToolKind::Drill) => depth - sized.tip,
+                (false, point) => {
+                    let cone = POINT_LENGTH * own - point.length(own).unwrap_or(0.0);
+                    depth - sized.tip - cone.max(0.0)
+                }
             };
-            (sized, full - sized.full_depth(0.0).filter(|_| sized.is_circle()).unwrap_or(sized.tip))
+            if sized.point == PointShape::Unknown
+                && sized.kind.is_none()
+                && exceeds(depth - sized.tip, tolerances.depth)
+            {
+                self.gaps.push(ShapeGap::FullDepth(sized.pass.tool));
+            }
+            (sized, missed)
         } else if let Some(widest) = widest_circle(&self.near, tolerances).filter(|_| diameter.is_some()) {
             let full = cylinder_depth(&self.near, depth, tolerances.depth);
             (widest, full - widest.tip)

@@ -111,14 +111,8 @@ fn wide_cut(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<WideCut> {
 fn core(judged: &Judgement<'_>) -> Option<(Outline, f64)> {
     let Judgement { nominal, comparison, near, .. } = judged;
     let slack = comparison.tolerances.depth;
-    let narrowest = |diameter: f64, pitch: f64, bottom: f64| Feature {
-        depth: Some(bottom),
-        diameter: diameter - pitch / 2.0,
-        ..Feature::of(FeatureKind::Bore)
-    };
-    let (threads, mut features): (Vec<Feature>, Vec<Feature>) =
-        nominal.features.iter().partition(|feature| feature.kind == FeatureKind::Tap);
-    let threads: Vec<(f64, f64, f64)> = match threads[..] {
+    let stated = stated_threads(nominal);
+    let threads = match stated[..] {
         [] => {
             let size = |cut: &Cut<'_>| {
                 let pitch = cut.pass.cut.feed.map_or(0.0, |feed| feed.0 / cut.pass.cut.speed.0);
@@ -126,20 +120,16 @@ fn core(judged: &Judgement<'_>) -> Option<(Outline, f64)> {
             };
             near.iter().filter(|cut| cut.is_thread()).filter_map(size).collect()
         }
-        _ => threads.iter().map(|one| (one.diameter, one.pitch.unwrap_or(0.0), one.bottom())).collect(),
+        _ => stated,
     };
     let deepest = threads.iter().map(|(.., bottom)| *bottom).reduce(f64::max)?;
-    for (diameter, pitch, bottom) in threads {
-        let is_core = |feature: &Feature| {
-            let is_cylinder = feature.kind != FeatureKind::Countersink;
-            is_cylinder && feature.diameter < diameter && !exceeds(bottom - feature.bottom(), slack)
-        };
-        if !features.iter().any(is_core) {
-            features.push(narrowest(diameter, pitch, bottom));
-        }
-    }
-    let hole = Hole { features, ..(*nominal).clone() };
-    Some((Outline::of(&hole, slack)?, deepest))
+    Some((Outline::of_core(nominal, &threads, slack)?, deepest))
+}
+
+/// Returns diameter, pitch and bottom of the threads that the reference has in a hole.
+pub(super) fn stated_threads(nominal: &Hole) -> Vec<(f64, f64, f64)> {
+    let threads = nominal.features.iter().filter(|feature| feature.kind == FeatureKind::Tap);
+    threads.map(|one| (one.diameter, one.pitch.unwrap_or(0.0), one.bottom())).collect()
 }
 
 /// Reports a thread that the spindle cuts with the wrong hand.
