@@ -301,15 +301,16 @@ fn assign_nearest(
     pair_of: &mut [Option<HolePair>],
     is_taken: &mut [bool],
 ) {
-    // Of the steps of a hole, which are as near, that of the same depth comes first.
+    // A repeated pass comes last; of the steps of a hole, which are as near, that of the same depth comes first.
     let nearness = |(index, pair): (usize, &HolePair)| {
         let (hole, other) = (&nominal[pair.nominal], &actual[pair.actual]);
         let off = (other.bottom() - bottom(hole)).dot(&Vector3::from(hole.axis)).abs();
         let whole = |length: f64| (length / NEARNESS).round() as u64;
         let is_far = is_from_far_side(pair, nominal, actual);
-        (is_far, whole(pair.deviation.zone_diameter()), whole(off), index)
+        let is_again = other.first_on_line != pair.actual;
+        (is_far, whole(pair.deviation.zone_diameter()), is_again, whole(off), index)
     };
-    let mut order: Vec<(bool, u64, u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
+    let mut order: Vec<(bool, u64, bool, u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
     order.sort_unstable();
     for (.., index) in order {
         let pair = candidates[index];
