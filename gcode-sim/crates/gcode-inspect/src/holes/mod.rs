@@ -35,6 +35,7 @@ mod tool_lines;
 pub(crate) mod unknown_axes;
 mod wall_cut;
 
+pub(crate) use axis_box::directions_across;
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
 pub use drill_pass::{Helix, MilledCut, PassCut};

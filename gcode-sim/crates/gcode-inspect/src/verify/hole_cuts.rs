@@ -8,7 +8,7 @@ use super::{DIAMETER_TOLERANCE, Tolerances};
 use crate::holes::{DrilledHole, Helix, ToolPass};
 use crate::machine::{Machine, PointShape, Tool, ToolKind, tool_name};
 use gcode_lang::units::Deg;
-use gcode_part::{DepthTo, Feature, FeatureKind, Hole, POINT_LENGTH, exceeds};
+use gcode_part::{DepthTo, Feature, FeatureKind, Hole, exceeds};
 
 /// Largest difference between the angles of a countersink and its tool, degrees.
 const ANGLE_TOLERANCE: f64 = 0.5;
@@ -220,23 +220,6 @@ pub(super) fn deepest_circle<'a>(
     };
     let circles = cuts.iter().filter(|_| cuts[made].is_circle()).filter(is_sized);
     circles.fold(cuts[made], |deepest, cut| if deepest.tip < cut.tip { *cut } else { deepest })
-}
-
-/// Returns the depth that a hole of one diameter needs at that diameter: the bottom of all cuts, without the cones of drills.
-/// A cut that ends within `tolerance` of the nominal depth counts as that deep.
-pub(super) fn cylinder_depth(cuts: &[Cut<'_>], nominal: f64, tolerance: f64) -> f64 {
-    let is_mill = |tool: Option<u32>| cuts.iter().any(|cut| cut.is_circle() && cut.pass.tool == tool);
-    let bottoms = cuts.iter().map(|cut| {
-        let tip = if exceeds(nominal - cut.tip, tolerance) { cut.tip } else { nominal };
-        let diameter = cut.pass.diameter.unwrap_or(0.0);
-        match cut.point {
-            _ if cut.is_circle() => tip,
-            PointShape::Unknown if is_mill(cut.pass.tool) => tip,
-            PointShape::Unknown => tip - POINT_LENGTH * diameter,
-            point => tip - point.length(diameter).unwrap_or(0.0),
-        }
-    });
-    bottoms.fold(0.0, f64::max)
 }
 
 /// Returns the deepest of the widest circles of a mill of unknown diameter; `None` if another tool cuts deeper: its cut may

@@ -2,7 +2,7 @@
 use super::*;
 use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::machine::{PointShape, ToolKind};
-use crate::verify::hole_cuts::{Cut, assign, cylinder_depth, deepest_circle, widest_circle};
+use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
 use gcode_part::{Feature, FeatureKind, POINT_LENGTH};
 
@@ -362,10 +362,7 @@ impl Judgement<'_> {
             }
             let own = sized.pass.diameter.unwrap_or(0.0);
             let missed = match (sized.is_circle(), sized.point) {
-                (true, _) => {
-                    let full = cylinder_depth(&self.near, depth, tolerances.depth);
-                    full - sized.full_depth(own).unwrap_or(sized.tip)
-                }
+                (true, _) => depth - sized.full_depth(own).unwrap_or(sized.tip),
                 // A drill leaves its cone.
                 (false, PointShape::Unknown) if sized.kind == Some(ToolKind::Drill) => depth - sized.tip,
                 (false, point) => {
@@ -381,8 +378,7 @@ impl Judgement<'_> {
             }
             (sized, missed)
         } else if let Some(widest) = widest_circle(&self.near, tolerances).filter(|_| diameter.is_some()) {
-            let full = cylinder_depth(&self.near, depth, tolerances.depth);
-            (widest, full - widest.tip)
+            (widest, depth - widest.tip)
         } else {
             return;
         };
@@ -448,7 +444,8 @@ impl Judgement<'_> {
         };
         let sides = [reach(&self.near), reach(&self.far)];
         self.gaps.extend(gaps);
-        let thickness = surface.map_or(0.0, |surface| through::thickness(&surface, self.nominal));
+        let thickness =
+            surface.map_or(0.0, |surface| through::rim_thickness(&surface, self.nominal, diameter / 2.0));
         let depth = thickness.max(self.nominal.depth);
         let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
         let Some((_, place)) = sides.into_iter().flatten().next() else {
