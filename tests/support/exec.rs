@@ -118,7 +118,7 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
         EventKind::PositionUnknown { axes: unknown } => {
             format!("not placed on the part: {}", axes.names(unknown.at_machine_position))
         }
-        EventKind::Spindle { direction: turning, speed } => {
+        EventKind::Spindle { direction: turning, speed, .. } => {
             format!("spindle {turning:?} {}", speed.0).to_lowercase()
         }
         EventKind::Coolant { is_on: on, .. } => format!("coolant {}", if *on { "on" } else { "off" }),

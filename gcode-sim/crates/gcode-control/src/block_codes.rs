@@ -302,8 +302,7 @@ impl Planner<'_> {
                         self.words.mark_read(Letters::of(b"PR"));
                     }
                     plan.state.spindle = SpindleDirection::Off;
-                    plan.events_after_motion
-                        .push((EventKind::Spindle { direction: SpindleDirection::Off, speed }, 0.0));
+                    plan.events_after_motion.push((spindle_event(SpindleDirection::Off, speed), 0.0));
                 }
                 MCodeEffect::ToolChange => {
                     if self.data.settings.undocumented.tool_change_homes_z {
@@ -357,13 +356,17 @@ impl Planner<'_> {
         plan.stops.push(kind);
         if self.data.settings.undocumented.stop_stops_spindle && plan.state.spindle != SpindleDirection::Off {
             plan.state.spindle = SpindleDirection::Off;
-            let stop = EventKind::Spindle { direction: SpindleDirection::Off, speed };
-            plan.events_after_motion.push((stop, 0.0));
+            plan.events_after_motion.push((spindle_event(SpindleDirection::Off, speed), 0.0));
         }
     }
 
     fn set_spindle(&self, plan: &mut BlockPlan, direction: SpindleDirection, speed: Rpm) {
         plan.state.spindle = direction;
-        plan.push_event(EventKind::Spindle { direction, speed });
+        plan.push_event(spindle_event(direction, speed));
     }
+}
+
+/// Returns the event of a spindle that an M code or S changes.
+fn spindle_event(direction: SpindleDirection, speed: Rpm) -> EventKind {
+    EventKind::Spindle { direction, speed, is_rigid: false }
 }

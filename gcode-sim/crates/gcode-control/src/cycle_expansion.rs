@@ -74,7 +74,8 @@ impl CyclePlan {
         let initial = state.cycle.initial;
         let is_rigid = state.is_tapping_rigid || data.settings.taps_rigidly;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
-        let spindle = |direction| EventKind::Spindle { direction, speed: Rpm(state.modal_words.s) };
+        let speed = Rpm(state.modal_words.s);
+        let spindle = |direction| EventKind::Spindle { direction, speed, is_rigid };
         let returns_to_initial = match step {
             CycleStep::RapidToReturnLevel | CycleStep::RapidToInitialInG98 => to_initial,
             CycleStep::RapidToInitial => true,

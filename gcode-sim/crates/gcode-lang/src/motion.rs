@@ -250,6 +250,8 @@ pub enum EventKind {
         direction: SpindleDirection,
         /// Speed.
         speed: Rpm,
+        /// True in rigid tapping: the feed follows the angle of the spindle.
+        is_rigid: bool,
     },
     /// M07 and M08 switch the coolant on, M09 off.
     Coolant {

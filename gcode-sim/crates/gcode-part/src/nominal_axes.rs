@@ -1,8 +1,12 @@
 //! Axes of nominal holes, found from passes of a program, and their distances from each other.
+use std::collections::BTreeMap;
+
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::entry_planes::PARALLEL_COSINE;
+use super::feature::FeatureKind;
 use super::hole::Hole;
+use super::limits::NOISE;
 use super::point_tree::PointTree;
 
 /// Distance at which holes are no longer close, mm, besides rounding.
@@ -10,6 +14,15 @@ const CLOSE: f64 = 1.0 - 1e-6;
 
 /// Distance below which two holes have one axis, mm.
 const SAME_AXIS: f64 = 1e-6;
+
+/// Largest difference between the diameter of a step and that of the pass that cuts it, mm.
+const SAME_DIAMETER: f64 = 0.05;
+
+/// Largest difference between the bottom of a step and the entry of the next, mm.
+const SAME_LEVEL: f64 = 0.1;
+
+/// Least depth of a pass that cuts a hole, mm.
+const MIN_DEPTH: f64 = 0.01;
 
 /// Axis of a nominal hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +33,19 @@ pub struct NominalAxis {
     pub out: Vector3<f64>,
     /// Distance to the nearest parallel axis, mm; infinite from 1 mm on.
     pub spacing: f64,
+    /// Radius of the hole at its widest, mm; `None` if unknown.
+    pub radius: Option<f64>,
+    /// True if the hole has a thread.
+    pub is_threaded: bool,
+}
+
+/// Step of a stepped hole that a list has as several holes on one axis.
+#[derive(Clone, Debug, PartialEq)]
+struct Step {
+    entry: Point3<f64>,
+    depth: f64,
+    /// Diameters of the hole and its features, mm.
+    diameters: Vec<f64>,
 }
 
 /// Axes of all nominal holes.
@@ -31,6 +57,9 @@ pub struct NominalAxes {
     /// Depth of the deepest hole, mm.
     max_depth: f64,
     has_close: bool,
+    /// Steps of each stepped hole, the uppermost first, with those of the axes that it has.
+    stacks: Vec<Vec<Step>>,
+    stack_of: BTreeMap<usize, usize>,
 }
 
 impl NominalAxes {
@@ -40,6 +69,8 @@ impl NominalAxes {
             entry: hole.entry.into(),
             out: hole.axis.into(),
             spacing: f64::INFINITY,
+            radius: hole.widest_diameter().map(|diameter| diameter / 2.0),
+            is_threaded: hole.features.iter().any(|feature| feature.kind == FeatureKind::Tap),
         };
         let mut axes: Vec<NominalAxis> = holes.iter().map(axis).collect();
         let tree = PointTree::new(axes.iter().map(|axis| axis.entry));
@@ -54,7 +85,39 @@ impl NominalAxes {
             }
         });
         let max_depth = holes.iter().map(|hole| hole.depth).fold(0.0, f64::max);
-        Self { axes, tree, max_depth, has_close }
+        let (stacks, stack_of) = stacks(holes);
+        Self { axes, tree, max_depth, has_close, stacks, stack_of }
+    }
+
+    /// Returns true if the list has the steps of a hole as several holes.
+    pub fn has_steps(&self) -> bool {
+        !self.stacks.is_empty()
+    }
+
+    /// Returns the step of a stepped hole that a pass of this diameter cuts: one as wide, else the lowest that it enters; 0
+    /// at any other hole.
+    pub fn step(
+        &self,
+        pass: [&Point3<f64>; 2],
+        out: &Unit<Vector3<f64>>,
+        within: f64,
+        diameter: Option<f64>,
+    ) -> usize {
+        let at = self.nearest_of(pass, out, within, |_| true);
+        let Some(stack) = at.and_then(|(index, _)| self.stacks.get(*self.stack_of.get(&index)?)) else {
+            return 0;
+        };
+        let below = |step: &Step| (step.entry - pass[1]).dot(out);
+        let is_as_wide = |step: &Step| {
+            diameter
+                .is_some_and(|own| step.diameters.iter().any(|other| (own - other).abs() <= SAME_DIAMETER))
+        };
+        let steps = || stack.iter().enumerate();
+        let off = |step: &Step| (below(step) - step.depth).abs();
+        let wide = steps().filter(|(_, step)| is_as_wide(step));
+        let entered = steps().filter(|(_, step)| SAME_LEVEL < below(step));
+        let nearest = wide.min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+        nearest.or(entered.last()).map_or(0, |(index, _)| index)
     }
 
     /// Returns true if two axes are less than 1 mm apart.
@@ -65,24 +128,95 @@ impl NominalAxes {
     /// Returns the axis nearest to a pass along `out` that may begin in the hole, with its distance; `None` above `within` mm.
     pub fn nearest(
         &self,
-        [start, bottom]: [&Point3<f64>; 2],
+        pass: [&Point3<f64>; 2],
         out: &Unit<Vector3<f64>>,
         within: f64,
     ) -> Option<(&NominalAxis, f64)> {
+        self.nearest_of(pass, out, within, |_| true).map(|(index, distance)| (&self.axes[index], distance))
+    }
+
+    /// Returns the nearest axis of a hole whose entry is above the bottom of a pass; `None` above `within` mm.
+    pub fn nearest_above(
+        &self,
+        [start, bottom]: [&Point3<f64>; 2],
+        out: &Unit<Vector3<f64>>,
+        within: f64,
+    ) -> Option<&NominalAxis> {
+        let is_above = |axis: &NominalAxis| MIN_DEPTH < (axis.entry - bottom).dot(&axis.out);
+        self.nearest_of([start, bottom], out, within, is_above).map(|(index, _)| &self.axes[index])
+    }
+
+    fn nearest_of(
+        &self,
+        [start, bottom]: [&Point3<f64>; 2],
+        out: &Unit<Vector3<f64>>,
+        within: f64,
+        is_counted: impl Fn(&NominalAxis) -> bool,
+    ) -> Option<(usize, f64)> {
         let top = start + out.into_inner() * self.max_depth;
         let margin = Vector3::repeat(within);
         let (low, high) = (top.inf(bottom) - margin, top.sup(bottom) + margin);
-        let mut best: Option<(&NominalAxis, f64)> = None;
+        let mut best: Option<(usize, f64)> = None;
         self.tree.in_box(&low, &high, &mut |index| {
             let axis = &self.axes[index];
-            let distance = axis.distance(bottom, out).filter(|distance| *distance <= within);
+            let distance =
+                axis.distance(bottom, out).filter(|distance| *distance <= within && is_counted(axis));
             if let Some(distance) = distance
                 && best.is_none_or(|(_, least)| distance < least)
             {
-                best = Some((axis, distance));
+                best = Some((index, distance));
             }
         });
         best
+    }
+}
+
+/// Returns the steps of each stepped hole, and the stepped hole of each of its axes.
+fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
+    let (mut stacks, mut stack_of) = (Vec::new(), BTreeMap::new());
+    let first = holes.first().map(Hole::widest_diameter);
+    if holes.iter().all(|hole| Some(hole.widest_diameter()) == first) {
+        return (stacks, stack_of);
+    }
+    // Holes on one axis have one foot of the perpendicular from the origin.
+    let foot = |hole: &Hole| {
+        let (entry, axis) = (Vector3::from(hole.entry), Vector3::from(hole.axis));
+        Point3::from(entry - axis * entry.dot(&axis))
+    };
+    let feet = PointTree::new(holes.iter().map(foot));
+    let mut partners: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    feet.pairs(SAME_AXIS, &mut |one, other| {
+        if Step::is_on_axis_of(&holes[one], &holes[other]) {
+            partners.entry(one.min(other)).or_default().push(one.max(other));
+        }
+    });
+    for (first, others) in partners {
+        if stack_of.contains_key(&first) {
+            continue;
+        }
+        let mut members = others;
+        members.push(first);
+        let height =
+            |index: &usize| Vector3::from(holes[*index].entry).dot(&Vector3::from(holes[*index].axis));
+        let bottom = |index: &usize| height(index) - holes[*index].depth;
+        members.sort_by(|a, b| bottom(b).total_cmp(&bottom(a)));
+        stack_of.extend(members.iter().map(|index| (*index, stacks.len())));
+        stacks.push(members.iter().map(|index| Step::of(&holes[*index])).collect());
+    }
+    (stacks, stack_of)
+}
+
+impl Step {
+    fn of(hole: &Hole) -> Self {
+        let features = hole.features.iter().map(|feature| feature.diameter);
+        let diameters = hole.diameter.into_iter().chain(features).collect();
+        Self { entry: hole.entry.into(), depth: hole.depth, diameters }
+    }
+
+    /// Returns true if two holes on one line have one direction and different diameters.
+    fn is_on_axis_of(one: &Hole, other: &Hole) -> bool {
+        let cosine = Vector3::from(one.axis).dot(&Vector3::from(other.axis));
+        1.0 - NOISE < cosine && one.widest_diameter() != other.widest_diameter()
     }
 }
 
@@ -126,5 +260,30 @@ mod tests {
         let (entry, at) = nearest(0.4).unwrap();
         assert!(entry == 0.45 && (at - 0.05).abs() < 1e-12);
         assert_eq!(nearest(1.5), None);
+        let above = |z: f64| {
+            let at = Point3::new(0.0, 0.0, z);
+            axes.nearest_above([&at, &at], &Vector3::z_axis(), 1.0).is_some()
+        };
+        assert!(above(-0.02) && !above(-0.005) && !above(1.0), "the entry is at 0");
+    }
+
+    /// Φ12×5 over Φ6 from there to 15: a Φ12 that goes to 5.3 is the step's, an Φ8 to 5.05 too, and to 5.2 it is the hole's.
+    #[test]
+    fn a_pass_belongs_to_the_step_of_its_diameter_or_depth() {
+        let step =
+            |z: f64, depth: f64, diameter: f64| Hole { depth, diameter: Some(diameter), ..hole(0.0, z) };
+        let axes = NominalAxes::of(&[step(-5.0, 10.0, 6.0), step(0.0, 5.0, 12.0)]);
+        let of = |z: f64, diameter| {
+            let (start, bottom) = (Point3::new(0.0, 0.0, 2.0), Point3::new(0.0, 0.0, z));
+            axes.step([&start, &bottom], &Vector3::z_axis(), 0.5, diameter)
+        };
+        assert!(axes.has_steps());
+        assert_eq!([of(-15.0, Some(6.0)), of(-8.0, Some(6.0)), of(-4.0, Some(6.0))], [1, 1, 1]);
+        assert_eq!([of(-5.0, Some(12.0)), of(-5.3, Some(12.0))], [0, 0]);
+        assert_eq!(
+            [of(-5.05, Some(8.0)), of(-5.2, Some(8.0)), of(-5.0, None), of(-15.0, None)],
+            [0, 1, 0, 1]
+        );
+        assert!(!NominalAxes::of(&[hole(0.0, 0.0), hole(0.0, -20.0)]).has_steps(), "one diameter");
     }
 }

@@ -61,6 +61,9 @@ pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
     for (place, one) in sized.iter().enumerate() {
         let rest = sized[place + 1..].iter().take_while(|next| next.low[0] < one.high[0]);
         for other in rest.filter(|other| one.box_meets(other)) {
+            if is_step(&holes[one.index], &holes[other.index]) {
+                continue;
+            }
             let distance = axis_distance(&holes[one.index], &holes[other.index]);
             let radius_sum = one.radius + other.radius;
             // Tangent holes share a single line without material between them; rounding must not report them.
@@ -72,6 +75,13 @@ pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
     }
     found.sort_by_key(|overlap| overlap.holes);
     found
+}
+
+/// Returns true if two holes are steps of one: on one axis, with different diameters.
+fn is_step(one: &Hole, other: &Hole) -> bool {
+    let (axis, between) = (Vector3::from(one.axis), Point3::from(one.entry) - Point3::from(other.entry));
+    let is_one_axis = 1.0 - 1e-9 < axis.dot(&Vector3::from(other.axis)) && between.cross(&axis).norm() < 1e-6;
+    is_one_axis && one.widest_diameter() != other.widest_diameter()
 }
 
 /// Returns the least distance of two holes' axes between entry and bottom.
@@ -117,6 +127,15 @@ mod tests {
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].holes, found[0].radius_sum), ([0, 2], 5.0));
         assert!((found[0].distance - 4.9).abs() < 1e-12);
+    }
+
+    #[test]
+    fn steps_of_one_hole_do_not_overlap() {
+        let at = |z: f64, diameter: f64| hole([0.0, 0.0, z], [0.0, 0.0, 1.0], 10.0, diameter);
+        assert_eq!(overlaps(&[at(0.0, 12.0), at(-5.0, 6.0)]), []);
+        assert_eq!(overlaps(&[at(0.0, 12.0), at(-5.0, 12.0)]).len(), 1, "one diameter");
+        let upwards = hole([0.0, 0.0, -20.0], [0.0, 0.0, -1.0], 12.0, 6.0);
+        assert_eq!(overlaps(&[at(0.0, 12.0), upwards]).len(), 1, "from the far side");
     }
 
     /// Entries 20 mm apart, the axes tilted towards each other by 45°: they meet 10 mm below the surface.

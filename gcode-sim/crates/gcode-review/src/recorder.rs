@@ -352,7 +352,7 @@ impl Recorder {
                 StepKind::Length(*offset)
             }
             EventKind::PositionUnknown { .. } | EventKind::ToolSelected { .. } => return,
-            EventKind::Spindle { direction, speed } => {
+            EventKind::Spindle { direction, speed, .. } => {
                 // The speed of a stopped spindle is recorded when it starts.
                 let is_off = *direction == SpindleDirection::Off;
                 StepKind::Spindle(*direction, if is_off { 0.0 } else { speed.0 })

@@ -32,7 +32,7 @@ impl WheelState {
     pub(super) fn apply_event(&mut self, kind: &EventKind) {
         match kind {
             // S0 stops the wheel.
-            EventKind::Spindle { speed, direction } => {
+            EventKind::Spindle { speed, direction, .. } => {
                 self.direction = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *direction };
                 self.speed = *speed;
                 self.builder_code = None;

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
+use super::drill_pass::Helix;
 use crate::machine::{AxisMotion, HeadKind};
 use gcode_lang::motion::{AxisIndex, Backtrace, Position};
 use gcode_lang::units::Deg;
@@ -13,6 +14,9 @@ const MAX_GAP: f64 = 0.02;
 
 /// Largest change of height over a level turn, mm.
 const MAX_LEVEL_CHANGE: f64 = 0.01;
+
+/// Rounding of the height of an arc, mm.
+const LEAD_ROUNDING: f64 = 0.003;
 
 /// Largest angle between two samples of an arc, degrees.
 const MAX_SAMPLE: f64 = 5.0;
@@ -37,6 +41,11 @@ impl PartArc {
         (self.from - self.centre).norm()
     }
 
+    /// Returns the height of the end above the start.
+    fn rise(&self) -> f64 {
+        (self.to - self.from).dot(&self.out)
+    }
+
     /// Returns the point after the fraction `t` of the arc, 0 to 1.
     pub(super) fn point(&self, t: f64) -> Point3<f64> {
         if self.is_chord {
@@ -44,8 +53,7 @@ impl PartArc {
         }
         let spoke = self.from - self.centre;
         let (cos, sin) = ((self.sweep * t).cos(), (self.sweep * t).sin());
-        let rise = (self.to - self.from).dot(&self.out) * t;
-        self.centre + spoke * cos + self.out.cross(&spoke) * sin + self.out.into_inner() * rise
+        self.centre + spoke * cos + self.out.cross(&spoke) * sin + self.out.into_inner() * (self.rise() * t)
     }
 
     /// Returns true if the other arc goes round the same axis in the same sense, with the same radius. Centres given by R
@@ -72,6 +80,12 @@ pub(super) struct ArcRun {
     /// Heights of the ends of these arcs.
     heights: HeightRange,
     turn: Option<FullTurn>,
+    /// All turns of a helix that makes no hole: its lowest point.
+    helix_turn: Option<FullTurn>,
+    /// Rise of the first arc, mm per degree.
+    slope: f64,
+    /// True if all arcs rise alike.
+    is_uniform: bool,
 }
 
 /// Extremes of the last heights of a path, each with the angle swept before it: of the upper ones each is above all later
@@ -127,6 +141,7 @@ pub(super) struct Ring {
     pub roundness: f64,
     /// Height of the start of the run along `out`.
     pub top: f64,
+    pub helix: Option<Helix>,
     /// Block of the last arc.
     pub backtrace: Backtrace,
     pub axis_position: Position,
@@ -147,8 +162,10 @@ impl Ring {
 impl ArcRun {
     pub(super) fn new(arc: PartArc, place: impl FnOnce() -> (Backtrace, Position)) -> Self {
         let top = arc.from.coords.dot(&arc.out);
+        let slope = arc.rise() / arc.sweep.0.abs();
+        let (arcs, heights) = (VecDeque::new(), HeightRange::default());
         let mut run =
-            Self { arcs: VecDeque::new(), swept: 0.0, top, heights: HeightRange::default(), turn: None };
+            Self { arcs, swept: 0.0, top, heights, turn: None, helix_turn: None, slope, is_uniform: true };
         run.push(arc, place);
         run
     }
@@ -169,6 +186,8 @@ impl ArcRun {
     fn push(&mut self, arc: PartArc, place: impl FnOnce() -> (Backtrace, Position)) {
         let end = arc.to.coords.dot(&arc.out);
         let before = self.swept;
+        let expected = self.slope * arc.sweep.0.abs();
+        self.is_uniform &= (arc.rise() - expected).abs() <= LEAD_ROUNDING;
         self.swept += arc.sweep.0.abs();
         self.heights.push(before, arc.from.coords.dot(&arc.out));
         self.heights.push(self.swept, end);
@@ -188,6 +207,10 @@ impl ArcRun {
         if (is_level || is_helix) && self.turn.as_ref().is_none_or(|turn| level < turn.level - 1e-9) {
             let (backtrace, axis_position) = place();
             self.turn = Some(FullTurn { level, backtrace, axis_position });
+        } else if self.turn.is_none() && self.is_uniform {
+            let (backtrace, axis_position) = place();
+            let (first, last) = (self.top, end);
+            self.helix_turn = Some(FullTurn { level: first.min(last), backtrace, axis_position });
         }
     }
 
@@ -203,14 +226,25 @@ impl ArcRun {
         arc.point(((swept - before) / arc.sweep.0.abs()).clamp(0.0, 1.0)).coords.dot(&arc.out)
     }
 
-    /// Ends the run; `None` without a full turn that makes a circle.
+    /// Ends the run; `None` without a full turn.
     pub(super) fn finish(self) -> Option<Ring> {
-        self.turn.as_ref()?;
-        let out = self.arcs[0].1.out;
+        let (_, last) = self.arcs.back()?;
+        let (out, end) = (last.out, last.to.coords.dot(&last.out));
+        let helix = self.helix(end - self.top, last.sweep.0.signum());
+        if self.turn.is_none() && helix.is_none() {
+            return None;
+        }
         let (centre, radius, roundness) = self.fit();
-        let FullTurn { level, backtrace, axis_position } = self.turn?;
+        let FullTurn { level, backtrace, axis_position } = self.turn.or(self.helix_turn)?;
         let centre = centre + out.into_inner() * (level - centre.coords.dot(&out));
-        Some(Ring { centre, out, radius, roundness, top: self.top, backtrace, axis_position })
+        Some(Ring { centre, out, radius, roundness, top: self.top, helix, backtrace, axis_position })
+    }
+
+    /// Returns the helix of a run that rises in all, or falls; `None` if it is level anywhere, or less than a full turn.
+    fn helix(&self, rise: f64, sense: f64) -> Option<Helix> {
+        let lead = rise * sense * 360.0 / self.swept;
+        let is_helix = self.is_uniform && self.full_turn() <= self.swept && MAX_LEVEL_CHANGE < lead.abs();
+        is_helix.then(|| Helix { lead, height: rise.abs(), is_thread: self.turn.is_none() })
     }
 
     /// Returns the least squares circle of the last full turn: centre, radius, and largest minus least distance.

@@ -45,9 +45,19 @@ pub(super) struct CuttingState {
     pub compensation: LengthCompensation,
     pub spindle_direction: SpindleDirection,
     pub speed: Rpm,
+    /// Number of times that the spindle was changed other than by rigid tapping.
+    pub free_turns: u32,
+    /// Run of rigid tapping, in which the spindle keeps its angle at each height; 0 outside.
+    pub rigid_run: u32,
 }
 
 impl CuttingState {
+    /// Applies a change of the spindle, by rigid tapping or another one.
+    pub(super) fn apply_rigid(&mut self, is_rigid: bool) {
+        self.free_turns += u32::from(!is_rigid);
+        self.rigid_run = if is_rigid { self.free_turns + 1 } else { 0 };
+    }
+
     /// Returns tool, length offset, direction and speed as a key.
     pub(super) fn key(&self) -> [u64; 4] {
         let length = match self.compensation {

@@ -20,6 +20,8 @@ pub struct PassCut {
     pub direction: SpindleDirection,
     /// True if the spindle reverses in the hole, as it does for a tap.
     pub is_tapping: bool,
+    /// Run of rigid tapping: in one run the spindle keeps its angle at each height; 0 outside.
+    pub rigid_run: u32,
     /// Figures of a mill's circle; `None` for a stroke.
     pub milled: Option<MilledCut>,
 }
@@ -33,13 +35,26 @@ pub struct MilledCut {
     pub roundness: f64,
     /// Diameter of the metal that the mill leaves on the axis; `None` without any, or if it is unknown.
     pub core: Option<f64>,
+    /// Helix of the path; `None` if it is level anywhere, or of varying lead.
+    pub helix: Option<Helix>,
+}
+
+/// Helix of one lead along which a mill goes round.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Helix {
+    /// Height of a turn, mm; negative if it is left-hand.
+    pub lead: f64,
+    /// Height of the whole helix, mm.
+    pub height: f64,
+    /// True if it makes no hole: the mill comes up along it, or goes round once.
+    pub is_thread: bool,
 }
 
 impl PassCut {
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
         let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
-        Self { start, bottom, feed: None, speed, direction, is_tapping: false, milled: None }
+        Self { start, bottom, feed: None, speed, direction, is_tapping: false, rigid_run: 0, milled: None }
     }
 }
 

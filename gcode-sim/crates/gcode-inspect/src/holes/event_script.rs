@@ -13,8 +13,11 @@ pub(crate) struct EventScript {
 impl EventScript {
     /// Starts a run with the spindle rotating.
     pub(crate) fn new() -> Self {
-        Self::default()
-            .with(EventKind::Spindle { direction: SpindleDirection::Clockwise, speed: Rpm(1500.0) })
+        Self::default().with(EventKind::Spindle {
+            direction: SpindleDirection::Clockwise,
+            speed: Rpm(1500.0),
+            is_rigid: false,
+        })
     }
 
     /// Appends steps separated by `;`: `tool 1; head 30; rapid X10 B90; feed X5`.

@@ -76,8 +76,8 @@ impl HoleExtractor<'_> {
     pub(super) fn cuts_known_metal(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let cuts = self.metal.cuts(from, to)?;
         let rim = || {
-            let (axis, radius) = (self.axis_in_motion(from, to)?, self.tool_radius()?);
-            Some(rim(&axis, &(to - from), radius))
+            let diameter = self.machine.diameter_of(self.setup.tool)?;
+            Some(rim(&self.axis_in_motion(from, to)?, &(to - from), diameter / 2.0))
         };
         let is_cut = |offset: Vector3<f64>| self.metal.cuts(&(from + offset), &(to + offset)) == Some(true);
         Some(cuts || rim().is_some_and(|rim| rim.into_iter().any(is_cut)))

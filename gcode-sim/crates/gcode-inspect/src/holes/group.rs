@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::drill_pass::{DrillPass, PassCut};
+use super::drill_pass::{DrillPass, Helix, PassCut};
 use super::swallowed::swallowing_passes;
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
@@ -146,8 +146,14 @@ pub(super) fn group_holes(
         let wider = std::iter::successors(swallowing[index], |wide| swallowing[*wide]);
         wider.fold(on_line[index], |_, wide| on_line[wide])
     };
-    let first: Vec<usize> = (0..passes.len()).map(hole_of).collect();
-    let is_aside = |index: usize| first[index] != on_line[index];
+    let step_of = |index: usize| {
+        let (pass, PassCut { start, bottom, .. }) = (&passes[index], &passes[index].cut);
+        nominal_axes.step([start, bottom], &pass.axis, MAX_LINE_OFFSET, pass.diameter(machine))
+    };
+    let has_steps = nominal_axes.has_steps();
+    let place = |index: usize| (hole_of(index), if has_steps { step_of(index) } else { 0 });
+    let first: Vec<(usize, usize)> = (0..passes.len()).map(place).collect();
+    let is_aside = |index: usize| first[index].0 != on_line[index];
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // The sort is stable: passes of one line keep their order.
     order.sort_by_key(|index| first[*index]);
@@ -228,8 +234,13 @@ fn push_holes<'p>(
     let first_on_line = holes.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
     // A mill cuts the same depth with each radius.
-    let radius = |pass: &DrillPass| pass.cut.milled.map(|circle| (circle.radius * 1000.0).round() as u64);
-    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
+    let circle = |pass: &DrillPass| {
+        let is_thread = |helix: Helix| helix.is_thread;
+        pass.cut
+            .milled
+            .map(|circle| ((circle.radius * 1000.0).round() as u64, circle.helix.is_some_and(is_thread)))
+    };
+    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<(u64, bool)>), f64> = BTreeMap::new();
     let is_single = passes.len() == 1;
     let (mut cutting, mut repeated) = (Vec::new(), Vec::new());
     for (pass, is_aside) in passes {
@@ -237,7 +248,7 @@ fn push_holes<'p>(
             cutting.push(pass);
             continue;
         }
-        let lowest = lowest_by_tool.entry((pass.tool, radius(pass))).or_insert(f64::INFINITY);
+        let lowest = lowest_by_tool.entry((pass.tool, circle(pass))).or_insert(f64::INFINITY);
         let cuts = height(&pass.cut.bottom) < *lowest - MIN_DEPTH_GAIN;
         if cuts {
             *lowest = height(&pass.cut.bottom);

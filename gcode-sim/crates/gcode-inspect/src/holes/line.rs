@@ -100,6 +100,10 @@ struct PeckStroke {
 #[derive(Clone, Debug)]
 struct StrokeEnd {
     depth: f64,
+    /// Height above the start of the line at which the stroke begins.
+    rise: f64,
+    /// Run of rigid tapping.
+    rigid_run: u32,
     backtrace: Backtrace,
     axis_position: Position,
 }
@@ -115,7 +119,7 @@ impl CuttingLine {
     ) -> Option<Self> {
         let out = Unit::try_new(start - end, 1e-9)?;
         let depth = (start - end).norm();
-        let end = StrokeEnd { depth, backtrace, axis_position: at };
+        let end = StrokeEnd { depth, rise: 0.0, rigid_run: 0, backtrace, axis_position: at };
         Some(Self {
             order: 0,
             start,
@@ -292,7 +296,7 @@ impl CuttingLine {
             self.out = Unit::new_normalize(self.start - to);
         }
         let from_depth = self.stroke.as_ref().map_or(self.depth, |stroke| stroke.from_depth);
-        let end = StrokeEnd { depth, backtrace, axis_position: *at };
+        let end = StrokeEnd { depth, rise: 0.0, rigid_run: 0, backtrace, axis_position: *at };
         self.stroke = Some(PeckStroke { from_depth, end });
         self.depth = depth;
         None
@@ -320,7 +324,9 @@ impl CuttingLine {
 
     /// Ends the current stroke; returns it if it is a full stroke that cuts no deeper.
     fn end_stroke(&mut self) -> Option<DrillPass> {
-        let PeckStroke { from_depth, end } = self.stroke.take()?;
+        let PeckStroke { from_depth, mut end } = self.stroke.take()?;
+        end.rise = (-from_depth).max(0.0);
+        end.rigid_run = self.cutting_state.rigid_run;
         if end.depth > self.deepest.depth + MIN_DEPTH_GAIN {
             self.pecks = self.pecks_with_stroke(end.depth);
             self.deepest = end;
@@ -338,12 +344,13 @@ impl CuttingLine {
     fn drill_pass(&self, end: &StrokeEnd) -> DrillPass {
         DrillPass {
             cut: PassCut {
-                start: self.start,
+                start: self.start + self.out.into_inner() * end.rise,
                 bottom: self.start - self.out.into_inner() * end.depth,
                 feed: self.last_feed,
                 speed: self.cutting_state.speed,
                 direction: self.cutting_state.spindle_direction,
                 is_tapping: self.is_tapping,
+                rigid_run: end.rigid_run,
                 milled: None,
             },
             axis: self.tool_axis.unwrap_or(self.out),

@@ -62,11 +62,15 @@ impl HoleExtractor<'_> {
                     }
                     return;
                 }
-                self.report_no_retract(&line, inside, next.is_some());
-                if inside.is_none() || is_feeding {
-                    if inside.is_some() {
+                let is_in_body = inside.is_some();
+                if is_in_body || !self.makes_nominal(&line) {
+                    self.report_no_retract(&line, inside, next.is_some());
+                }
+                if !is_in_body || is_feeding {
+                    if is_in_body {
                         self.report_conditions(&line);
                     }
+                    self.keep_unretracted(*line);
                     return;
                 }
             }
@@ -121,18 +125,39 @@ impl HoleExtractor<'_> {
         if is_judged && is_followed && !self.has_gouged(line) {
             return;
         }
+        self.spoilt_feeds += u32::from(is_judged);
         let findings = if is_judged { &mut self.findings } else { &mut self.engagement.errors };
         findings.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
             let message =
                 format!("the feed ends {depth:.3} mm inside the part and the tool does not retract along it");
             Diagnostic::new(kind, message).help(match line.tool_axis {
-                Some(_) => "retract along the hole before anything else moves",
                 None => {
                     "if it mills, give [head] in the machine file: without the direction of the tool each feed into the \
                      part counts as a hole; else retract along the hole before anything else moves"
                 }
+                Some(_) if is_judged => {
+                    "retract along the hole before anything else moves, or state in [[stock.pocket]] what the program \
+                     mills besides the holes"
+                }
+                Some(_) => "retract along the hole before anything else moves",
             })
         });
+    }
+
+    /// Returns true if a line is a stroke of known diameter that cuts a nominal hole.
+    fn makes_nominal(&self, line: &CuttingLine) -> bool {
+        let is_sized = self.machine.diameter_of(line.cutting_state.tool).is_some();
+        is_sized && self.strokes.nominal_of_line(line).is_some()
+    }
+
+    /// Keeps the stroke of a line at a nominal hole until it is known whether anything else makes the hole.
+    fn keep_unretracted(&mut self, line: CuttingLine) {
+        if self.makes_nominal(&line) {
+            let order = line.order;
+            let (pass, _) = line.finish();
+            self.cut_axes |= !pass.unknown_axes.all();
+            self.engagement.unretracted.push((order, pass));
+        }
     }
 
     /// Returns true if the tool cuts on its way from a point to where it is now.

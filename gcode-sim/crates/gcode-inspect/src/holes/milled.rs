@@ -4,6 +4,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
 use super::chord_run::ChordRun;
+use super::circles::HoleCircles;
 use super::drill_pass::{DrillPass, MilledCut, PassCut};
 use super::per_block::Findings;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
@@ -13,7 +14,7 @@ use gcode_lang::motion::{Event, SpindleDirection, UnknownAxes};
 const MAX_POINTS: usize = 50_000;
 
 /// Cosine of the largest angle between a circle's axis and the tool: 0.05°.
-const MIN_AXIS_COSINE: f64 = 0.999_999_6;
+pub(super) const MIN_AXIS_COSINE: f64 = 0.999_999_6;
 
 /// Motion of the tool from its first feed to its retract above the start of that feed, or above all feeds across.
 #[derive(Debug, Default)]
@@ -27,10 +28,16 @@ pub(super) struct Engagement {
     /// Highest feed across the tool, by its height along the tool.
     highest_side: f64,
     /// Points of the path.
-    points: Vec<Point3<f64>>,
+    pub points: Vec<Point3<f64>>,
+    /// Arcs of the path.
+    pub arcs: Vec<PartArc>,
     run: Option<ArcRun>,
     chords: Option<ChordRun>,
-    rings: Vec<Ring>,
+    pub rings: Vec<Ring>,
+    /// Strokes at nominal holes along which the tool doesn't retract.
+    pub unretracted: Vec<(u32, DrillPass)>,
+    /// Number of feeds before it that removed what has to stay.
+    spoilt_before: u32,
     /// Axes of unknown position on the part during an arc.
     unknown_axes: UnknownAxes,
     /// Feeds that make no hole, unless the engagement does.
@@ -49,9 +56,20 @@ pub(super) enum Path {
 
 impl Engagement {
     fn clear(&mut self) {
-        let mut points = std::mem::take(&mut self.points);
+        let (mut points, mut arcs) = (std::mem::take(&mut self.points), std::mem::take(&mut self.arcs));
         points.clear();
-        *self = Self { points, approach_level: self.approach_level, ..Self::default() };
+        arcs.clear();
+        *self = Self { points, arcs, approach_level: self.approach_level, ..Self::default() };
+    }
+
+    /// Returns true if the path has more points than a hole needs.
+    pub(super) fn is_full(&self) -> bool {
+        self.points.len() == MAX_POINTS
+    }
+
+    /// Returns true if a feed has removed what has to stay, by the number of all such feeds.
+    pub(super) fn is_spoilt(&self, spoilt_feeds: u32) -> bool {
+        self.spoilt_before < spoilt_feeds
     }
 
     /// Adds axes of unknown position during an arc.
@@ -81,56 +99,6 @@ impl Engagement {
         self.rings.extend(self.run.take().and_then(ArcRun::finish));
         self.rings.extend(self.chords.take().and_then(ChordRun::finish));
     }
-
-    /// Returns the circle of each radius and the start of the feed, without those that others cover; `None` if the tool
-    /// mills something else than one hole.
-    fn circles(&self, tool_axis: Option<&Unit<Vector3<f64>>>, cutter: Option<f64>) -> Option<Circles> {
-        let widest =
-            self.rings.iter().reduce(|best, ring| if best.radius < ring.radius { ring } else { best })?;
-        let (centre, out, radius) = (widest.centre, widest.out, widest.radius);
-        let slack = 0.02 + widest.roundness;
-        let aside = |p: &Point3<f64>| {
-            let spoke = p - centre;
-            (spoke - out.into_inner() * spoke.dot(&out)).norm()
-        };
-        let is_one_axis = self.rings.iter().all(|ring| {
-            aside(&ring.centre) <= slack + ring.roundness && ring.out.dot(&out) > MIN_AXIS_COSINE
-        });
-        let is_along_tool = tool_axis.is_none_or(|axis| axis.dot(&out) >= MIN_AXIS_COSINE);
-        if !is_one_axis || !is_along_tool || self.points.len() == MAX_POINTS {
-            return None;
-        }
-        let top = self.rings.iter().map(|ring| ring.top).fold(f64::NEG_INFINITY, f64::max) + LEVEL_TOLERANCE;
-        let mut nearest = radius;
-        for p in self.points.iter().filter(|p| p.coords.dot(&out) <= top) {
-            let distance = aside(p);
-            if distance > radius + slack {
-                return None;
-            }
-            nearest = nearest.min(distance);
-        }
-        let is_inside = nearest <= radius / 2.0;
-        // A circle that leaves a core may be a groove.
-        let reaches_axis = cutter.is_some_and(|cutter| radius <= cutter / 2.0 + slack);
-        let is_helix = cutter.is_none() && self.rings.iter().any(Ring::is_helix);
-        let is_certain = is_inside || reaches_axis || is_helix;
-        let mut kept: Vec<Ring> = Vec::new();
-        let mut order: Vec<&Ring> = self.rings.iter().collect();
-        order.sort_by(|a, b| a.level().total_cmp(&b.level()).then(b.radius.total_cmp(&a.radius)));
-        for ring in order {
-            if kept.iter().all(|deeper| deeper.radius < ring.radius - 0.01) {
-                kept.push(ring.clone());
-            }
-        }
-        Some(Circles { rings: kept, is_certain })
-    }
-}
-
-/// Circles of one hole.
-struct Circles {
-    rings: Vec<Ring>,
-    /// False for a circle that may as well be a groove in a face.
-    is_certain: bool,
 }
 
 impl HoleExtractor<'_> {
@@ -185,6 +153,9 @@ impl HoleExtractor<'_> {
                 for t in [0.25, 0.5, 0.75] {
                     engagement.push_point(arc.point(t));
                 }
+                if !engagement.is_full() {
+                    engagement.arcs.push(arc.clone());
+                }
                 let next = match engagement.run.as_mut() {
                     Some(run) => run.extend(arc, place).err(),
                     None => Some(arc),
@@ -226,52 +197,64 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Ends the engagement: its circles are passes of a hole, or its feeds make none.
+    /// Ends the engagement: its circles are passes of holes, or its feeds make none.
     pub(super) fn end_engagement(&mut self) {
         self.engagement.end_run();
-        let cutter = self.machine.diameter_of(self.setup.tool);
-        let circles = match self.engagement.rings.is_empty() {
-            true => None,
-            false => self.engagement.circles(self.pose.axis.as_ref(), cutter),
-        };
-        let is_hole = circles.is_some_and(|circles| self.push_circles(circles));
+        let holes = self.hole_circles();
+        for circles in &holes {
+            self.push_circles(circles);
+        }
+        let unretracted = std::mem::take(&mut self.engagement.unretracted);
         let uncounted = std::mem::take(&mut self.engagement.uncounted);
         let errors = std::mem::take(&mut self.engagement.errors);
-        if !is_hole {
+        if holes.is_empty() {
+            for (order, pass) in unretracted {
+                self.push_unretracted(order, pass);
+            }
             self.report_uncounted(uncounted);
             self.findings.append(errors);
         }
         self.engagement.clear();
+        self.engagement.spoilt_before = self.spoilt_feeds;
     }
 
-    /// Adds the passes of a hole. Returns false for circles that may be a groove, unless a nominal hole is there.
-    fn push_circles(&mut self, circles: Circles) -> bool {
+    /// Adds a stroke at a nominal hole without a retract: it makes the hole if nothing else does.
+    fn push_unretracted(&mut self, order: u32, pass: DrillPass) {
+        let (out, bottom) = (pass.axis, pass.cut.bottom);
+        let top = pass.cut.start.coords.dot(&out);
+        if let Some(excess) = self.engagement.excess(&bottom, &out, 0.0, top) {
+            self.report_wall_cut(&excess, &out, &pass.backtrace);
+        }
+        self.strokes.push_unretracted(order, pass);
+    }
+
+    /// Adds the passes of a hole.
+    fn push_circles(&mut self, circles: &HoleCircles) {
         let start = self.engagement.start.unwrap_or(self.pose.tip);
         let Engagement { approach_level, unknown_axes, .. } = self.engagement;
         let tool = self.setup.tool;
-        let pass = |ring: Ring| {
+        if let Some(excess) = &circles.excess {
+            let Ring { out, backtrace, .. } = &circles.widest;
+            self.report_wall_cut(excess, out, backtrace);
+        }
+        for ring in &circles.rings {
             let out = ring.out;
             let begin = start.coords.dot(&out);
             // A tool that comes down in rapid begins its feed at the depth of the circle.
             let begin = if begin > ring.level() + LEVEL_TOLERANCE { begin } else { approach_level };
             let length = (begin - ring.level()).max(LEVEL_TOLERANCE);
-            let milled = MilledCut { radius: ring.radius, roundness: ring.roundness, core: None };
+            let Ring { radius, roundness, helix, .. } = *ring;
+            let milled = MilledCut { radius, roundness, core: None, helix };
             let cut = PassCut::new(ring.centre + out.into_inner() * length, ring.centre);
-            DrillPass {
+            let pass = DrillPass {
                 cut: PassCut { milled: Some(milled), ..cut },
                 axis: out,
                 feed_direction: out,
                 tool,
-                backtrace: ring.backtrace,
+                backtrace: ring.backtrace.clone(),
                 axis_position: ring.axis_position,
                 unknown_axes,
-            }
-        };
-        let passes: Vec<DrillPass> = circles.rings.into_iter().map(pass).collect();
-        if !circles.is_certain && !passes.iter().any(|pass| self.strokes.is_nominal(pass)) {
-            return false;
-        }
-        for pass in passes {
+            };
             self.check_clamped(&pass.backtrace, self.clamp_state);
             if self.cutting_state.spindle_direction == SpindleDirection::Off {
                 self.report_spindle_stopped(&pass.backtrace);
@@ -279,6 +262,5 @@ impl HoleExtractor<'_> {
             let order = self.strokes.begin_pass();
             self.strokes.push(order, pass, CutKind::Drilled);
         }
-        true
     }
 }

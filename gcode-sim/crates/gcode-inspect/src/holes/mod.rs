@@ -2,6 +2,7 @@
 mod arc_run;
 mod axis_box;
 mod chord_run;
+mod circles;
 mod clamping;
 mod clearance;
 mod core;
@@ -32,10 +33,12 @@ mod swallowed;
 mod tests;
 mod tool_lines;
 pub(crate) mod unknown_axes;
+mod wall_cut;
 
+pub(crate) use axis_box::directions_across;
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
-pub use drill_pass::{MilledCut, PassCut};
+pub use drill_pass::{Helix, MilledCut, PassCut};
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
@@ -412,12 +415,13 @@ impl EventSink for HoleExtractor<'_> {
                 self.positions.apply_event(self.machine, *axes);
                 self.update_outside();
             }
-            EventKind::Spindle { direction, speed } => {
+            EventKind::Spindle { direction, speed, is_rigid } => {
                 // S0 stops the spindle.
                 let before = self.cutting_state.spindle_direction;
                 self.cutting_state.spindle_direction =
                     if *speed == Rpm(0.0) { SpindleDirection::Off } else { *direction };
                 self.cutting_state.speed = *speed;
+                self.cutting_state.apply_rigid(*is_rigid);
                 self.has_tool_turned |= self.cutting_state.spindle_direction != SpindleDirection::Off;
                 self.update_spindle_in_hole(before);
                 self.builder_code = None;

@@ -1,10 +1,12 @@
 //! Which strokes drill: a tool that mills, or a feed along another line than the tool's, makes no hole by going there and
 //! back.
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
+use super::arc_run::Ring;
 use super::drill_pass::{DrillPass, PassCut};
 use super::line::CuttingLine;
 use super::per_block::with_count_note;
@@ -12,7 +14,7 @@ use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
 use crate::machine::ToolKind;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, Position};
-use gcode_part::NominalAxes;
+use gcode_part::{NominalAxes, NominalAxis, PARALLEL_COSINE};
 
 /// Differences of height that come from rounding, mm.
 pub(super) const LEVEL_TOLERANCE: f64 = 0.003;
@@ -58,6 +60,8 @@ pub(super) struct Strokes {
     /// Strokes across the upright tool, those of the current tool from `across_begin`.
     across: Vec<(u32, DrillPass)>,
     across_begin: usize,
+    /// Strokes at nominal holes along which the tool doesn't retract.
+    unretracted: Vec<(u32, DrillPass)>,
     next: u32,
     max_passes: usize,
     /// First pass beyond `max_passes`.
@@ -138,7 +142,70 @@ impl Strokes {
     /// Returns true if a pass lies on a nominal axis.
     pub(super) fn is_nominal(&self, pass: &DrillPass) -> bool {
         let PassCut { start, bottom, .. } = &pass.cut;
-        self.nominal.nearest([start, bottom], &pass.axis, MAX_AXIS_DISTANCE).is_some()
+        let is_along = PARALLEL_COSINE <= pass.feed_direction.dot(&pass.axis);
+        is_along && self.nominal.nearest([start, bottom], &pass.axis, MAX_AXIS_DISTANCE).is_some()
+    }
+
+    /// Returns the nominal axis nearest to a circle; of a hole whose entry is above the circle if `is_below`.
+    pub(super) fn nominal_of_ring(&self, ring: &Ring, is_below: bool) -> Option<&NominalAxis> {
+        let start = ring.centre + ring.out.into_inner() * (ring.top - ring.level());
+        let pass = [&start, &ring.centre];
+        match is_below {
+            true => self.nominal.nearest_above(pass, &ring.out, MAX_AXIS_DISTANCE),
+            false => self.nominal.nearest(pass, &ring.out, MAX_AXIS_DISTANCE).map(|(axis, _)| axis),
+        }
+    }
+
+    /// Returns the axis of the nominal hole that a stroke cuts.
+    fn nominal_of_stroke(&self, pass: &DrillPass) -> Option<&NominalAxis> {
+        let PassCut { start, bottom, .. } = &pass.cut;
+        self.nominal_along([start, bottom], &pass.axis, &pass.feed_direction)
+    }
+
+    /// Returns the axis of the nominal hole that the stroke of a line cuts.
+    pub(super) fn nominal_of_line(&self, line: &CuttingLine) -> Option<&NominalAxis> {
+        self.nominal_along([&line.start, &line.bottom()], &line.tool_axis.unwrap_or(line.out), &line.out)
+    }
+
+    fn nominal_along(
+        &self,
+        stroke: [&Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        feed: &Unit<Vector3<f64>>,
+    ) -> Option<&NominalAxis> {
+        let is_along = PARALLEL_COSINE <= feed.dot(axis);
+        self.nominal.nearest_above(stroke, axis, MAX_AXIS_DISTANCE).filter(|_| is_along)
+    }
+
+    /// Adds a stroke at a nominal hole along which the tool doesn't retract.
+    pub(super) fn push_unretracted(&mut self, order: u32, pass: DrillPass) {
+        if self.unretracted.len() < self.max_passes {
+            self.unretracted.push((order, pass));
+        }
+    }
+
+    /// Takes the deepest stroke without a retract as the pass of each nominal hole that has no other one.
+    fn finish_unretracted(&mut self) {
+        let entry = |axis: &NominalAxis| axis.entry.coords.map(f64::to_bits).into();
+        let mut deepest: BTreeMap<[u64; 3], (u32, DrillPass)> = BTreeMap::new();
+        for (order, pass) in std::mem::take(&mut self.unretracted) {
+            let Some(key) = self.nominal_of_stroke(&pass).map(entry) else { continue };
+            let depth = |pass: &DrillPass| -pass.cut.bottom.coords.dot(&pass.axis);
+            if deepest.get(&key).is_none_or(|(_, other)| depth(other) < depth(&pass)) {
+                deepest.insert(key, (order, pass));
+            }
+        }
+        if deepest.is_empty() {
+            return;
+        }
+        for (_, pass) in &self.passes {
+            if let Some(axis) = self.nominal_of_stroke(pass) {
+                deepest.remove(&entry(axis));
+            }
+        }
+        for (order, pass) in deepest.into_values() {
+            self.push_pass(order, pass);
+        }
     }
 
     /// Returns the place of a pass that begins now.
@@ -200,6 +267,7 @@ impl Strokes {
                 false => self.push_pass(order, pass),
             }
         }
+        self.finish_unretracted();
         self.passes.sort_by_key(|(order, _)| *order);
         let passes = self.passes.into_iter().map(|(_, pass)| pass).collect();
         (passes, self.milled, self.first_excess)

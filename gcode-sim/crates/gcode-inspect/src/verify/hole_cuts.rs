@@ -3,12 +3,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::Tolerances;
 use super::outline::CutShape;
-use crate::holes::{DrilledHole, ToolPass};
+use super::{DIAMETER_TOLERANCE, Tolerances};
+use crate::holes::{DrilledHole, Helix, ToolPass};
 use crate::machine::{Machine, PointShape, Tool, ToolKind, tool_name};
 use gcode_lang::units::Deg;
-use gcode_part::{DepthTo, Feature, FeatureKind, Hole, POINT_LENGTH, exceeds};
+use gcode_part::{DepthTo, Feature, FeatureKind, Hole, exceeds};
 
 /// Largest difference between the angles of a countersink and its tool, degrees.
 const ANGLE_TOLERANCE: f64 = 0.5;
@@ -23,6 +23,8 @@ pub(super) struct Cut<'a> {
     pub tip: f64,
     pub kind: Option<ToolKind>,
     pub point: PointShape,
+    /// Helix of a mill along a thread; `None` if it makes none.
+    pub thread: Option<Helix>,
 }
 
 impl<'a> Cut<'a> {
@@ -34,10 +36,14 @@ impl<'a> Cut<'a> {
         let cut = |pass: ToolPass<'a>| {
             let tool = pass.tool.and_then(|number| machine.find_tool(number));
             let is_milled = pass.cut.milled.is_some();
+            let thread = milled_thread(nominal, &pass);
+            // A helix that makes a hole counts from the highest point of its last turn.
+            let below = thread.filter(|helix| !helix.is_thread).map_or(0.0, |helix| helix.lead.abs());
             Self {
                 pass,
+                thread,
                 start: depth(&pass.cut.start),
-                tip: depth(&pass.cut.bottom),
+                tip: depth(&pass.cut.bottom) + below,
                 kind: tool.and_then(|tool| tool.kind).or(is_milled.then_some(ToolKind::EndMill)),
                 point: match tool.map_or(PointShape::Unknown, Tool::point) {
                     PointShape::Unknown if is_milled => PointShape::Flat,
@@ -58,8 +64,22 @@ impl<'a> Cut<'a> {
         self.pass.cut.milled.is_some()
     }
 
-    pub(super) fn is_tap(&self) -> bool {
-        self.kind.map_or(self.pass.cut.is_tapping, |kind| kind == ToolKind::Tap)
+    /// Returns true for a tap, and for a mill along a thread.
+    pub(super) fn is_thread(&self) -> bool {
+        self.thread.is_some() || self.kind.map_or(self.pass.cut.is_tapping, |kind| kind == ToolKind::Tap)
+    }
+
+    /// Returns true for a tap that doesn't reverse in the hole, which tears its thread out.
+    pub(super) fn is_stuck_tap(&self) -> bool {
+        self.is_thread() && self.thread.is_none() && !self.pass.cut.is_tapping
+    }
+
+    /// Returns false if a tool of this kind can't make a feature.
+    fn can_make(&self, feature: FeatureKind) -> bool {
+        self.kind.is_none_or(|kind| match self.thread {
+            Some(_) => feature == FeatureKind::Tap && !kind.cuts_with_end(),
+            None => kind.can_make(feature),
+        })
     }
 
     /// Returns the name of the tool, `T1`, with its diameter.
@@ -99,11 +119,7 @@ impl<'a> Cut<'a> {
     /// Returns how far the cut is from making a feature, the least for the best; `None` if it can't make it.
     pub(super) fn mismatch(&self, feature: &Feature, tolerances: Tolerances) -> Option<f64> {
         let is_thread = feature.kind == FeatureKind::Tap;
-        if is_thread != self.is_tap() || self.kind.is_some_and(|kind| !kind.can_make(feature.kind)) {
-            return None;
-        }
-        // A tap that does not reverse tears the thread out.
-        if is_thread && !self.pass.cut.is_tapping {
+        if is_thread != self.is_thread() || !self.can_make(feature.kind) || is_thread && self.is_stuck_tap() {
             return None;
         }
         let deep = (self.cone_tip(feature) - feature.bottom()).abs();
@@ -142,6 +158,16 @@ impl<'a> Cut<'a> {
             _ => Some(self.tip),
         }
     }
+}
+
+/// Returns the helix of a pass along a thread: one that makes no hole, or one as wide as a thread of the hole.
+fn milled_thread(nominal: &Hole, pass: &ToolPass<'_>) -> Option<Helix> {
+    let helix = pass.cut.milled?.helix?;
+    let is_as_wide = |feature: &Feature| {
+        let off = pass.diameter.map(|own| (own - feature.diameter).abs());
+        feature.kind == FeatureKind::Tap && off.is_none_or(|off| !exceeds(off, DIAMETER_TOLERANCE))
+    };
+    (helix.is_thread || nominal.features.iter().any(is_as_wide)).then_some(helix)
 }
 
 /// Returns the entry and the direction out of the part on the side from which a pass along `axis` cuts a hole.
@@ -194,23 +220,6 @@ pub(super) fn deepest_circle<'a>(
     };
     let circles = cuts.iter().filter(|_| cuts[made].is_circle()).filter(is_sized);
     circles.fold(cuts[made], |deepest, cut| if deepest.tip < cut.tip { *cut } else { deepest })
-}
-
-/// Returns the depth that a hole of one diameter needs at that diameter: the bottom of all cuts, without the cones of drills.
-/// A cut that ends within `tolerance` of the nominal depth counts as that deep.
-pub(super) fn cylinder_depth(cuts: &[Cut<'_>], nominal: f64, tolerance: f64) -> f64 {
-    let is_mill = |tool: Option<u32>| cuts.iter().any(|cut| cut.is_circle() && cut.pass.tool == tool);
-    let bottoms = cuts.iter().map(|cut| {
-        let tip = if exceeds(nominal - cut.tip, tolerance) { cut.tip } else { nominal };
-        let diameter = cut.pass.diameter.unwrap_or(0.0);
-        match cut.point {
-            _ if cut.is_circle() => tip,
-            PointShape::Unknown if is_mill(cut.pass.tool) => tip,
-            PointShape::Unknown => tip - POINT_LENGTH * diameter,
-            point => tip - point.length(diameter).unwrap_or(0.0),
-        }
-    });
-    bottoms.fold(0.0, f64::max)
 }
 
 /// Returns the deepest of the widest circles of a mill of unknown diameter; `None` if another tool cuts deeper: its cut may

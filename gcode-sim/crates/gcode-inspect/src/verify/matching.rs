@@ -18,6 +18,9 @@ const FIRST_DISTANCE: f64 = 0.01;
 /// Largest difference of the depths of two passes that are one pass and its repetition, mm.
 const MAX_DEPTH_DIFFERENCE: f64 = 0.01;
 
+/// Largest difference between distances that count as equal, mm.
+const NEARNESS: f64 = 1e-6;
+
 /// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
 const TILTED_HOLE_COSINE: f64 = 0.866_025_403_784_438_6;
 
@@ -53,6 +56,8 @@ pub struct Comparison<'a> {
     pub extra: Vec<usize>,
     /// Spring passes in drilled holes.
     pub repeated: Vec<usize>,
+    /// Feeds beside the part, which cut nothing.
+    pub in_air: Vec<usize>,
     /// The nominal hole matched with a line, by the first drilled hole of the line.
     nominal_by_line: Vec<Option<usize>>,
 }
@@ -138,7 +143,18 @@ impl<'a> Comparison<'a> {
         };
         let left_over = (0..actual.len()).filter(|index| !is_taken[*index]);
         let (repeated, extra) = left_over.partition(is_spring_pass);
-        Self { nominal, actual, tolerances, pattern, pairs, missing, extra, repeated, nominal_by_line }
+        Self {
+            nominal,
+            actual,
+            tolerances,
+            pattern,
+            pairs,
+            missing,
+            extra,
+            repeated,
+            in_air: Vec::new(),
+            nominal_by_line,
+        }
     }
 
     /// Returns the diameter of the widest nominal hole that each tool finishes whose own one is unknown.
@@ -164,7 +180,7 @@ impl<'a> Comparison<'a> {
         }
         let (nominal, actual, missing) = (self.nominal, self.actual, &self.missing);
         let widest_by_tool = self.widest_by_tool(machine);
-        self.extra.retain(|index| {
+        let is_left_out = |index: &usize| {
             let end = actual[*index].bottom();
             let is_near = |nominal: &Hole| {
                 let entry = Point3::from(nominal.entry);
@@ -177,8 +193,9 @@ impl<'a> Comparison<'a> {
                     let nominal = widest_by_tool.get(&pass.tool).copied();
                     is_in_air(&pass, surface, machine, nominal)
                 });
-            !is_in_air || missing.iter().any(|missing| is_near(&nominal[*missing]))
-        });
+            is_in_air && !missing.iter().any(|missing| is_near(&nominal[*missing]))
+        };
+        (self.in_air, self.extra) = std::mem::take(&mut self.extra).into_iter().partition(is_left_out);
     }
 
     /// Returns the matched pairs with their holes.
@@ -223,7 +240,7 @@ impl<'a> Comparison<'a> {
 }
 
 /// Returns true if a tool goes a second time to the same depth of a hole, within the tolerance of its position: a spring pass,
-/// which cuts nothing. A tap spoils the thread.
+/// which cuts nothing. A tap spoils the thread unless it is in step with it.
 fn is_spring_pass(
     again: &DrilledHole,
     nominal: &Hole,
@@ -234,10 +251,23 @@ fn is_spring_pass(
         .is_some_and(|deviation| !exceeds(deviation.zone_diameter(), tolerances.position));
     let is_same = |pass: &ToolPass<'_>| {
         let deeper = (pass.cut.bottom - again.bottom()).dot(&again.axis);
-        pass.tool == again.tool && !pass.cut.is_tapping && deeper.abs() <= MAX_DEPTH_DIFFERENCE
+        let is_in_thread = !pass.cut.is_tapping || is_in_step(&pass.cut, &again.finishing_cut, &again.axis);
+        pass.tool == again.tool && is_in_thread && deeper.abs() <= MAX_DEPTH_DIFFERENCE
     };
     let mut earlier = actual.get(again.first_on_line).into_iter().flat_map(DrilledHole::passes);
     is_in_place && earlier.any(|pass| is_same(&pass))
+}
+
+/// Returns true if a tap follows the thread of its earlier pass: rigid tapping goes on with the same pitch, from a height whole
+/// pitches away.
+fn is_in_step(one: &PassCut, again: &PassCut, axis: &Vector3<f64>) -> bool {
+    let pitch = |cut: &PassCut| cut.feed.map(|feed| feed.0 / cut.speed.0);
+    let (Some(own), Some(other)) = (pitch(again), pitch(one)) else { return false };
+    let turns = (again.start - one.start).dot(axis) / own;
+    let is_one_run = again.is_tapping && 0 < again.rigid_run && again.rigid_run == one.rigid_run;
+    is_one_run
+        && !exceeds((own - other).abs(), 1e-6)
+        && (turns - turns.round()).abs() * own <= MAX_DEPTH_DIFFERENCE
 }
 
 /// Returns true if a pass cuts nothing of the body; `nominal` is the diameter of a tool that the tool table lacks. A circle that
@@ -271,11 +301,16 @@ fn assign_nearest(
     pair_of: &mut [Option<HolePair>],
     is_taken: &mut [bool],
 ) {
-    // Non-negative numbers and their bits have the same order.
+    // A repeated pass comes last; of the steps of a hole, which are as near, that of the same depth comes first.
     let nearness = |(index, pair): (usize, &HolePair)| {
-        (is_from_far_side(pair, nominal, actual), pair.deviation.zone_diameter().to_bits(), index)
+        let (hole, other) = (&nominal[pair.nominal], &actual[pair.actual]);
+        let off = (other.bottom() - bottom(hole)).dot(&Vector3::from(hole.axis)).abs();
+        let whole = |length: f64| (length / NEARNESS).round() as u64;
+        let is_far = is_from_far_side(pair, nominal, actual);
+        let is_again = other.first_on_line != pair.actual;
+        (is_far, whole(pair.deviation.zone_diameter()), is_again, whole(off), index)
     };
-    let mut order: Vec<(bool, u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
+    let mut order: Vec<(bool, u64, bool, u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
     order.sort_unstable();
     for (.., index) in order {
         let pair = candidates[index];

@@ -42,6 +42,9 @@ use gcode_lang::source::Span;
 use gcode_part::{Hole, Reference};
 use nalgebra::{Point3, Vector3};
 
+/// Tolerance of the diameter of a hole, either way, mm.
+const DIAMETER_TOLERANCE: f64 = 0.05;
+
 /// Tolerances of a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
@@ -60,7 +63,7 @@ impl Tolerances {
         Self {
             position: specified.or(reference.position).unwrap_or(0.1),
             depth: reference.depth_tolerance(),
-            diameter: 0.05,
+            diameter: DIAMETER_TOLERANCE,
         }
     }
 }

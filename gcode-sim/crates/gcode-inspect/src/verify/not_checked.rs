@@ -171,6 +171,12 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
                 let what = format!("the hole in which {} cuts", tool_name(tool));
                 NotChecked::gap(what, format!("the program does not drill {holes}"))
             }
+            ShapeGap::ThreadLength(tool) => {
+                format!(
+                    "the length of the thread of {holes}: {} goes round once, and a comb mill cuts a longer thread",
+                    tool_name(tool)
+                )
+            }
             ShapeGap::FullThrough(tool) => {
                 no_angle(format!("the full diameter of {holes} on the far side"), tool)
             }

@@ -1,6 +1,6 @@
 //! Outlines of nominal holes and of tools: radius by the depth below the nominal entry.
 use gcode_lang::units::Deg;
-use gcode_part::{FeatureKind, Hole, NOISE, exceeds};
+use gcode_part::{Feature, FeatureKind, Hole, NOISE, exceeds};
 
 use crate::machine::PointShape;
 
@@ -48,6 +48,24 @@ impl Outline {
             }
         }
         Some(Self { cylinders, cones })
+    }
+
+    /// Returns the outline of a hole without its threads, of known diameter, pitch and depth. A thread without a hole of its own
+    /// leaves the diameter less half its pitch, which a forming tap needs.
+    pub(super) fn of_core(hole: &Hole, threads: &[(f64, f64, f64)], slack: f64) -> Option<Self> {
+        let others = hole.features.iter().filter(|feature| feature.kind != FeatureKind::Tap);
+        let mut features: Vec<Feature> = others.copied().collect();
+        for (diameter, pitch, bottom) in threads {
+            let is_core = |feature: &Feature| {
+                let is_cylinder = feature.kind != FeatureKind::Countersink;
+                is_cylinder && feature.diameter < *diameter && !exceeds(bottom - feature.bottom(), slack)
+            };
+            if !features.iter().any(is_core) {
+                let (diameter, depth) = (diameter - pitch / 2.0, Some(*bottom));
+                features.push(Feature { depth, diameter, ..Feature::of(FeatureKind::Bore) });
+            }
+        }
+        Self::of(&Hole { features, ..hole.clone() }, slack)
     }
 
     /// Returns the outline below the far side of a through hole, of the diameters that go through; `None` if they are unknown.

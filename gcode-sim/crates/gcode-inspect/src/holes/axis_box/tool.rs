@@ -86,7 +86,7 @@ impl AxisBox<'_> {
 
 /// Returns two directions across the tool, perpendicular to each other; they change continuously while a head inclines the
 /// tool in the plane of x and y.
-pub(in crate::holes) fn directions_across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
+pub(crate) fn directions_across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let other = if axis.z.abs() < 0.5 { Vector3::z() } else { Vector3::x() };
     let across = (other - axis * axis.dot(&other)).normalize();
     [across, axis.cross(&across)]

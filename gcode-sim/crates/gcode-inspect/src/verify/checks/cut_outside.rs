@@ -18,12 +18,20 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             true => Outline::of_far_side(nominal),
             false => Outline::of(nominal, comparison.tolerances.depth),
         };
+        // A drill down to the bottom of a thread leaves the metal of the thread.
+        let threads = threads::stated_threads(nominal);
+        let thread_bottom = threads.iter().map(|(.., bottom)| *bottom).reduce(f64::max);
+        let core = Outline::of_core(nominal, &threads, comparison.tolerances.depth);
         for (index, cut) in Cut::all(nominal, drilled, machine).iter().enumerate() {
             if index == drilled.finishing_index {
                 continue;
             }
             let Some(offset) = offset(nominal, cut) else { continue };
             // A later pass removes the deviation of a cut that is narrower than the outline.
+            let is_threaded = thread_bottom.is_some_and(|bottom| {
+                !cut.is_thread() && !exceeds(bottom - cut.tip, comparison.tolerances.depth)
+            });
+            let outline = if is_threaded { &core } else { &outline };
             let margin = outline.as_ref().zip(cut.shape()).map(|(outline, shape)| outline.margin(&shape));
             let spare = margin.filter(|margin| margin.is_finite()).map_or(0.0, |margin| margin.max(0.0));
             let allowed = spare + comparison.tolerances.position / 2.0;

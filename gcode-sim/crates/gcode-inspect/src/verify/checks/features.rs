@@ -2,7 +2,7 @@
 use super::*;
 use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::machine::{PointShape, ToolKind};
-use crate::verify::hole_cuts::{Cut, assign, cylinder_depth, deepest_circle, widest_circle};
+use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
 use gcode_part::{Feature, FeatureKind, POINT_LENGTH};
 
@@ -20,6 +20,8 @@ pub(in crate::verify) enum ShapeGap {
     FullThrough(Option<u32>),
     /// The angle of its countersink is unknown.
     Angle(Option<u32>),
+    /// It may be a comb mill, whose teeth are as long as its thread.
+    ThreadLength(Option<u32>),
     /// It only widens or threads a hole, and the program doesn't drill that.
     Undrilled(Option<u32>),
 }
@@ -242,8 +244,8 @@ impl Judgement<'_> {
             )),
             None => finding.help("add its pass, or correct the tool, the tool table or the reference"),
         };
-        let is_stuck = |cut: &&Cut<'_>| cut.is_tap() && !cut.pass.cut.is_tapping;
-        let stuck = self.near.iter().find(is_stuck).filter(|_| feature.kind == FeatureKind::Tap);
+        let stuck =
+            self.near.iter().find(|cut| cut.is_stuck_tap()).filter(|_| feature.kind == FeatureKind::Tap);
         let finding = stuck.into_iter().fold(finding, |finding, tap| {
             finding.note(format!("the spindle does not reverse while {} is in the hole", tap.name()))
         });
@@ -301,7 +303,7 @@ impl Judgement<'_> {
             cut.tip
         );
         let finding = Diagnostic::new(&FEATURE_EXTRA, message).with_backtrace(cut.pass.backtrace.clone());
-        let is_edge_break = cut.kind == Some(ToolKind::SpotDrill) && !exceeds(excess, MAX_EDGE_BREAK);
+        let is_edge_break = cut.kind == Some(ToolKind::SpotDrill) && !exceeds(excess, self.max_edge_break());
         let severity = if is_edge_break { Severity::Warning } else { Severity::Error };
         let finding = match cut.point {
             PointShape::Unknown => {
@@ -311,6 +313,15 @@ impl Judgement<'_> {
         };
         let finding = finding.with_severity(severity);
         self.findings.push(finding.help("remove the pass, or add its feature to the hole in the reference"));
+    }
+
+    /// Returns the width by which a spot drill may break the edge of the hole, mm in diameter: that of a countersink is its
+    /// tolerance.
+    fn max_edge_break(&self) -> f64 {
+        let cones = self.nominal.features.iter().filter(|feature| feature.kind == FeatureKind::Countersink);
+        let slack = self.comparison.tolerances.depth;
+        let widths = cones.filter_map(|cone| Some(2.0 * slack * Deg(cone.angle? / 2.0).tan()));
+        widths.fold(MAX_EDGE_BREAK, f64::min)
     }
 
     /// Reports a cut that makes no feature and goes deeper than `bottom`, the deepest tip that makes one.
@@ -342,28 +353,39 @@ impl Judgement<'_> {
             let off = cut.pass.diameter.zip(diameter).map(|(own, nominal)| (own - nominal).abs());
             off.is_some_and(|off| !exceeds(off, tolerances.diameter))
         };
-        let (cut, missed) = if let Some(tap) = deepest(self.near.iter().filter(|cut| cut.is_tap())) {
+        let (cut, missed) = if let Some(tap) = deepest(self.near.iter().filter(|cut| cut.is_thread())) {
             (tap, depth - tap.tip)
         } else if let Some(sized) = deepest(self.near.iter().filter(is_sized)) {
             let is_known = self.near.iter().all(|cut| cut.pass.diameter.is_some() || cut.tip <= sized.tip);
             if !is_known {
                 return;
             }
-            let full = match sized.is_circle() {
-                true => cylinder_depth(&self.near, depth, tolerances.depth),
-                false => depth - POINT_LENGTH * diameter.unwrap_or(0.0),
+            let own = sized.pass.diameter.unwrap_or(0.0);
+            let missed = match (sized.is_circle(), sized.point) {
+                (true, _) => depth - sized.full_depth(own).unwrap_or(sized.tip),
+                // A drill leaves its cone.
+                (false, PointShape::Unknown) if sized.kind == Some(ToolKind::Drill) => depth - sized.tip,
+                (false, point) => {
+                    let cone = POINT_LENGTH * own - point.length(own).unwrap_or(0.0);
+                    depth - sized.tip - cone.max(0.0)
+                }
             };
-            (sized, full - sized.full_depth(0.0).filter(|_| sized.is_circle()).unwrap_or(sized.tip))
+            if sized.point == PointShape::Unknown
+                && sized.kind.is_none()
+                && exceeds(depth - sized.tip, tolerances.depth)
+            {
+                self.gaps.push(ShapeGap::FullDepth(sized.pass.tool));
+            }
+            (sized, missed)
         } else if let Some(widest) = widest_circle(&self.near, tolerances).filter(|_| diameter.is_some()) {
-            let full = cylinder_depth(&self.near, depth, tolerances.depth);
-            (widest, full - widest.tip)
+            (widest, depth - widest.tip)
         } else {
             return;
         };
         if !exceeds(missed, tolerances.depth) {
             return;
         }
-        let verb = if cut.is_tap() { "taps" } else { "finishes" };
+        let verb = if cut.is_thread() { "taps" } else { "finishes" };
         let message = format!("hole {}: {} {verb} {:.3} mm of {depth} mm", self.id, cut.name(), cut.tip);
         let finding = Diagnostic::new(&FEATURE_DEPTH, message)
             .note("the reference gives the hole one diameter all the way down")
@@ -422,7 +444,8 @@ impl Judgement<'_> {
         };
         let sides = [reach(&self.near), reach(&self.far)];
         self.gaps.extend(gaps);
-        let thickness = surface.map_or(0.0, |surface| through::thickness(&surface, self.nominal));
+        let thickness =
+            surface.map_or(0.0, |surface| through::rim_thickness(&surface, self.nominal, diameter / 2.0));
         let depth = thickness.max(self.nominal.depth);
         let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
         let Some((_, place)) = sides.into_iter().flatten().next() else {

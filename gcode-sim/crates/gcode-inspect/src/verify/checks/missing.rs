@@ -24,7 +24,19 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                     .help("if that hole is the intended one, correct its position; otherwise add the missing hole")
                     .with_backtrace(extra[near].backtrace.clone())
             }
-            None => finding.help("add the hole to the program"),
+            None => match comparison.in_air.iter().map(|index| &comparison.actual[*index]).next() {
+                Some(stroke) => {
+                    let at = stroke.bottom();
+                    finding
+                        .note(format!(
+                            "a feed to x {:.3} y {:.3} z {:.3} on the part ends beside it and cuts nothing",
+                            at.x, at.y, at.z
+                        ))
+                        .help("if that feed is for the hole, correct its position; otherwise add the hole")
+                        .with_backtrace(stroke.backtrace.clone())
+                }
+                None => finding.help("add the hole to the program"),
+            },
         };
         findings.add(Subject::Nominal(*nominal), finding);
     }

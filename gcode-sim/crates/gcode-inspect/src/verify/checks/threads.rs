@@ -2,7 +2,8 @@
 //! give the pitch, and the spindle the hand.
 use super::features::{Judgement, ShapeGap};
 use super::*;
-use crate::findings::{TAP_DRILL, TAP_HAND, TAP_PITCH};
+use crate::findings::{FEATURE_DEPTH, TAP_DRILL, TAP_HAND, TAP_PITCH};
+use crate::holes::Helix;
 use crate::machine::PointShape;
 use crate::verify::hole_cuts::{Cut, assign};
 use crate::verify::outline::{CutShape, Outline};
@@ -12,10 +13,16 @@ use gcode_part::{Feature, FeatureKind, Hand, NOISE, POINT_LENGTH};
 /// Largest relative deviation of the pitch: rounding of F.
 const PITCH_TOLERANCE: f64 = 0.005;
 
+/// Largest deviation of a milled turn from the pitch, mm.
+const LEAD_TOLERANCE: f64 = 1e-3;
+
+/// Turns that a comb mill makes at most: one, and its lead-in and lead-out.
+const MAX_COMB_TURNS: f64 = 2.0;
+
 /// Adds the findings on the threads of a hole.
 pub(super) fn judge(judged: &mut Judgement<'_>) {
     let (nominal, id) = (judged.nominal, judged.id);
-    if !judged.near.iter().any(Cut::is_tap) {
+    if !judged.near.iter().any(Cut::is_thread) {
         return;
     }
     let slack = judged.comparison.tolerances.depth;
@@ -34,6 +41,13 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     for (feature, cut) in nominal.features.iter().zip(made_by).filter(|(one, _)| one.kind == FeatureKind::Tap)
     {
         let Some(cut) = cut.map(|cut| &judged.near[cut]) else { continue };
+        if let Some(helix) = cut.thread {
+            match milled_length(id, cut, &helix) {
+                Some(MilledLength::Fault(finding)) => findings.push(finding),
+                Some(MilledLength::Comb) => judged.gaps.push(ShapeGap::ThreadLength(cut.pass.tool)),
+                None => {}
+            }
+        }
         findings.extend(pitch(id, feature, cut));
         findings.extend(hand(id, feature, cut));
     }
@@ -43,9 +57,9 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
 /// Returns the drills whose unknown points decide whether they are deep enough for a thread: their tips are deeper than the tap,
 /// and with points of 118° their full diameters are not.
 fn open_depths(cuts: &[Cut<'_>]) -> Vec<ShapeGap> {
-    let taps = cuts.iter().filter(|cut| cut.is_tap()).map(|cut| cut.tip);
+    let taps = cuts.iter().filter(|cut| cut.is_thread()).map(|cut| cut.tip);
     let Some(thread) = taps.reduce(f64::max) else { return Vec::new() };
-    let drills = || cuts.iter().filter(|cut| !cut.is_tap());
+    let drills = || cuts.iter().filter(|cut| !cut.is_thread());
     let full = |cut: &Cut<'_>| {
         let diameter = cut.pass.diameter.unwrap_or(0.0);
         cut.full_depth(diameter).unwrap_or(cut.tip - POINT_LENGTH * diameter)
@@ -67,7 +81,7 @@ enum WideCut {
 /// Judges a cut that is wider than the hole that the reference has for a thread. Without one the limit is the thread's diameter
 /// less half its pitch, the hole for a forming tap.
 fn wide_cut(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<WideCut> {
-    let diameter = cut.pass.diameter.filter(|_| !cut.is_tap())?;
+    let diameter = cut.pass.diameter.filter(|_| !cut.is_thread())?;
     let (core, bottom) = core(judged)?;
     let excess = |full: f64| {
         let (radius, tip) = (diameter / 2.0, full.min(bottom));
@@ -97,43 +111,36 @@ fn wide_cut(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<WideCut> {
 fn core(judged: &Judgement<'_>) -> Option<(Outline, f64)> {
     let Judgement { nominal, comparison, near, .. } = judged;
     let slack = comparison.tolerances.depth;
-    let narrowest = |diameter: f64, pitch: f64, bottom: f64| Feature {
-        depth: Some(bottom),
-        diameter: diameter - pitch / 2.0,
-        ..Feature::of(FeatureKind::Bore)
-    };
-    let (threads, mut features): (Vec<Feature>, Vec<Feature>) =
-        nominal.features.iter().partition(|feature| feature.kind == FeatureKind::Tap);
-    let threads: Vec<(f64, f64, f64)> = match threads[..] {
+    let stated = stated_threads(nominal);
+    let threads = match stated[..] {
         [] => {
             let size = |cut: &Cut<'_>| {
                 let pitch = cut.pass.cut.feed.map_or(0.0, |feed| feed.0 / cut.pass.cut.speed.0);
                 Some((cut.pass.diameter?, pitch, cut.tip))
             };
-            near.iter().filter(|cut| cut.is_tap()).filter_map(size).collect()
+            near.iter().filter(|cut| cut.is_thread()).filter_map(size).collect()
         }
-        _ => threads.iter().map(|one| (one.diameter, one.pitch.unwrap_or(0.0), one.bottom())).collect(),
+        _ => stated,
     };
     let deepest = threads.iter().map(|(.., bottom)| *bottom).reduce(f64::max)?;
-    for (diameter, pitch, bottom) in threads {
-        let is_core = |feature: &Feature| {
-            let is_cylinder = feature.kind != FeatureKind::Countersink;
-            is_cylinder && feature.diameter < diameter && !exceeds(bottom - feature.bottom(), slack)
-        };
-        if !features.iter().any(is_core) {
-            features.push(narrowest(diameter, pitch, bottom));
-        }
-    }
-    let hole = Hole { features, ..(*nominal).clone() };
-    Some((Outline::of(&hole, slack)?, deepest))
+    Some((Outline::of_core(nominal, &threads, slack)?, deepest))
+}
+
+/// Returns diameter, pitch and bottom of the threads that the reference has in a hole.
+pub(super) fn stated_threads(nominal: &Hole) -> Vec<(f64, f64, f64)> {
+    let threads = nominal.features.iter().filter(|feature| feature.kind == FeatureKind::Tap);
+    threads.map(|one| (one.diameter, one.pitch.unwrap_or(0.0), one.bottom())).collect()
 }
 
 /// Reports a thread that the spindle cuts with the wrong hand.
 fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
-    let (own, code) = match cut.pass.cut.direction {
-        SpindleDirection::Clockwise => (Hand::Right, "G74"),
-        SpindleDirection::Counterclockwise => (Hand::Left, "G84"),
-        SpindleDirection::Off => return None,
+    let (own, remedy) = match (cut.thread, cut.pass.cut.direction) {
+        (Some(Helix { lead, .. }), _) => {
+            (if lead < 0.0 { Hand::Left } else { Hand::Right }, "mill it in the other sense")
+        }
+        (None, SpindleDirection::Clockwise) => (Hand::Right, "tap with G74"),
+        (None, SpindleDirection::Counterclockwise) => (Hand::Left, "tap with G84"),
+        (None, SpindleDirection::Off) => return None,
     };
     if own == feature.hand {
         return None;
@@ -142,23 +149,26 @@ fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     let message =
         format!("hole {id}: {} cuts a {} thread, nominal {}", cut.name(), name(own), name(feature.hand));
     let finding = Diagnostic::new(&TAP_HAND, message).with_backtrace(cut.pass.backtrace.clone());
-    Some(finding.help(format!("tap with {code}, or correct the hand of the thread in the reference")))
+    Some(finding.help(format!("{remedy}, or correct the hand of the thread in the reference")))
 }
 
 /// Reports a thread that ends no higher than what is drilled before it. A thread in a hole that the program doesn't drill is
 /// left open.
 fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize, slack: f64) -> Option<Diagnostic> {
-    let tap = cuts.get(index).filter(|cut| cut.is_tap())?;
-    cuts.iter().find(|cut| !cut.is_tap())?;
+    let tap = cuts.get(index).filter(|cut| cut.is_thread())?;
+    cuts.iter().find(|cut| !cut.is_thread())?;
     let depth = |cut: &Cut<'_>| cut.full_depth(nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip);
-    let before = cuts[..index].iter().filter(|cut| !cut.is_tap()).map(depth);
+    let before = cuts[..index].iter().filter(|cut| !cut.is_thread()).map(depth);
     let drilled = before.fold(0.0, f64::max);
     let is_open = nominal.through && !exceeds(nominal.depth - drilled, slack);
-    if is_open || tap.tip + NOISE < drilled {
+    // A mill needs no room below the thread.
+    let room = if tap.thread.is_some() { -NOISE } else { NOISE };
+    if is_open || tap.tip + room < drilled {
         return None;
     }
+    let verb = if tap.thread.is_some() { "mills a thread" } else { "taps" };
     let message = format!(
-        "hole {id}: {} taps {:.3} mm deep where {drilled:.3} mm are drilled before it",
+        "hole {id}: {} {verb} {:.3} mm deep where {drilled:.3} mm are drilled before it",
         tap.name(),
         tap.tip
     );
@@ -171,6 +181,9 @@ fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize, slack
 /// Reports a thread whose feed per revolution is not the pitch.
 fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     let nominal = feature.pitch?;
+    if let Some(helix) = cut.thread {
+        return milled_pitch(id, nominal, cut, &helix);
+    }
     let (feed, speed) = (cut.pass.cut.feed?.0, cut.pass.cut.speed.0);
     let actual = feed / speed;
     if !exceeds((actual - nominal).abs(), PITCH_TOLERANCE * nominal) {
@@ -186,4 +199,42 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
         "command a feed of {} mm/min at S{speed}, or correct the pitch",
         cutting::round_thousandth(nominal * speed)
     )))
+}
+
+/// Reports a milled thread whose turns are not as high as its pitch.
+fn milled_pitch(id: &str, nominal: f64, cut: &Cut<'_>, helix: &Helix) -> Option<Diagnostic> {
+    let lead = helix.lead.abs();
+    if !exceeds((lead - nominal).abs(), LEAD_TOLERANCE) {
+        return None;
+    }
+    let message = format!(
+        "hole {id}: {} goes {lead:.4} mm along the axis in a turn, the pitch is {nominal}",
+        cut.name()
+    );
+    let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
+    Some(finding.help(format!("command a turn of {nominal} mm, or correct the pitch")))
+}
+
+/// Judgement of a milled thread that begins below the entry.
+enum MilledLength {
+    Fault(Diagnostic),
+    /// In one turn a comb mill cuts more than the turn.
+    Comb,
+}
+
+/// Judges the upper end of a milled thread, which is at the entry or less than a turn below it.
+fn milled_length(id: &str, cut: &Cut<'_>, helix: &Helix) -> Option<MilledLength> {
+    let (top, lead) = (cut.tip - helix.height, helix.lead.abs());
+    if top < lead - LEAD_TOLERANCE {
+        return None;
+    }
+    if helix.height < MAX_COMB_TURNS * lead {
+        return Some(MilledLength::Comb);
+    }
+    let message = format!(
+        "hole {id}: {} mills the thread from {top:.3} mm below the entry on, limit {lead:.3}, a turn",
+        cut.name()
+    );
+    let finding = Diagnostic::new(&FEATURE_DEPTH, message).with_backtrace(cut.pass.backtrace.clone());
+    Some(MilledLength::Fault(finding.help("mill up to the entry")))
 }

@@ -2,9 +2,13 @@
 //! The part may be thinner than its surface shows, a shell or cut off: no finding is no proof.
 use super::*;
 use crate::findings::HOLE_THROUGH;
+use crate::holes::directions_across;
 use crate::verify::bottom;
 use crate::verify::hole_cuts::Cut;
 use gcode_part::POINT_LENGTH;
+
+/// Number of points on the wall of a hole.
+const RIM_POINTS: u8 = 16;
 
 /// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
@@ -52,6 +56,20 @@ pub(super) fn thickness(surface: &Surface, hole: &Hole) -> f64 {
     surface.exit(&entry, &into).map_or(0.0, |far| (far - entry).dot(&into).max(0.0))
 }
 
+/// Returns the largest distance from the entry plane along the axis to the far side, on the axis and at the wall of a hole.
+pub(super) fn rim_thickness(surface: &Surface, hole: &Hole, radius: f64) -> f64 {
+    let out = Unit::new_normalize(Vector3::from(hole.axis));
+    let (entry, into) = (Point3::from(hole.entry), -out);
+    let middle = entry + into.into_inner() * (hole.depth / 2.0);
+    let [u, v] = directions_across(&out);
+    let offset = |step: u8| {
+        let angle = Deg(360.0 / f64::from(RIM_POINTS) * f64::from(step));
+        (u * angle.cos() + v * angle.sin()) * radius
+    };
+    let far = (0..RIM_POINTS).filter_map(|step| surface.exit(&(middle + offset(step)), &into));
+    far.map(|far| (far - entry).dot(&into)).fold(thickness(surface, hole), f64::max)
+}
+
 /// Returns how far the full diameter of a cut passes the far side of a hole of this thickness, mm. A tool whose end is unknown
 /// counts as a drill of 118°.
 pub(super) fn break_through(cut: &Cut<'_>, nominal: &Hole, thickness: f64) -> f64 {
@@ -81,6 +99,16 @@ mod tests {
             assert!((normal - 24.580).abs() < 1e-3, "{normal}");
         }
         assert!((thick(surface, [0.0, 12.0, 0.0], [0.0, 1.0, 0.0]) - 24.0).abs() < 1e-9);
+    }
+
+    /// Parallel to z at x 15 of a cylinder of 25 about y: the far side is at −20, at the inner wall, x 11, at −22.450.
+    #[test]
+    fn a_hole_beside_the_middle_is_longer_at_its_inner_wall() {
+        let cylinder = Surface::Cylinder { radius: 25.0 };
+        let hole = Hole { entry: [15.0, 0.0, 20.0], axis: [0.0, 0.0, 1.0], depth: 40.0, ..Hole::default() };
+        assert!((thickness(&cylinder, &hole) - 40.0).abs() < 1e-9);
+        let thick = rim_thickness(&cylinder, &hole, 4.0);
+        assert!((thick - (20.0 + 504f64.sqrt())).abs() < 1e-9, "{thick}");
     }
 
     #[test]

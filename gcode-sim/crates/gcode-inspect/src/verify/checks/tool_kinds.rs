@@ -31,10 +31,10 @@ pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool) {
     for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
         for (index, cut) in cuts.iter().enumerate() {
             findings.extend(sideways(judged.id, cut));
-            if !(needs_hole(cut.kind) || cut.is_tap()) || cut.is_circle() {
+            if !(needs_hole(cut.kind) || cut.is_thread()) || cut.is_circle() {
                 continue;
             }
-            let makes_hole = |other: &Cut<'_>| !needs_hole(other.kind) && !other.is_tap();
+            let makes_hole = |other: &Cut<'_>| !needs_hole(other.kind) && !other.is_thread();
             if !cuts.iter().chain(others).any(makes_hole) {
                 // A tool of unknown kind may as well be a drill.
                 match cut.kind.filter(|_| is_solid) {

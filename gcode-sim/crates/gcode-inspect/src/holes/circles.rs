@@ -1,0 +1,205 @@
+//! Circles of an engagement that make one hole, and how far the path leads beyond them.
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::HoleExtractor;
+use super::arc_run::{PartArc, Ring};
+use super::milled::{Engagement, MIN_AXIS_COSINE};
+use super::strokes::LEVEL_TOLERANCE;
+use super::tool_lines::rim;
+
+/// Excess of a path over its circle that is rounding, mm.
+const EXCESS_SLACK: f64 = 0.02;
+
+/// Circles of one hole.
+#[derive(Clone, Debug)]
+pub(super) struct HoleCircles {
+    /// The widest circle down to each depth, the deepest first.
+    pub rings: Vec<Ring>,
+    /// The widest circle.
+    pub widest: Ring,
+    /// False for a circle that may as well be a groove in a face.
+    pub is_certain: bool,
+    /// Where the path leads farthest beyond the circles.
+    pub excess: Option<PathExcess>,
+}
+
+/// Place at which a path leads beyond its circle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathExcess {
+    /// Position of the tip.
+    pub tip: Point3<f64>,
+    /// Direction away from the axis.
+    pub outwards: Vector3<f64>,
+    /// Distance beyond the circle, mm.
+    pub depth: f64,
+}
+
+impl HoleCircles {
+    /// Returns true if the whole path stays inside the widest circle.
+    pub(super) fn is_whole(&self) -> bool {
+        self.excess.is_none_or(|excess| excess.depth <= EXCESS_SLACK + self.widest.roundness)
+    }
+}
+
+impl Engagement {
+    /// Returns the circles of one hole among some rings; `None` without a ring, and if their axes differ in direction. A
+    /// narrower circle that is no deeper decides nothing, wherever it is.
+    pub(super) fn circles(&self, rings: &[&Ring], cutter: Option<f64>) -> Option<HoleCircles> {
+        let widest =
+            *rings.iter().reduce(|best, ring| if best.radius < ring.radius { ring } else { best })?;
+        let out = widest.out;
+        if rings.iter().any(|ring| ring.out.dot(&out) <= MIN_AXIS_COSINE) {
+            return None;
+        }
+        let mut order = rings.to_vec();
+        order.sort_by(|a, b| a.level().total_cmp(&b.level()).then(b.radius.total_cmp(&a.radius)));
+        let mut kept: Vec<Ring> = Vec::new();
+        for ring in order {
+            if kept.iter().all(|deeper| deeper.radius < ring.radius - 0.01) {
+                kept.push(ring.clone());
+            }
+        }
+        let top = rings.iter().map(|ring| ring.top).fold(f64::NEG_INFINITY, f64::max) + LEVEL_TOLERANCE;
+        let below: Vec<&Point3<f64>> = self.points.iter().filter(|p| p.coords.dot(&out) <= top).collect();
+        let nearest = below.iter().map(|p| distance(p, &widest.centre, &out)).fold(widest.radius, f64::min);
+        let is_inside = nearest <= widest.radius / 2.0;
+        // A circle that leaves a core may be a groove.
+        let slack = EXCESS_SLACK + widest.roundness;
+        let reaches_axis = cutter.is_some_and(|cutter| widest.radius <= cutter / 2.0 + slack);
+        let is_helix = cutter.is_none() && rings.iter().any(|ring| ring.is_helix());
+        let excess = self.excess(&widest.centre, &out, widest.radius, top);
+        let is_certain = is_inside || reaches_axis || is_helix;
+        Some(HoleCircles { rings: kept, widest: widest.clone(), is_certain, excess })
+    }
+
+    /// Returns where the path leads farthest beyond a circle, below a height along its axis.
+    pub(super) fn excess(
+        &self,
+        centre: &Point3<f64>,
+        out: &Unit<Vector3<f64>>,
+        radius: f64,
+        top: f64,
+    ) -> Option<PathExcess> {
+        let ends = self.points.iter().copied();
+        let far = ends.chain(self.arcs.iter().filter_map(|arc| arc.farthest_from(centre)));
+        let beyond = far.filter(|tip| tip.coords.dot(out) <= top).map(|tip| {
+            let depth = distance(&tip, centre, out) - radius;
+            (tip, depth)
+        });
+        let (tip, depth) = beyond.reduce(|best, other| if best.1 < other.1 { other } else { best })?;
+        let spoke = tip - centre;
+        let outwards = Unit::try_new(spoke - out.into_inner() * spoke.dot(out), 1e-9)?.into_inner();
+        (0.0 < depth).then_some(PathExcess { tip, outwards, depth })
+    }
+}
+
+impl HoleExtractor<'_> {
+    /// Returns the circles of each hole that the engagement mills. A path that leads beyond its circles mills something larger
+    /// than a hole, unless nominal holes are at them.
+    pub(super) fn hole_circles(&self) -> Vec<HoleCircles> {
+        let engagement = &self.engagement;
+        let cutter = self.machine.diameter_of(self.setup.tool);
+        if engagement.rings.is_empty() || engagement.is_full() {
+            return Vec::new();
+        }
+        let all: Vec<&Ring> = engagement.rings.iter().collect();
+        let is_along_tool =
+            |ring: &&Ring| self.pose.axis.as_ref().is_none_or(|axis| MIN_AXIS_COSINE <= axis.dot(&ring.out));
+        if !all.iter().all(is_along_tool) {
+            return Vec::new();
+        }
+        let (threads, rings): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|ring| ring.helix.is_some_and(|helix| helix.is_thread));
+        let mut holes = self.bored_holes(rings, cutter);
+        // A turn along a thread cuts no hole.
+        let is_thread = |ring: &&Ring| {
+            let hole = self.strokes.nominal_of_ring(ring, true);
+            hole.is_some_and(|axis| axis.is_threaded) && self.is_at_nominal_wall(ring, cutter)
+        };
+        let threads = threads.into_iter().filter(is_thread);
+        holes.retain(|circles| !self.is_in_pocket(&circles.widest, cutter));
+        holes.extend(threads.filter_map(|ring| engagement.circles(&[ring], cutter)));
+        holes
+    }
+
+    /// Returns the circles of each hole among rings that follow no thread.
+    fn bored_holes(&self, rings: Vec<&Ring>, cutter: Option<f64>) -> Vec<HoleCircles> {
+        let engagement = &self.engagement;
+        if let Some(circles) = engagement.circles(&rings, cutter).filter(HoleCircles::is_whole) {
+            let is_hole = circles.is_certain || self.is_at_nominal_wall(&circles.widest, cutter);
+            return if is_hole { vec![circles] } else { Vec::new() };
+        }
+        let mut by_hole: Vec<(Point3<f64>, Vec<&Ring>)> = Vec::new();
+        for ring in rings {
+            let Some(axis) = self.strokes.nominal_of_ring(ring, true) else { continue };
+            match by_hole.iter_mut().find(|(entry, _)| *entry == axis.entry) {
+                Some((_, rings)) => rings.push(ring),
+                None => by_hole.push((axis.entry, vec![ring])),
+            }
+        }
+        let holes = by_hole.iter().filter_map(|(_, rings)| engagement.circles(rings, cutter));
+        holes.filter(|circles| self.is_at_nominal_wall(&circles.widest, cutter)).collect()
+    }
+
+    /// Returns true if a circle is at no nominal hole, and all metal that it removes is in a pocket.
+    fn is_in_pocket(&self, ring: &Ring, cutter: Option<f64>) -> bool {
+        if self.strokes.nominal_of_ring(ring, true).is_some() {
+            return false;
+        }
+        let up = ring.out.into_inner() * self.metal.removed.height_of_metal(&ring.centre, &ring.out);
+        let offsets = rim(&ring.out, &up, ring.radius + cutter.unwrap_or(0.0) / 2.0);
+        let feet = offsets.into_iter().chain([Vector3::zeros()]).map(|offset| ring.centre + offset);
+        feet.into_iter().all(|foot| self.metal.is_in_pocket(&[foot, foot + up]))
+    }
+
+    /// Returns true if a circle is at a nominal hole and cuts its wall; round it the circle mills something else.
+    fn is_at_nominal_wall(&self, ring: &Ring, cutter: Option<f64>) -> bool {
+        self.strokes.nominal_of_ring(ring, false).is_some_and(|axis| {
+            let gap = axis.radius.zip(cutter).map(|(radius, cutter)| ring.radius - cutter / 2.0 - radius);
+            gap.is_none_or(|gap| gap < 0.0)
+        })
+    }
+}
+
+impl PartArc {
+    /// Returns the point of the arc's inside that is farthest from the axis through a point; `None` if an end is.
+    fn farthest_from(&self, axis: &Point3<f64>) -> Option<Point3<f64>> {
+        let across = |v: Vector3<f64>| v - self.out.into_inner() * v.dot(&self.out);
+        let (away, spoke) = (across(self.centre - axis), across(self.from - self.centre));
+        let turn = gcode_lang::units::Deg::atan2(spoke.cross(&away).dot(&self.out), spoke.dot(&away)).0;
+        let along = if self.sweep.0 < 0.0 { -turn } else { turn }.rem_euclid(360.0);
+        (1e-9 < away.norm() && along < self.sweep.0.abs()).then(|| self.point(along / self.sweep.0.abs()))
+    }
+}
+
+/// Returns the distance of a point from an axis.
+fn distance(p: &Point3<f64>, centre: &Point3<f64>, out: &Unit<Vector3<f64>>) -> f64 {
+    let spoke = p - centre;
+    (spoke - out.into_inner() * spoke.dot(out)).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_lang::units::Deg;
+
+    /// A half circle of 4 about (3, 0), from (7, 0) over (3, 4) to (-1, 0). From the origin 7 is farthest, at its start; from
+    /// (3, -1) it is (3, 4), 5 away.
+    #[test]
+    fn the_farthest_point_of_an_arc_is_its_inside_or_an_end() {
+        let half = PartArc {
+            centre: Point3::new(3.0, 0.0, 0.0),
+            out: Vector3::z_axis(),
+            from: Point3::new(7.0, 0.0, 0.0),
+            to: Point3::new(-1.0, 0.0, 0.0),
+            sweep: Deg(180.0),
+            is_chord: false,
+        };
+        let far = |arc: &PartArc, y: f64| arc.farthest_from(&Point3::new(3.0, y, 0.0));
+        assert!((far(&half, -1.0).unwrap() - Point3::new(3.0, 4.0, 0.0)).norm() < 1e-12);
+        assert_eq!(far(&half, 1.0), None, "the lower half is no part of it");
+        assert_eq!(far(&half, 0.0), None, "all points are as far");
+        let clockwise = PartArc { sweep: Deg(-180.0), ..half };
+        assert!((far(&clockwise, 1.0).unwrap() - Point3::new(3.0, -4.0, 0.0)).norm() < 1e-12);
+    }
+}
