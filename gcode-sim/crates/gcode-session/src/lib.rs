@@ -24,6 +24,7 @@
 mod assumptions;
 mod causes;
 mod outside_text;
+mod second_start;
 mod trace;
 
 use std::collections::BTreeMap;
@@ -173,10 +174,22 @@ pub fn run_observed<S: EventSink>(
 
 /// Returns a control with these programs, set up as the request states.
 fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionError> {
+    set_up_control_behind(request, memory, None)
+}
+
+/// Returns a control set up like [`set_up_control`], with the offsets that the run before has left.
+fn set_up_control_behind(
+    request: &Request,
+    memory: Memory,
+    left: Option<&Control>,
+) -> Result<Control, SessionError> {
     let mut control = Control::new(memory, request.settings.clone());
     let presets = presets(&request.machine, &request.settings);
     for (number, value) in presets.chain(request.variables.iter().copied()) {
         control.set_variable(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
+    }
+    if let Some(left) = left {
+        control.take_offsets(left);
     }
     for (axis, position) in &request.machine.start {
         control.set_start(*axis, *position);
@@ -327,6 +340,7 @@ pub fn simulate_observed<S: EventSink>(
     let mut extractor = extractor(request, metal.clone());
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
+    extracted.findings.extend(second_start::finding(request, &run, &metal, &extracted));
     extracted.findings.extend(run.findings());
     Ok(Simulation { run, extracted, metal })
 }
