@@ -46,6 +46,22 @@ pub fn additional_system_name(dialect: Dialect, number: usize) -> String {
 }
 
 impl Control {
+    /// Takes over the offsets that another run has left: tables, and the shift of G92. The end of a program cancels G52.
+    pub fn take_offsets(&mut self, left: &Self) {
+        let (own, left) = (&mut self.executor.registers, &left.executor.registers);
+        own.data.offsets.clone_from(&left.data.offsets);
+        own.data.set_offsets.clone_from(&left.data.set_offsets);
+        own.state.g92_shift = left.state.g92_shift;
+        own.state.unknown_g92_shift = left.state.unknown_g92_shift;
+        own.update_after_offset_change();
+    }
+
+    /// Returns true if [`Self::take_offsets`] would change nothing but which offsets count as set.
+    pub fn has_offsets_of(&self, left: &Self) -> bool {
+        let (own, left) = (&self.executor.registers, &left.executor.registers);
+        own.data.offsets == left.data.offsets && own.state.g92_shift == left.state.g92_shift
+    }
+
     /// Returns all values that aren't vacant or 0, and all modes.
     pub fn residual_values(&self) -> Vec<ResidualValue> {
         let registers = &self.executor.registers;

@@ -24,6 +24,7 @@
 mod assumptions;
 mod causes;
 mod outside_text;
+mod second_start;
 mod trace;
 
 use std::collections::BTreeMap;
@@ -216,6 +217,15 @@ fn no_such_program(request: &Request, memory: &Memory, path: &ProgramPath) -> Se
 
 /// Returns a control with these programs, set up as the request states.
 fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionError> {
+    set_up_control_behind(request, memory, None)
+}
+
+/// Returns a control set up like [`set_up_control`], with the offsets that the run before has left.
+fn set_up_control_behind(
+    request: &Request,
+    memory: Memory,
+    left: Option<&Control>,
+) -> Result<Control, SessionError> {
     let mut control = Control::new(memory, request.settings.clone());
     let presets = presets(&request.machine, &request.settings);
     let refused = |number| move |alarm| SessionError::Variable { number, alarm };
@@ -224,6 +234,9 @@ fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionE
     }
     for (number, value) in request.variables.iter().copied() {
         control.set_variable(number, value).map_err(refused(number))?;
+    }
+    if let Some(left) = left {
+        control.take_offsets(left);
     }
     for (axis, position) in &request.machine.start {
         control.set_start(*axis, *position);
@@ -374,6 +387,7 @@ pub fn simulate_observed<S: EventSink>(
     let mut extractor = extractor(request, metal.clone());
     let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
     let mut extracted = extractor.finish();
+    extracted.findings.extend(second_start::finding(request, &run, &metal, &extracted));
     extracted.findings.extend(run.findings());
     Ok(Simulation { run, extracted, metal })
 }
