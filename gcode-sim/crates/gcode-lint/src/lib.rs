@@ -27,6 +27,7 @@ mod first_reach;
 mod literal;
 mod modes;
 mod parameters;
+mod possible_modes;
 mod prelude;
 mod rule;
 pub mod rules;
