@@ -17,7 +17,7 @@ use gcode_lang::syntax::ast;
 use super::ControlKnowledge;
 use super::calls::{self, CallSite};
 use super::control_flow::ControlFlowGraph;
-use super::modes::{self, PossibleModes};
+use super::possible_modes::PossibleModes;
 
 const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
 
@@ -54,7 +54,8 @@ pub(crate) struct ProgramUnit<'a> {
     /// True if a path leads beyond the last block.
     pub reaches_end: bool,
     pub role: Role,
-    modes: OnceCell<Vec<Option<PossibleModes>>>,
+    /// Modes before each block, see `modes`.
+    pub modes: OnceCell<Vec<Option<PossibleModes>>>,
 }
 
 /// Way in which a program is entered.
@@ -173,11 +174,6 @@ impl<'a> CheckContext<'a> {
     pub(crate) fn called_unit(&self, call: &CallSite) -> Option<usize> {
         let id = call.target.find(self.memory, call.folder.as_ref())?;
         self.unit_indices.get(&id).copied()
-    }
-
-    /// Returns the possible modes before each block of a program; `None` for an unreachable block.
-    pub(crate) fn modes_before<'u>(&self, unit: &'u ProgramUnit<'_>) -> &'u [Option<PossibleModes>] {
-        unit.modes.get_or_init(|| modes::modes_before(self, unit))
     }
 
     /// Returns the row of a G code written as a number; `None` if this control lacks the code, or for another word.

@@ -29,6 +29,7 @@ mod literal;
 mod main_programs;
 mod modes;
 mod parameters;
+mod possible_modes;
 mod prelude;
 mod repetition;
 mod rule;

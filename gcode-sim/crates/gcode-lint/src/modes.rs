@@ -1,122 +1,24 @@
-//! Possible modes before each block: the feed, the motion mode and the canned cycle, carried along all paths.
+//! Possible modes before each block, carried along all paths.
 //!
 //! A mode is unknown where a setting of the control decides it (at power-on), a caller or a called program.
-use gcode_control::static_plan::ModesInForce;
 use gcode_lang::program::code_facts::AxisWords;
-use gcode_lang::program::cycles::{Cycle, DRILLING as DRILLING_CYCLE};
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
-use gcode_lang::program::modes::{Motion, Rotation, Scaling, StrokeCheck};
+use gcode_lang::program::modes::{Rotation, Scaling, StrokeCheck};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 
 use crate::context::has_feed_word;
+use crate::possible_modes::PossibleModes;
 use crate::prelude::*;
 
-/// A cycle that needs no word of its own.
-static DRILLING: Cycle = DRILLING_CYCLE;
-
-/// Possible modes before a block: each is true if it holds on some path to the block.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PossibleModes {
-    /// F is commanded.
-    has_feed: bool,
-    /// The motion mode is G00.
-    is_rapid: bool,
-    /// The motion mode is not an arc.
-    is_straight: bool,
-    /// No canned cycle is in force.
-    is_outside_cycle: bool,
-    /// A canned cycle is in force.
-    is_in_cycle: bool,
-    /// The cycle in force, if it is the same on all paths.
-    cycle: Option<&'static Cycle>,
-    /// The depth of a peck is commanded.
-    has_pecks: bool,
-    /// No earlier block lacks F. The first that does stops the control, and its F serves the blocks after it.
-    is_unreported: bool,
-}
-
-impl PossibleModes {
-    /// Modes at power-on; a setting of the control decides between G00 and G01.
-    const POWER_ON: Self = Self {
-        has_feed: false,
-        is_rapid: true,
-        is_straight: true,
-        is_outside_cycle: true,
-        is_in_cycle: false,
-        cycle: None,
-        has_pecks: false,
-        is_unreported: true,
-    };
-    const ANYTHING: Self = Self { has_feed: true, is_in_cycle: true, has_pecks: true, ..Self::POWER_ON };
-
-    fn join(self, other: Self) -> Self {
-        Self {
-            has_feed: self.has_feed | other.has_feed,
-            is_rapid: self.is_rapid | other.is_rapid,
-            is_straight: self.is_straight | other.is_straight,
-            is_outside_cycle: self.is_outside_cycle | other.is_outside_cycle,
-            is_in_cycle: self.is_in_cycle | other.is_in_cycle,
-            cycle: match (self.is_in_cycle, other.is_in_cycle) {
-                (true, true) => self.cycle.filter(|_| self.cycle == other.cycle),
-                (true, false) => self.cycle,
-                (false, _) => other.cycle,
-            },
-            has_pecks: self.has_pecks | other.has_pecks,
-            is_unreported: self.is_unreported | other.is_unreported,
-        }
-    }
-
-    fn with_unknown_motion(self) -> Self {
-        Self {
-            is_rapid: true,
-            is_straight: true,
-            is_outside_cycle: true,
-            is_in_cycle: true,
-            cycle: None,
-            has_pecks: true,
-            ..self
-        }
-    }
-
-    /// Returns the modes after a G code; a code of group 01 ends a cycle.
-    fn after_effect(self, effect: Effect) -> Self {
-        match effect {
-            Effect::Motion(motion) => Self {
-                is_rapid: motion == Motion::Rapid,
-                is_straight: !matches!(motion, Motion::Clockwise | Motion::Counterclockwise),
-                is_outside_cycle: true,
-                is_in_cycle: false,
-                cycle: None,
-                has_pecks: false,
-                ..self
-            },
-            Effect::Cycle(cycle) => Self {
-                is_outside_cycle: cycle.is_none(),
-                is_in_cycle: cycle.is_some(),
-                cycle,
-                has_pecks: cycle.is_some() && self.has_pecks,
-                ..self
-            },
-            _ => self,
-        }
-    }
-
-    /// Returns the modes in which a block can be read, the one that accepts most first.
-    pub(crate) fn in_force(self) -> impl Iterator<Item = ModesInForce> {
-        let motion = match (self.is_rapid, self.is_straight) {
-            (true, _) => Motion::Rapid,
-            (false, true) => Motion::Linear,
-            (false, false) => Motion::Clockwise,
-        };
-        let modes = ModesInForce { motion, cycle: None, has_pecks: self.has_pecks };
-        let in_cycle = ModesInForce { cycle: Some(self.cycle.unwrap_or(&DRILLING)), ..modes };
-        let cycle = self.is_in_cycle.then_some(in_cycle);
-        cycle.into_iter().chain(self.is_outside_cycle.then_some(modes))
-    }
-}
-
 /// Returns the possible modes before each block; `None` for an unreachable block.
-pub(super) fn modes_before(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<PossibleModes>> {
+pub(crate) fn modes_before<'u>(
+    context: &CheckContext<'_>,
+    unit: &'u ProgramUnit<'_>,
+) -> &'u [Option<PossibleModes>] {
+    unit.modes.get_or_init(|| propagated_modes(context, unit))
+}
+
+fn propagated_modes(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<PossibleModes>> {
     // Any block may precede the start of a call, also of one with Q.
     let first = if unit.role == Role::Main { PossibleModes::POWER_ON } else { PossibleModes::ANYTHING };
     let entries = std::iter::once(first).chain(std::iter::repeat(PossibleModes::ANYTHING));

@@ -13,8 +13,8 @@ use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
 use gcode_lint::{ControlKnowledge, check_loaded, main_programs, programs_called_by_others, rules};
 
-/// Rules about what a run does not show, or shows better: it finds the programs that it calls.
-const LEFT_OUT: [&str; 1] = ["missing-program"];
+/// Rules about what a run does not show, or shows better: it finds the programs that it calls, and alarms at their end.
+const LEFT_OUT: [&str; 2] = ["missing-program", "missing-end"];
 
 /// Returns what a check of the program's text finds: everything from a warning on if the verdict `fails`, otherwise numbers
 /// without a decimal point. The block of an alarm is left out: the alarm says more.

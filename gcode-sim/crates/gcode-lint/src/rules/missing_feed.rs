@@ -1,7 +1,7 @@
 //! Rule: a feed move or a canned cycle that no F precedes on any path: PS0011, and PS0025 for an arc.
 //!
 //! An unknown motion mode is no finding, see [`crate::modes`].
-use crate::modes::missing_feed_alarm;
+use crate::modes::{missing_feed_alarm, modes_before};
 use crate::prelude::*;
 
 pub(super) static RULE: Rule = Rule::new("missing-feed", Severity::Error, "a feed move before any F", find);
@@ -11,7 +11,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     if unit.role != Role::Main {
         return Vec::new();
     }
-    let before = context.modes_before(unit);
+    let before = modes_before(context, unit);
     let alarms = unit.reached_words().filter_map(|(block, words)| {
         let alarm = missing_feed_alarm(context, unit, block, words, &before[block]?)?;
         Some((block, alarm.located_at(unit.op(block).span)))

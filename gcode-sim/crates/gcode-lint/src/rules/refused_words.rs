@@ -7,6 +7,7 @@ use gcode_lang::program::modes::Motion;
 use gcode_lang::program::{Words, m_codes};
 
 use crate::literal;
+use crate::modes::modes_before;
 use crate::parameters;
 use crate::prelude::*;
 
@@ -26,7 +27,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         if calls_by_code || is_plain(context, words) {
             continue;
         }
-        let Some(modes) = context.modes_before(unit)[block] else { continue };
+        let Some(modes) = modes_before(context, unit)[block] else { continue };
         let alarm = planner.certain_alarm(words, unit.op(block).span, modes.in_force());
         if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node)) {
             let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);

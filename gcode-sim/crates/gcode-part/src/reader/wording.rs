@@ -42,7 +42,7 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         "i64" | "u32" => "a whole number",
         "a string" => "text in quotes",
         "a sequence" => "a list in brackets",
-        "a table" => "a table, { key = value },",
+        "a table" | "a map" => "a table, { key = value },",
         other => other,
     };
     let found = if found == "sequence" { "a list".to_owned() } else { found.replace('`', "") };
