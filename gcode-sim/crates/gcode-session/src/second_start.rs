@@ -1,5 +1,5 @@
 //! Second start of a program, with the offsets that its first run leaves.
-use super::{Request, Run, causes, extractor, set_up_control, set_up_control_behind};
+use super::{Request, Run, extractor, set_up_control, set_up_control_behind};
 use gcode_control::{Outcome, ResidualKind, ResidualValue};
 use gcode_inspect::findings::SECOND_START;
 use gcode_inspect::holes::{DrilledHole, HoleExtraction};
@@ -27,7 +27,7 @@ pub(super) fn finding(
     if start.has_offsets_of(&run.control) {
         return None;
     }
-    let mut control = set_up_control_behind(request, causes::reload(run), Some(&run.control)).ok()?;
+    let mut control = set_up_control_behind(request, run.control.memory().reload(), Some(&run.control)).ok()?;
     let mut extractor = extractor(request, metal.clone());
     let outcome = control.run_observed(request.limits, &mut NoLibrary, &mut extractor, &mut ());
     let again = extractor.finish().holes;

@@ -125,7 +125,7 @@ impl HoleExtractor<'_> {
         if is_judged && is_followed && !self.has_gouged(line) {
             return;
         }
-        self.spoilt_feeds += u32::from(is_judged);
+        self.gouge_count += u32::from(is_judged);
         let findings = if is_judged { &mut self.findings } else { &mut self.engagement.errors };
         findings.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
             let message =

@@ -68,8 +68,8 @@ impl Engagement {
     }
 
     /// Returns true if a feed has removed what has to stay, by the number of all such feeds.
-    pub(super) fn is_spoilt(&self, spoilt_feeds: u32) -> bool {
-        self.spoilt_before < spoilt_feeds
+    pub(super) fn is_spoilt(&self, gouge_count: u32) -> bool {
+        self.spoilt_before < gouge_count
     }
 
     /// Adds axes of unknown position during an arc.
@@ -215,7 +215,7 @@ impl HoleExtractor<'_> {
             self.findings.append(errors);
         }
         self.engagement.clear();
-        self.engagement.spoilt_before = self.spoilt_feeds;
+        self.engagement.spoilt_before = self.gouge_count;
     }
 
     /// Adds a stroke at a nominal hole without a retract: it makes the hole if nothing else does.

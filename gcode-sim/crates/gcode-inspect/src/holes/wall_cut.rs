@@ -50,7 +50,7 @@ impl HoleExtractor<'_> {
         backtrace: &Backtrace,
     ) {
         let PathExcess { tip, outwards, depth } = *excess;
-        if !exceeds(depth, MAX_WALL_CUT) || self.engagement.is_spoilt(self.spoilt_feeds) {
+        if !exceeds(depth, MAX_WALL_CUT) || self.engagement.is_spoilt(self.gouge_count) {
             return;
         }
         let radius = self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0);

@@ -172,10 +172,9 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
                 NotChecked::gap(what, format!("the program does not drill {holes}"))
             }
             ShapeGap::ThreadLength(tool) => {
-                format!(
-                    "the length of the thread of {holes}: {} goes round once, and a comb mill cuts a longer thread",
-                    tool_name(tool)
-                )
+                let what = format!("the length of the thread of {holes}");
+                let tool = tool_name(tool);
+                NotChecked::gap(what, format!("{tool} goes round once, and a comb mill cuts a longer thread"))
             }
             ShapeGap::FullThrough(tool) => {
                 no_angle(format!("the full diameter of {holes} on the far side"), tool)
