@@ -141,11 +141,11 @@ proptest! {
         let axis = machine.part_frame(&zero).rotation.inverse_transform_unit_vector(
             &Unit::new_normalize(euler * Vector3::z()),
         );
-        let offsets = ran.recorder.0.iter().filter_map(|(_, kind, _)| match kind {
+        let mut offsets = ran.recorder.0.iter().filter_map(|(_, kind, _)| match kind {
             EventKind::ToolLength { offset, .. } => Some(*offset),
             _ => None,
         });
-        let setup = Setup { offset: offsets.last().unwrap(), ..Setup::default() };
+        let setup = Setup { offset: offsets.next_back().unwrap(), ..Setup::default() };
         let moves: Vec<_> = ran.recorder.moves().map(|(_, at)| *at).collect();
         // The last four: to the point, down, back, and to the axis of the plane.
         let goals = [[x, y, z], [x, y, z - 20.0], [x, y, z], [0.0, 0.0, z]].map(|p| on_part(Vector3::from(p)));

@@ -308,7 +308,7 @@ turns = "y"
 letter = "B"
 turns = "q"
 sign = 1
-=> line 3: key 'table.turns' is 'q': one of x, y, z
+=> line 3: key 'table.turns' is 'q': one of x, y, z, or a vector [x, y, z] that is not all 0
 
 [[table]]
 letter = "B"
@@ -341,7 +341,17 @@ direction = [0, 1]
 [head]
 kind = "manual"
 direction = [0.0, 1.0, 0.0]
-=> line 3: key 'head.direction' is for kind fixed only
+=> line 3: key 'head.direction' is for kind fixed, axes only
+
+[[table]]
+letter = "B"
+turns = [0, 0, 0]
+sign = 1
+=> line 3: key 'table.turns' is [0.0, 0.0, 0.0]: one of x, y, z, or a vector [x, y, z] that is not all 0
+
+[head]
+kind = "axes"
+=> line 2: kind = "axes" needs the key 'head.axis'
 
 [offsets]
 G53 = { X = 1.0 }
