@@ -200,7 +200,8 @@ mod tests {
         for id in &programs {
             memory.lower_program(*id);
         }
-        rules::findings(&CheckContext::new(&memory, settings, &programs, rules::codes()))
+        let knowledge = crate::ControlKnowledge::Stated;
+        rules::findings(&CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes()))
     }
 
     fn left_out(text: &str) -> usize {

@@ -115,9 +115,9 @@ impl NominalAxes {
         let steps = || stack.iter().enumerate();
         let off = |step: &Step| (below(step) - step.depth).abs();
         let wide = steps().filter(|(_, step)| is_as_wide(step));
-        let entered = steps().filter(|(_, step)| SAME_LEVEL < below(step));
+        let mut entered = steps().filter(|(_, step)| SAME_LEVEL < below(step));
         let nearest = wide.min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
-        nearest.or(entered.last()).map_or(0, |(index, _)| index)
+        nearest.or(entered.next_back()).map_or(0, |(index, _)| index)
     }
 
     /// Returns true if two axes are less than 1 mm apart.

@@ -27,7 +27,8 @@ pub(super) fn finding(
     if start.has_offsets_of(&run.control) {
         return None;
     }
-    let mut control = set_up_control_behind(request, run.control.memory().reload(), Some(&run.control)).ok()?;
+    let mut control =
+        set_up_control_behind(request, run.control.memory().reload(), Some(&run.control)).ok()?;
     let mut extractor = extractor(request, metal.clone());
     let outcome = control.run_observed(request.limits, &mut NoLibrary, &mut extractor, &mut ());
     let again = extractor.finish().holes;

@@ -223,6 +223,9 @@ impl DrillPass {
     }
 }
 
+/// Radius of a milled circle in µm, and true for that of a thread.
+type CircleKey = (u64, bool);
+
 /// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. True passes lie aside,
 /// in a wider one of the hole. Heights count along `out`, the axis of the first pass.
 fn push_holes<'p>(
@@ -240,7 +243,7 @@ fn push_holes<'p>(
             .milled
             .map(|circle| ((circle.radius * 1000.0).round() as u64, circle.helix.is_some_and(is_thread)))
     };
-    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<(u64, bool)>), f64> = BTreeMap::new();
+    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<CircleKey>), f64> = BTreeMap::new();
     let is_single = passes.len() == 1;
     let (mut cutting, mut repeated) = (Vec::new(), Vec::new());
     for (pass, is_aside) in passes {
