@@ -270,7 +270,7 @@ impl Registers {
             20_009 => on(self.state.modal.unit == Unit::Metric),
             20_022 => self.data.to_program_unit(&self.state, None, settings.g73_retract),
             20_033 | 20_045..=20_048 | 20_080 | 20_250 => 0.0,
-            20_040 => on(settings.offsets_are_diameters?),
+            20_040 => on(settings.has_diameter_offsets()),
             20_052 => self.data.to_program_unit(&self.state, None, settings.g83_above_r),
             20_162 => on(settings.uses_calculator_input),
             _ => return None,
