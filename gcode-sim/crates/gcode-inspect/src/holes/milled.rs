@@ -272,12 +272,18 @@ impl HoleExtractor<'_> {
             return false;
         }
         for pass in passes {
+            let PassCut { start, bottom, milled, .. } = &pass.cut;
+            let radius = milled.map_or(0.0, |circle| circle.radius) + self.tool_radius().unwrap_or(0.0);
+            let is_pocketing = self.is_round_in_pocket(&[*start, *bottom], &pass.axis, radius);
             self.check_clamped(&pass.backtrace, self.clamp_state);
             if self.cutting_state.spindle_direction == SpindleDirection::Off {
                 self.report_spindle_stopped(&pass.backtrace);
             }
-            let order = self.strokes.begin_pass();
-            self.strokes.push(order, pass, CutKind::Drilled);
+            // In a pocket a circle is judged by what it removes, unless a nominal hole is there.
+            if !is_pocketing || self.strokes.is_nominal(&pass) {
+                let order = self.strokes.begin_pass();
+                self.strokes.push(order, pass, CutKind::Drilled);
+            }
         }
         true
     }
