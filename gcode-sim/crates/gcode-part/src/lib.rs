@@ -77,7 +77,7 @@ pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use read::STOPPED;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
-pub use solid::{NearestPoint, Rod};
+pub use solid::{NearestPoint, Rod, shares_between, shares_in_ball};
 pub use stock::{Pocket, Stock, StockAxis};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};

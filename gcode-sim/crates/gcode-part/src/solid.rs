@@ -89,15 +89,13 @@ impl Rod {
         let (start, gain) = (to_start.dot(&self.axis), along.dot(&self.axis));
         let [low, high] = shares_between([0.0, 1.0], (start, gain), heights)?;
         let axis = self.axis.into_inner();
-        let [first, last] = shares_in_ball(to_start - axis * start, along - axis * gain, radius)?;
-        let (first, last) = (first.max(low), last.min(high));
-        (first < last).then_some([first, last])
+        shares_in_ball([low, high], to_start - axis * start, along - axis * gain, radius)
     }
 }
 
 /// Returns the shares of a travel, within some, between which a coordinate is between two bounds. It begins at a value and
 /// grows by a gain.
-pub(super) fn shares_between(
+pub fn shares_between(
     [first, last]: [f64; 2],
     (start, gain): (f64, f64),
     (low, high): (f64, f64),
@@ -110,20 +108,28 @@ pub(super) fn shares_between(
     (first < last).then_some([first, last])
 }
 
-/// Returns the shares of a travel between which it is nearer than `radius` to the origin.
-pub(super) fn shares_in_ball(from: Vector3<f64>, along: Vector3<f64>, radius: f64) -> Option<[f64; 2]> {
+/// Returns the shares of a travel, within some, between which it is nearer than `radius` to the origin.
+pub fn shares_in_ball(
+    [first, last]: [f64; 2],
+    from: Vector3<f64>,
+    along: Vector3<f64>,
+    radius: f64,
+) -> Option<[f64; 2]> {
     // a·t² + 2·b·t + c ≤ 0
     let (a, b, c) = (along.norm_squared(), from.dot(&along), from.norm_squared() - radius * radius);
     if radius <= 0.0 {
         return None;
     }
     if a < 1e-18 {
-        return (c <= 0.0).then_some([0.0, 1.0]);
+        return (c <= 0.0).then_some([first, last]);
     }
     let root = b * b - a * c;
-    let (first, last) =
-        (((-b - root.max(0.0).sqrt()) / a).max(0.0), ((-b + root.max(0.0).sqrt()) / a).min(1.0));
-    (0.0 <= root && first < last).then_some([first, last])
+    if root < 0.0 {
+        return None;
+    }
+    let root = root.sqrt();
+    let (first, last) = (first.max((-b - root) / a), last.min((-b + root) / a));
+    (first < last).then_some([first, last])
 }
 
 /// Returns the distance along `beyond`, the way out of the body to a point; inside it is that of the nearest face.

@@ -101,11 +101,16 @@ impl Surface {
         match *self {
             Self::Ellipsoid { a, b } => {
                 let scale = Vector3::new(a - skin, b - skin, a - skin);
-                shares_in_ball(from.coords.component_div(&scale), along.component_div(&scale), 1.0)
+                shares_in_ball(
+                    [0.0, 1.0],
+                    from.coords.component_div(&scale),
+                    along.component_div(&scale),
+                    1.0,
+                )
             }
             Self::Cylinder { radius } => {
                 let across = |v: Vector3<f64>| Vector3::new(0.0, v.y, v.z);
-                shares_in_ball(across(from.coords), across(along), radius - skin)
+                shares_in_ball([0.0, 1.0], across(from.coords), across(along), radius - skin)
             }
             Self::Block { min, max } => (0..3).try_fold([0.0, 1.0], |shares, i| {
                 shares_between(shares, (from[i], along[i]), (min[i] + skin, max[i] - skin))

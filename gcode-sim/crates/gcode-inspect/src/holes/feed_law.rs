@@ -287,9 +287,18 @@ impl HoleExtractor<'_> {
     pub(super) fn is_pocketing(&self, line: &CuttingLine) -> bool {
         let axis = line.tool_axis.unwrap_or(line.out);
         let radius = self.machine.diameter_of(line.cutting_state.tool).unwrap_or(0.0) / 2.0;
-        let travel = [line.start, line.bottom()];
-        let offsets = rim(&axis, &(travel[1] - travel[0]), radius);
-        let mut lines = offsets.iter().map(|offset| travel.map(|tip| tip + offset)).chain([travel]);
+        self.is_round_in_pocket(&[line.start, line.bottom()], &axis, radius)
+    }
+
+    /// Returns true if all metal within a radius of a line is in a pocket.
+    pub(super) fn is_round_in_pocket(
+        &self,
+        travel: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+    ) -> bool {
+        let offsets = rim(axis, &(travel[1] - travel[0]), radius);
+        let mut lines = offsets.iter().map(|offset| travel.map(|tip| tip + offset)).chain([*travel]);
         lines.all(|line| self.metal.is_in_pocket(&line))
     }
 
@@ -327,16 +336,17 @@ impl HoleExtractor<'_> {
                 return;
             }
             (ToolRegion::Tip | ToolRegion::Side | ToolRegion::TipBeyond(_), _) => {
-                let what = if matches!(part, ToolRegion::Side) { "the side of the tool" } else { "the feed" };
                 let is_stock = self.surface.is_some();
                 let hole = self.metal.hole_at(&at.point).filter(|_| !is_stock);
-                let pocket = self.metal.distance_from_pocket(&at.point);
                 let reach = self.tool_radius().unwrap_or(MAX_RADIUS);
-                let place = match (hole, pocket.filter(|distance| *distance <= reach)) {
-                    (Some(id), _) => format!("beside hole {id}"),
-                    (None, Some(distance)) => format!("the part {distance:.3} mm outside its pocket"),
-                    (None, None) => "the part beside its holes".to_owned(),
+                let pocket = self.metal.distance_from_pocket(&at.point).filter(|distance| *distance <= reach);
+                let place = match (hole, pocket, part) {
+                    (Some(id), ..) => format!("beside hole {id}"),
+                    (None, Some(distance), ToolRegion::Tip) => format!("{distance:.3} mm outside its pocket"),
+                    (None, Some(_), _) => "the part beside its pocket".to_owned(),
+                    (None, None, _) => "the part beside its holes".to_owned(),
                 };
+                let what = if matches!(part, ToolRegion::Side) { "the side of the tool" } else { "the feed" };
                 let help = match is_stock {
                     true => {
                         "keep the tool's radius away from what has to stay, or state in [[stock.pocket]] what the \

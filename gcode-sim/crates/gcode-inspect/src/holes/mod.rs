@@ -6,6 +6,7 @@ mod circles;
 mod clamping;
 mod clearance;
 mod core;
+mod covered_entries;
 mod cutting;
 mod drill_pass;
 #[cfg(test)]
@@ -98,6 +99,10 @@ pub struct HoleExtraction {
     pub(crate) unsearched_rapids: Option<UnsearchedRapids>,
     /// Tools of unknown diameter that mill a known body: what they remove is unknown.
     pub(crate) unsized_mills: Vec<Option<u32>>,
+    /// Indices of the nominal holes whose entries are under metal that no feed removes.
+    pub(crate) covered_entries: Vec<usize>,
+    /// Number of strokes of mills that count as milling.
+    pub(crate) milled_strokes: u64,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }
@@ -253,6 +258,8 @@ impl<'m> HoleExtractor<'m> {
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);
+        let covered_entries = self.covered_entries();
+        let milled_strokes = milled.as_ref().map_or(0, MilledStrokes::count);
         let mut findings = self.findings.finish();
         findings.extend(milled.map(MilledStrokes::finding));
         findings.extend(first_excess.map(|backtrace| {
@@ -273,6 +280,8 @@ impl<'m> HoleExtractor<'m> {
             is_metal_known: self.surface.is_some(),
             unsearched_rapids: self.unsearched_rapids,
             unsized_mills: self.unsized_mills,
+            covered_entries,
+            milled_strokes,
             is_removal_cut_short: self.metal.removed.is_full,
         }
     }

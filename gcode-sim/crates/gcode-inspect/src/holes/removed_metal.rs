@@ -6,6 +6,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::profile::Profile;
 use super::shares::Shares;
 use crate::machine::{TOUCH_DEPTH, ToolCylinder};
+use gcode_part::{shares_between, shares_in_ball};
 
 /// Largest number of sweeps that are kept, for the memory.
 const MAX_SWEEPS: usize = 1_000_000;
@@ -15,6 +16,9 @@ const MAX_HEIGHT: f64 = 1000.0;
 
 /// Largest distance of points on one line, mm.
 const ROUNDING: f64 = 1e-6;
+
+/// Rounding of a height or of a share.
+const NOISE: f64 = 1e-9;
 
 /// Largest deviation of feeds that are one sweep from a line, mm.
 const MAX_BEND: f64 = 0.003;
@@ -255,10 +259,10 @@ impl Sweep {
             return None;
         }
         let on_line = |a: f64, b: f64| {
-            let shares = between([0.0, 1.0], a, b, (0.0, 1.0))?;
-            let shares = between(shares, from - climb * a, rise - climb * b, (low, high))?;
-            let (q, u) = (q - d * a, u - d * b);
-            in_circle(shares, &q, &u, radius)
+            let shares = shares_between([0.0, 1.0], (a, b), (-NOISE, 1.0 + NOISE))?;
+            let heights = (from - climb * a, rise - climb * b);
+            let shares = shares_between(shares, heights, (low - NOISE, high + NOISE))?;
+            shares_in_ball(shares, q - d * a, u - d * b, radius)
         };
         let mut all: Option<[f64; 2]> = None;
         let mut add = |shares: Option<[f64; 2]>| {
@@ -277,32 +281,6 @@ impl Sweep {
         }
         all
     }
-}
-
-/// Returns the shares s, within some, at which `start` + `gain`·s is between two bounds.
-fn between([first, last]: [f64; 2], start: f64, gain: f64, (low, high): (f64, f64)) -> Option<[f64; 2]> {
-    const NOISE: f64 = 1e-9;
-    if gain.abs() < 1e-12 {
-        return (low - NOISE <= start && start <= high + NOISE).then_some([first, last]);
-    }
-    let (a, b) = ((low - NOISE - start) / gain, (high + NOISE - start) / gain);
-    let (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
-    (first <= last).then_some([first, last])
-}
-
-/// Returns the shares s, within some, at which |q + s·u| is at most `radius`.
-fn in_circle([first, last]: [f64; 2], q: &Vector3<f64>, u: &Vector3<f64>, radius: f64) -> Option<[f64; 2]> {
-    let (a, b, c) = (u.norm_squared(), q.dot(u), q.norm_squared() - radius * radius);
-    if a < 1e-18 {
-        return (c <= 0.0).then_some([first, last]);
-    }
-    let root = b * b - a * c;
-    if root < 0.0 {
-        return None;
-    }
-    let root = root.sqrt();
-    let (first, last) = (first.max((-b - root) / a), last.min((-b + root) / a));
-    (first <= last).then_some([first, last])
 }
 
 #[cfg(test)]

@@ -305,6 +305,11 @@ impl Strokes {
 }
 
 impl MilledStrokes {
+    /// Returns their number.
+    pub(super) fn count(&self) -> u64 {
+        self.count
+    }
+
     /// Returns the warning about all of them.
     pub(super) fn finding(self) -> Diagnostic {
         let message = format!(

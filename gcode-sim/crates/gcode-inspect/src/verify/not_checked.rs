@@ -99,6 +99,18 @@ pub(super) fn list(
         let reason = format!("the machine file has no diameter of {tool}; rapids near its feeds pass");
         all.push(NotChecked::gap(UNSIZED, reason));
     }
+    if 0 < extraction.milled_strokes {
+        let (count, plural) =
+            (extraction.milled_strokes, if extraction.milled_strokes == 1 { "" } else { "s" });
+        all.push(format!(
+            "{count} stroke{plural} of a mill beside the holes: taken for milling, not for a hole"
+        ));
+    }
+    let covered: Vec<&str> = extraction.covered_entries.iter().map(|index| comparison.id(*index)).collect();
+    if !covered.is_empty() {
+        let holes = hole_names(&covered);
+        all.push(format!("the metal over the entry of {holes}: the stock has it, and no feed removes it"));
+    }
     if extraction.is_removal_cut_short {
         let what = "what the feeds after the first million remove";
         all.push(NotChecked::gap(what, "rapids where they have removed the metal are reported"));

@@ -1,0 +1,35 @@
+//! Metal over the entries of nominal holes at the end of a run: the pocket at whose floor they begin is not milled.
+use super::HoleExtractor;
+use super::axis_box::directions_across;
+use gcode_lang::units::Deg;
+
+/// Least depth of an entry in the body and least height of the metal over it, mm: coordinates in a list are rounded.
+const MIN_COVER: f64 = 0.1;
+
+/// Distance from the wall of the hole at which the metal over the entry counts, mm.
+const BESIDE_WALL: f64 = 0.5;
+
+/// Number of points round a hole.
+const POINTS: u32 = 8;
+
+impl HoleExtractor<'_> {
+    /// Returns the indices of the nominal holes whose entries are under metal all round that no feed has removed.
+    pub(super) fn covered_entries(&self) -> Vec<usize> {
+        let (Some(body), Some(holes)) = (self.surface, &self.metal.holes) else { return Vec::new() };
+        let is_covered = |index: &usize| {
+            let collar = holes.collar(*index);
+            let out = collar.rod.axis.into_inner();
+            let entry = collar.rod.base + out * collar.rod.length;
+            if body.depth(&entry) <= MIN_COVER {
+                return false;
+            }
+            let [u, v] = directions_across(&out).map(|across| across * (collar.hole_radius + BESIDE_WALL));
+            (0..POINTS).all(|point| {
+                let angle = Deg(360.0 / f64::from(POINTS) * f64::from(point));
+                let above = entry + out * MIN_COVER + u * angle.cos() + v * angle.sin();
+                self.metal.uncut(&[above, above]).is_some()
+            })
+        };
+        (0..holes.len()).filter(is_covered).collect()
+    }
+}
