@@ -46,6 +46,8 @@ pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
+use nalgebra::Point3;
+
 use self::axis_box::SearchBudget;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
@@ -98,6 +100,8 @@ pub struct HoleExtraction {
     pub(crate) unsearched_rapids: Option<UnsearchedRapids>,
     /// Tools of unknown diameter that mill a known body: what they remove is unknown.
     pub(crate) unsized_mills: Vec<Option<u32>>,
+    /// Ends of the first feeds along the tool that go beside the part.
+    pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }
@@ -117,6 +121,8 @@ pub struct HoleExtractor<'m> {
     profile: Option<Profile>,
     /// What the current line removes of the metal that has to stay.
     plunge_spoilt: Option<Spoilt>,
+    /// Ends of the first feeds along the tool that go beside the part.
+    feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
     /// Number of feeds that removed such metal.
     spoilt_feeds: u32,
     /// Tools of unknown diameter that mill the part.
@@ -181,6 +187,7 @@ impl<'m> HoleExtractor<'m> {
             tool_body: Vec::new(),
             profile: None,
             plunge_spoilt: None,
+            feeds_in_air: Vec::new(),
             spoilt_feeds: 0,
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
@@ -273,6 +280,7 @@ impl<'m> HoleExtractor<'m> {
             is_metal_known: self.surface.is_some(),
             unsearched_rapids: self.unsearched_rapids,
             unsized_mills: self.unsized_mills,
+            feeds_in_air: self.feeds_in_air,
             is_removal_cut_short: self.metal.removed.is_full,
         }
     }
