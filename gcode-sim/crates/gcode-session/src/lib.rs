@@ -23,6 +23,7 @@
 #![warn(missing_docs)]
 mod assumptions;
 mod causes;
+mod error;
 mod outside_text;
 mod second_start;
 mod trace;
@@ -31,6 +32,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use assumptions::HoleDependencies;
+pub use error::SessionError;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Observer, Outcome, Progress};
@@ -41,12 +43,12 @@ use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
 use gcode_inspect::verify::{Answer, Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
-use gcode_lang::alarm::{Alarm, remedy};
+use gcode_lang::alarm::remedy;
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, EventSink};
 use gcode_lang::program::modes::Unit;
-use gcode_lang::program::{Library, Memory, Program};
+use gcode_lang::program::{Library, Memory};
 use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::ast::ProgramPath;
 use gcode_part::{Flutes, HoleList, Metal, ProcessLimits, Reference, Surface};
@@ -102,48 +104,6 @@ impl Request {
     }
 }
 
-/// An error that prevents a run.
-#[derive(Debug, thiserror::Error)]
-pub enum SessionError {
-    /// The file contains no program.
-    #[error("{name} contains no program")]
-    NoProgram {
-        /// The file's name.
-        name: String,
-    },
-    /// The file does not contain the chosen main program.
-    #[error("{name} contains no program {program}; it contains {programs}")]
-    NoSuchProgram {
-        /// The file's name.
-        name: String,
-        /// The chosen program.
-        program: String,
-        /// Programs of the file.
-        programs: String,
-    },
-    /// The file contains two programs of the same number or name.
-    #[error(
-        "{name}, line {line}: {program} is defined twice, and a control refuses the second: give it a \
-         number of its own"
-    )]
-    DuplicateProgram {
-        /// The file's name.
-        name: String,
-        /// Line of the second program.
-        line: u32,
-        /// Number or name of the program.
-        program: String,
-    },
-    /// A variable cannot be set before the start.
-    #[error("#{number} cannot be set: {alarm}")]
-    Variable {
-        /// Number of the variable.
-        number: u32,
-        /// The alarm of the assignment.
-        alarm: Alarm,
-    },
-}
-
 /// A finished run with the control in its end state.
 #[derive(Debug)]
 pub struct Run {
@@ -183,7 +143,7 @@ pub fn run_observed<S: EventSink>(
         return Err(SessionError::NoProgram { name: request.name.clone() });
     }
     if let Some(path) = &request.main {
-        let main = memory.find_path(path).ok_or_else(|| no_such_program(request, &memory, path))?;
+        let main = memory.find_path(path).ok_or_else(|| error::no_such_program(request, &memory, path))?;
         memory.set_main(main);
     }
     if let Some(second) = memory.duplicates().next() {
@@ -198,21 +158,6 @@ pub fn run_observed<S: EventSink>(
     }
     let outcome = control.run_observed(request.limits, library, sink, observer);
     Ok(Run { control, outcome, main_note })
-}
-
-/// Returns the error of a main program that the file does not contain; it names the first programs of the file.
-fn no_such_program(request: &Request, memory: &Memory, path: &ProgramPath) -> SessionError {
-    const NAMED: usize = 10;
-    let mut programs: Vec<_> = memory.programs().iter().map(Program::path).collect();
-    let more = programs.len().saturating_sub(NAMED);
-    programs.truncate(NAMED);
-    programs.extend((more > 0).then(|| format!("{more} more")));
-    let folder = path.folder.as_ref().map_or_else(String::new, ToString::to_string);
-    SessionError::NoSuchProgram {
-        name: request.name.clone(),
-        program: folder + &path.name.label(),
-        programs: programs.join(", "),
-    }
 }
 
 /// Returns a control with these programs, set up as the request states.

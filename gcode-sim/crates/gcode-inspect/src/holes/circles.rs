@@ -3,43 +3,10 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::arc_run::{PartArc, Ring};
+use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
 use super::tool_lines::rim;
-
-/// Excess of a path over its circle that is rounding, mm.
-const EXCESS_SLACK: f64 = 0.02;
-
-/// Circles of one hole.
-#[derive(Clone, Debug)]
-pub(super) struct HoleCircles {
-    /// The widest circle down to each depth, the deepest first.
-    pub rings: Vec<Ring>,
-    /// The widest circle.
-    pub widest: Ring,
-    /// False for a circle that may as well be a groove in a face.
-    pub is_certain: bool,
-    /// Where the path leads farthest beyond the circles.
-    pub excess: Option<PathExcess>,
-}
-
-/// Place at which a path leads beyond its circle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PathExcess {
-    /// Position of the tip.
-    pub tip: Point3<f64>,
-    /// Direction away from the axis.
-    pub outwards: Vector3<f64>,
-    /// Distance beyond the circle, mm.
-    pub depth: f64,
-}
-
-impl HoleCircles {
-    /// Returns true if the whole path stays inside the widest circle.
-    pub(super) fn is_whole(&self) -> bool {
-        self.excess.is_none_or(|excess| excess.depth <= EXCESS_SLACK + self.widest.roundness)
-    }
-}
 
 impl Engagement {
     /// Returns the circles of one hole among some rings; `None` without a ring, and if their axes differ in direction. A

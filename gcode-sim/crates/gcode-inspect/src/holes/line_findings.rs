@@ -19,6 +19,9 @@ use gcode_lang::units::Deg;
 /// Largest angle between feed and tool, besides rounding.
 const MAX_FEED_TILT: Deg = Deg(0.05);
 
+/// Number of feeds beside the part that are kept: the first ones explain a missing hole.
+const MAX_FEEDS_IN_AIR: usize = 100;
+
 /// Cosine of the largest angle between a surface's normal and a feed parallel to the surface, from rounding.
 const MAX_PARALLEL_COSINE: f64 = 1e-9;
 
@@ -51,6 +54,9 @@ impl HoleExtractor<'_> {
             0.0 <= slope && !is_fed_inside && !(is_parallel && may_cut())
         });
         if is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH) {
+            if line.is_inward() && self.feeds_in_air.len() < MAX_FEEDS_IN_AIR {
+                self.feeds_in_air.push((line.bottom(), line.backtrace().clone()));
+            }
             return;
         }
         match exit {

@@ -13,6 +13,7 @@ mod drill_pass;
 pub(crate) mod event_script;
 mod feed_law;
 mod group;
+mod hole_circles;
 mod length_mismatch;
 mod line;
 mod line_findings;
@@ -46,6 +47,8 @@ pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
+
+use nalgebra::Point3;
 
 use self::axis_box::SearchBudget;
 use self::clamping::ClampState;
@@ -103,6 +106,8 @@ pub struct HoleExtraction {
     pub(crate) covered_entries: Vec<usize>,
     /// Number of strokes of mills that count as milling.
     pub(crate) milled_strokes: u64,
+    /// Ends of the first feeds along the tool that go beside the part.
+    pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }
@@ -124,6 +129,8 @@ pub struct HoleExtractor<'m> {
     plunge_gouge: Option<Gouge>,
     /// Number of feeds with a gouge.
     gouge_count: u32,
+    /// Ends of the first feeds along the tool that go beside the part.
+    feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -187,6 +194,7 @@ impl<'m> HoleExtractor<'m> {
             profile: None,
             plunge_gouge: None,
             gouge_count: 0,
+            feeds_in_air: Vec::new(),
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             builder_code: None,
@@ -282,6 +290,7 @@ impl<'m> HoleExtractor<'m> {
             unsized_mills: self.unsized_mills,
             covered_entries,
             milled_strokes,
+            feeds_in_air: self.feeds_in_air,
             is_removal_cut_short: self.metal.removed.is_full,
         }
     }

@@ -2,7 +2,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
-use super::circles::PathExcess;
+use super::hole_circles::PathExcess;
 use super::metal::KnownMetal;
 use super::rapids::format_point;
 use crate::findings::FEED_BESIDE_HOLE;

@@ -102,14 +102,14 @@ pub(super) fn list(
     if 0 < extraction.milled_strokes {
         let (count, plural) =
             (extraction.milled_strokes, if extraction.milled_strokes == 1 { "" } else { "s" });
-        all.push(format!(
-            "{count} stroke{plural} of a mill beside the holes: taken for milling, not for a hole"
-        ));
+        let what = format!("{count} stroke{plural} of a mill beside the holes");
+        all.push(NotChecked::gap(what, "taken for milling, not for a hole"));
     }
     let covered: Vec<&str> = extraction.covered_entries.iter().map(|index| comparison.id(*index)).collect();
     if !covered.is_empty() {
         let holes = hole_names(&covered);
-        all.push(format!("the metal over the entry of {holes}: the stock has it, and no feed removes it"));
+        let what = format!("the metal over the entry of {holes}");
+        all.push(NotChecked::gap(what, "the stock has it, and no feed removes it"));
     }
     if extraction.is_removal_cut_short {
         let what = "what the feeds after the first million remove";

@@ -1,0 +1,38 @@
+//! Milled circles of one hole, and how far their path leads beyond them.
+use nalgebra::{Point3, Vector3};
+
+use super::arc_run::Ring;
+
+/// Excess of a path over its circle that is rounding, mm.
+pub(super) const EXCESS_SLACK: f64 = 0.02;
+
+/// Circles of one hole.
+#[derive(Clone, Debug)]
+pub(super) struct HoleCircles {
+    /// The widest circle down to each depth, the deepest first.
+    pub rings: Vec<Ring>,
+    /// The widest circle.
+    pub widest: Ring,
+    /// False for a circle that may as well be a groove in a face.
+    pub is_certain: bool,
+    /// Where the path leads farthest beyond the circles.
+    pub excess: Option<PathExcess>,
+}
+
+/// Place at which a path leads beyond its circle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathExcess {
+    /// Position of the tip.
+    pub tip: Point3<f64>,
+    /// Direction away from the axis.
+    pub outwards: Vector3<f64>,
+    /// Distance beyond the circle, mm.
+    pub depth: f64,
+}
+
+impl HoleCircles {
+    /// Returns true if the whole path stays inside the widest circle.
+    pub(super) fn is_whole(&self) -> bool {
+        self.excess.is_none_or(|excess| excess.depth <= EXCESS_SLACK + self.widest.roundness)
+    }
+}
