@@ -101,11 +101,11 @@ mod tests {
         assert!((thick(surface, [0.0, 12.0, 0.0], [0.0, 1.0, 0.0]) - 24.0).abs() < 1e-9);
     }
 
-    /// Parallel to z at x 15 of a cylinder of 25 about y: the far side is at −20, at the inner wall, x 11, at −22.450.
+    /// Parallel to z at y 15 of a cylinder of 25 about x: the far side is at −20, at the inner wall, y 11, at −22.450.
     #[test]
     fn a_hole_beside_the_middle_is_longer_at_its_inner_wall() {
         let cylinder = Surface::Cylinder { radius: 25.0 };
-        let hole = Hole { entry: [15.0, 0.0, 20.0], axis: [0.0, 0.0, 1.0], depth: 40.0, ..Hole::default() };
+        let hole = Hole { entry: [0.0, 15.0, 20.0], axis: [0.0, 0.0, 1.0], depth: 40.0, ..Hole::default() };
         assert!((thickness(&cylinder, &hole) - 40.0).abs() < 1e-9);
         let thick = rim_thickness(&cylinder, &hole, 4.0);
         assert!((thick - (20.0 + 504f64.sqrt())).abs() < 1e-9, "{thick}");
