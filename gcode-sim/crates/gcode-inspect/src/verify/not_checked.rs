@@ -2,6 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::checks::features::ShapeGap;
+use super::checks::stock::deeper_than_stock;
 use super::{Comparison, HoleInspection};
 use crate::findings::BACK_BORED;
 use crate::holes::HoleExtraction;
@@ -97,6 +98,13 @@ pub(super) fn lines(inspection: &HoleInspection<'_>, locate: &dyn Fn(Span) -> (S
     if !covered.is_empty() {
         let holes = hole_names(&covered);
         all.push(format!("the metal over the entry of {holes}: the stock has it, and no feed removes it"));
+    }
+    let deeper = deeper_than_stock(inspection);
+    if !deeper.is_empty() {
+        let holes = hole_names(&deeper);
+        all.push(format!(
+            "the far side of {holes}: deeper than the stock is thick, and not `through` in the reference"
+        ));
     }
     if extraction.is_removal_cut_short {
         all.push(format!("{CUT_SHORT}: rapids where they have removed the metal are reported"));
