@@ -69,7 +69,7 @@ gcode_lang::finding_kinds! {
     SPINDLE_REVERSED = "spindle-reversed", Error, "the spindle turns against the hand of the tool";
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
     START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";
-    STOCK_MISMATCH = "stock-mismatch", Error, "a hole of the reference lies outside the stock";
+    STOCK_MISMATCH = "stock-mismatch", Error, "the stock does not reach the entry of a hole";
     TAP_DRILL = "tap-drill", Error, "a thread is as deep as its drilled hole, or deeper";
     TAP_HAND = "tap-hand", Error, "the spindle turns against the hand of the thread";
     TAP_PITCH = "tap-pitch", Error, "feed and speed do not give the pitch of the thread";

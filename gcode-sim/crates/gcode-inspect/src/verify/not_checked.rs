@@ -2,6 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::checks::features::ShapeGap;
+use super::checks::stock::deeper_than_stock;
 use super::{Comparison, HoleInspection};
 use crate::findings::BACK_BORED;
 use crate::holes::HoleExtraction;
@@ -110,6 +111,13 @@ pub(super) fn list(
         let holes = hole_names(&covered);
         let what = format!("the metal over the entry of {holes}");
         all.push(NotChecked::gap(what, "the stock has it, and no feed removes it"));
+    }
+    let deeper = deeper_than_stock(inspection);
+    if !deeper.is_empty() {
+        let holes = hole_names(&deeper);
+        all.push(format!(
+            "the far side of {holes}: deeper than the stock is thick, and not `through` in the reference"
+        ));
     }
     if extraction.is_removal_cut_short {
         let what = "what the feeds after the first million remove";

@@ -24,7 +24,7 @@ mod row_seam;
 mod row_short;
 mod signs;
 mod start_unknown;
-mod stock;
+pub(super) mod stock;
 mod stopped;
 mod threads;
 mod through;

@@ -72,14 +72,21 @@ fn sideways(id: &str, cut: &Cut<'_>) -> Option<Diagnostic> {
         .then(|| finding.help("use an end mill, or correct the kind of the tool in the machine file"))
 }
 
-/// Reports a reamer or a boring bar that goes deeper than the full diameter of the hole before it: its end meets the cone below.
+/// Reports a reamer or a boring bar that goes deeper than the hole before it is as wide as its end: a reamer than its full
+/// diameter, a bar than half its own, because its edge cuts the cone of the drill at the wall.
 fn in_solid(
     judged: &Judgement<'_>,
     cut: &Cut<'_>,
     before: &[Cut<'_>],
     others: &[Cut<'_>],
 ) -> Option<Diagnostic> {
-    let depth = |cut: &Cut<'_>| cut.full_depth(judged.nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip);
+    let end =
+        cut.pass.diameter.filter(|_| cut.kind == Some(ToolKind::BoringBar)).map(|diameter| diameter / 2.0);
+    let depth = |drill: &Cut<'_>| {
+        let full = drill.full_depth(judged.nominal.diameter.unwrap_or(0.0)).unwrap_or(drill.tip);
+        let wide_enough = |end: f64| Some(drill.tip - drill.point.length(end)?);
+        end.and_then(wide_enough).map_or(full, |depth| depth.max(full))
+    };
     let drilled = before.iter().filter(|other| !needs_hole(other.kind)).map(depth).fold(0.0, f64::max);
     let slack = judged.comparison.tolerances.depth;
     let is_open =
