@@ -114,10 +114,8 @@ pub(super) fn list(
     }
     let deeper = deeper_than_stock(inspection);
     if !deeper.is_empty() {
-        let holes = hole_names(&deeper);
-        all.push(format!(
-            "the far side of {holes}: deeper than the stock is thick, and not `through` in the reference"
-        ));
+        let what = format!("the far side of {}", hole_names(&deeper));
+        all.push(NotChecked::gap(what, "deeper than the stock is thick, and not `through` in the reference"));
     }
     if extraction.is_removal_cut_short {
         let what = "what the feeds after the first million remove";
