@@ -109,9 +109,8 @@ fn check_holes(
     reference: &Reference,
 ) -> Result<CheckedPackage, CheckError> {
     request.process_limits = reference.process_limits.clone();
-    let simulation =
-        simulate(&request, &mut Programs(package), reference.metal(request.machine.stock.as_ref()))
-            .map_err(|e| broken_package("the main program", &e))?;
+    let simulation = simulate(&request, &mut Programs(package), request.metal(reference))
+        .map_err(|e| broken_package("the main program", &e))?;
     let mut verdict = simulation.verify(reference, Tolerances::of(reference, None), &request.machine);
     simulation.add_assumptions(&mut verdict, &request, false);
     let top = top::of_verdict(&request.name, &simulation, reference, &verdict, &request.machine);

@@ -76,12 +76,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut new_request, mut new_folders) = options::request(&after.of(&arguments.new))?;
     unused_machine::warn_unused_machine(&after.of(&arguments.new), &new_request);
     let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
-    let metal = |request: &Request| {
-        reference
-            .as_ref()
-            .map(|reference| reference.metal(request.machine.stock.as_ref()))
-            .unwrap_or_default()
-    };
+    let metal =
+        |request: &Request| reference.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
     for request in [&mut old_request, &mut new_request] {
         request.process_limits =
             reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();

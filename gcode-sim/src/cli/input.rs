@@ -76,6 +76,11 @@ fn to_utf8(bytes: Vec<u8>) -> Bytes {
     Bytes::converted(text, bytes)
 }
 
+/// Returns the folder that a file is in; that of a bare name is `.`.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Returns the entries of a folder, sorted by name.
 pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
     let unreadable = |error: std::io::Error| UsageError::unreadable(path, error);

@@ -25,8 +25,7 @@ impl Folders {
         if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
             return Err(UsageError::new(format!("--lib {}: no such folder", missing.display())));
         }
-        let own = program.parent().filter(|parent| !parent.as_os_str().is_empty());
-        let own = own.unwrap_or(Path::new(".")).to_owned();
+        let own = input::folder_of(program).to_owned();
         let folders = std::iter::once(own).chain(folders.iter().cloned()).collect();
         Ok(Self { folders, programs: None, unread: BTreeSet::new() })
     }

@@ -4,8 +4,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::UsageError;
 use super::format::TextFormat;
+use super::{UsageError, input};
 use crate::report::sarif::{self, Finding, Invocation};
 
 /// Prints a result. A reader that closes the pipe early (`| head`) is not an error.
@@ -77,10 +77,7 @@ pub fn write_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(),
             continue;
         }
         let target = resolve_link(path);
-        let folder = match target.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
+        let folder = input::folder_of(&target);
         if !folder.is_dir() {
             return Err(unwritable(&format!("folder {} does not exist", folder.display())));
         }

@@ -34,9 +34,8 @@ impl Project {
     /// # Errors
     /// A file that cannot be read, or with an unknown key or value.
     pub(super) fn of(program: &Path) -> Result<Self, UsageError> {
-        let parent = program.parent().filter(|parent| !parent.as_os_str().is_empty());
         let name = program.file_name().map(PathBuf::from).unwrap_or_default();
-        let Ok(folder) = input::canonical(parent.unwrap_or(Path::new("."))) else {
+        let Ok(folder) = input::canonical(input::folder_of(program)) else {
             return Ok(Self { program: name, found: None });
         };
         let Some(root) = root(&folder) else { return Ok(Self { program: name, found: None }) };
@@ -85,8 +84,7 @@ impl Project {
     /// Returns true if the project's file leaves out the findings of a rule in a file.
     pub(super) fn allows(&self, rule: &str, file: &Path) -> bool {
         let Some(found) = &self.found else { return false };
-        let parent = file.parent().filter(|parent| !parent.as_os_str().is_empty());
-        let Ok(folder) = input::canonical(parent.unwrap_or(Path::new("."))) else { return false };
+        let Ok(folder) = input::canonical(input::folder_of(file)) else { return false };
         let below = folder.strip_prefix(&found.folder).ok();
         below.is_some_and(|below| found.file.allows(rule, &below.join(file.file_name().unwrap_or_default())))
     }

@@ -169,8 +169,7 @@ fn holes(
         simulation.add_assumptions(verdict, request, is_denied);
     };
     if let Some(path) = &arguments.page {
-        let traced =
-            page::simulate_traced(request, &mut folders, reference.metal(request.machine.stock.as_ref()))?;
+        let traced = page::simulate_traced(request, &mut folders, request.metal(reference))?;
         let mut verdict = traced.0.simulation.verify(reference, tolerances, &machine);
         add_assumptions(&traced.0.simulation, &mut verdict, request);
         let judged = Some((path_of_reference, reference, &verdict));
@@ -179,9 +178,8 @@ fn holes(
         output::written("page", path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let simulate = |request: &Request| {
-        gcode_session::simulate(request, &mut folders, reference.metal(request.machine.stock.as_ref()))
-    };
+    let simulate =
+        |request: &Request| gcode_session::simulate(request, &mut folders, request.metal(reference));
     let simulation = progress::of_run(request, simulate)?;
     let mut verdict = simulation.verify(reference, tolerances, &machine);
     add_assumptions(&simulation, &mut verdict, request);

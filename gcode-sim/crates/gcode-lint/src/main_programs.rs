@@ -19,9 +19,9 @@ pub fn programs_called_by_others(memory: &mut Memory, settings: &Settings) -> BT
     calls.collect()
 }
 
-/// Returns the programs with M02 or M30 that no other program in memory calls, in the order loaded.
-pub fn main_programs(memory: &mut Memory, settings: &Settings) -> Vec<ProgramId> {
-    let called = programs_called_by_others(memory, settings);
+/// Returns the programs with M02 or M30 that are not among those [called by others](programs_called_by_others), in the order
+/// loaded.
+pub fn main_programs(memory: &Memory, called: &BTreeSet<ProgramId>) -> Vec<ProgramId> {
     memory.ids().filter(|id| !called.contains(id) && ends_run(memory.get(*id))).collect()
 }
 
@@ -43,7 +43,8 @@ mod tests {
     fn names(text: &str) -> Vec<String> {
         let mut memory = Memory::default();
         memory.load("dump.txt", text.as_bytes());
-        main_programs(&mut memory, &Settings::default()).iter().map(|id| memory.get(*id).path()).collect()
+        let called = programs_called_by_others(&mut memory, &Settings::default());
+        main_programs(&memory, &called).iter().map(|id| memory.get(*id).path()).collect()
     }
 
     #[test]

@@ -42,10 +42,10 @@ pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
 /// first program, or the only main program if that one is called by another.
 pub(super) fn choose_main(memory: &mut Memory, request: &Request) -> Option<Diagnostic> {
     const NAMED: usize = 5;
-    let (first, mains) = (memory.main(), main_programs(memory, &request.settings));
-    let mut is_first_called = || programs_called_by_others(memory, &request.settings).contains(&first);
+    let called = programs_called_by_others(memory, &request.settings);
+    let (first, mains) = (memory.main(), main_programs(memory, &called));
     let (main, reason) = match mains[..] {
-        [only] if only != first && is_first_called() => (only, "the only program that no other calls"),
+        [only] if only != first && called.contains(&first) => (only, "the only program that no other calls"),
         _ => (first, "the first program"),
     };
     memory.set_main(main);

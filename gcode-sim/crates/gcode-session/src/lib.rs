@@ -102,6 +102,11 @@ impl Request {
             progress: None,
         }
     }
+
+    /// Returns what is known to be metal of a reference: its stock overrides that of the machine.
+    pub fn metal(&self, reference: &Reference) -> Metal {
+        reference.metal(self.machine.stock.as_ref())
+    }
 }
 
 /// A finished run with the control in its end state.

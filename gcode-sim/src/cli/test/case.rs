@@ -29,7 +29,7 @@ pub(super) struct Case {
     pub programs: Vec<PathBuf>,
     /// Label of the main program, if the folder has several cases: its files begin with it, `O0001.accepted.json`.
     pub label: Option<String>,
-    /// The main program, if the folder has several cases.
+    /// The main program; `None` if the folder has none, for a reason that the run of the case states.
     pub main: Option<MainProgram>,
 }
 
@@ -122,7 +122,7 @@ impl Case {
         let metal = match &nominal {
             Some(NominalPart::Holes(reference)) => {
                 request.process_limits = reference.process_limits.clone();
-                reference.metal(request.machine.stock.as_ref())
+                request.metal(reference)
             }
             Some(NominalPart::Flutes(_)) | None => Metal::default(),
         };

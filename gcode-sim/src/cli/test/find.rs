@@ -100,12 +100,12 @@ impl Case {
         let lost = accepted.iter().filter(|label| !label.is_empty() && !labels.contains(label));
         let lost: Vec<_> =
             lost.map(|label| Self { programs: Vec::new(), ..self.of_main(label, None) }).collect();
-        let found = mains.into_iter().zip(&labels).map(|(main, label)| self.of_main(label, Some(main)));
-        let mut cases: Vec<_> = found.filter(|_| !is_plain).collect();
         let has_own = !self.programs.is_empty() || accepted.iter().any(String::is_empty);
-        if is_plain && has_own {
-            cases.push(self);
-        }
+        let mut mains = mains.into_iter();
+        let mut cases: Vec<_> = match is_plain {
+            true => has_own.then(|| Self { main: mains.next(), ..self }).into_iter().collect(),
+            false => mains.zip(&labels).map(|(main, label)| self.of_main(label, Some(main))).collect(),
+        };
         cases.extend(lost);
         cases
     }

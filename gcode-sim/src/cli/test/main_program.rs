@@ -5,7 +5,7 @@ use crate::cli::{UsageError, input};
 use gcode_lang::control::Settings;
 use gcode_lang::program::Memory;
 use gcode_lang::syntax::ast::ProgramName;
-use gcode_lint::{CalledProgramName, called_programs, main_programs};
+use gcode_lint::{CalledProgramName, called_programs, main_programs, programs_called_by_others};
 
 /// Main program of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +73,8 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<Vec<MainProgram>
 fn mains_of_file(file: &Path) -> Result<Vec<String>, UsageError> {
     let mut memory = Memory::default();
     memory.load(file.display().to_string(), input::program(file)?);
-    let mains = main_programs(&mut memory, &Settings::default());
+    let called = programs_called_by_others(&mut memory, &Settings::default());
+    let mains = main_programs(&memory, &called);
     Ok(mains.into_iter().map(|id| memory.get(id).path()).collect())
 }
 

@@ -6,7 +6,6 @@ use super::arc_run::{PartArc, Ring};
 use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
-use super::tool_lines::rim;
 
 impl Engagement {
     /// Returns the circles of one hole among some rings; `None` without a ring, and if their axes differ in direction. A
@@ -114,9 +113,8 @@ impl HoleExtractor<'_> {
             return false;
         }
         let up = ring.out.into_inner() * self.metal.removed.height_of_metal(&ring.centre, &ring.out);
-        let offsets = rim(&ring.out, &up, ring.radius + cutter.unwrap_or(0.0) / 2.0);
-        let feet = offsets.into_iter().chain([Vector3::zeros()]).map(|offset| ring.centre + offset);
-        feet.into_iter().all(|foot| self.metal.is_in_pocket(&[foot, foot + up]))
+        let radius = ring.radius + cutter.unwrap_or(0.0) / 2.0;
+        self.is_round_in_pocket(&[ring.centre, ring.centre + up], &ring.out, radius)
     }
 
     /// Returns true if a circle is at a nominal hole and cuts its wall; round it the circle mills something else.

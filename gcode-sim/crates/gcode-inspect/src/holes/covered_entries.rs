@@ -1,7 +1,7 @@
 //! Metal over the entries of nominal holes at the end of a run: the pocket at whose floor they begin is not milled.
 use super::HoleExtractor;
-use super::axis_box::directions_across;
-use gcode_lang::units::Deg;
+use super::tool_lines::ring;
+use nalgebra::Vector3;
 
 /// Least depth of an entry in the body and least height of the metal over it, mm: coordinates in a list are rounded.
 const MIN_COVER: f64 = 0.1;
@@ -18,15 +18,15 @@ impl HoleExtractor<'_> {
         let (Some(body), Some(holes)) = (self.surface, &self.metal.holes) else { return Vec::new() };
         let is_covered = |index: &usize| {
             let collar = holes.collar(*index);
-            let out = collar.rod.axis.into_inner();
+            let axis = collar.rod.axis;
+            let out = axis.into_inner();
             let entry = collar.rod.base + out * collar.rod.length;
             if body.depth(&entry) <= MIN_COVER {
                 return false;
             }
-            let [u, v] = directions_across(&out).map(|across| across * (collar.hole_radius + BESIDE_WALL));
-            (0..POINTS).all(|point| {
-                let angle = Deg(360.0 / f64::from(POINTS) * f64::from(point));
-                let above = entry + out * MIN_COVER + u * angle.cos() + v * angle.sin();
+            let offsets = ring(&axis, &Vector3::zeros(), collar.hole_radius + BESIDE_WALL, POINTS);
+            offsets.into_iter().all(|offset| {
+                let above = entry + out * MIN_COVER + offset;
                 self.metal.uncut(&[above, above]).is_some()
             })
         };

@@ -37,7 +37,6 @@ mod tool_lines;
 pub(crate) mod unknown_axes;
 mod wall_cut;
 
-pub(crate) use axis_box::directions_across;
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
 pub use drill_pass::{Helix, MilledCut, PassCut};
@@ -46,6 +45,7 @@ pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedRapids;
+pub(crate) use tool_lines::ring;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
 use nalgebra::Point3;

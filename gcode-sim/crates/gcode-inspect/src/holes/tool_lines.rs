@@ -24,7 +24,13 @@ fn rim_count(radius: f64) -> u32 {
     4 * ((45.0 / half.0).ceil() as u32).clamp(2, 16)
 }
 
-fn ring(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>, radius: f64, count: u32) -> Vec<Vector3<f64>> {
+/// Returns the offsets from an axis to points round it; one is in the direction of `along`, unless that is along the axis.
+pub(crate) fn ring(
+    axis: &Unit<Vector3<f64>>,
+    along: &Vector3<f64>,
+    radius: f64,
+    count: u32,
+) -> Vec<Vector3<f64>> {
     let across = (along - axis.into_inner() * along.dot(axis)).try_normalize(1e-9);
     let [u, v] = match across {
         Some(across) => [across, axis.cross(&across)],

@@ -14,7 +14,7 @@ use std::collections::BinaryHeap;
 
 use nalgebra::{Point3, Vector3};
 
-pub(crate) use self::tool::directions_across;
+pub(super) use self::tool::directions_across;
 use crate::machine::{Machine, Pose, Setup, ToolCylinder};
 use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
 use gcode_lang::units::Deg;

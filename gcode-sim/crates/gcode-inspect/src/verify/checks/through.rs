@@ -2,13 +2,13 @@
 //! The part may be thinner than its surface shows, a shell or cut off: no finding is no proof.
 use super::*;
 use crate::findings::HOLE_THROUGH;
-use crate::holes::directions_across;
+use crate::holes::ring;
 use crate::verify::bottom;
 use crate::verify::hole_cuts::Cut;
 use gcode_part::POINT_LENGTH;
 
 /// Number of points on the wall of a hole.
-const RIM_POINTS: u8 = 16;
+const RIM_POINTS: u32 = 16;
 
 /// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
@@ -61,12 +61,8 @@ pub(super) fn rim_thickness(surface: &Surface, hole: &Hole, radius: f64) -> f64 
     let out = Unit::new_normalize(Vector3::from(hole.axis));
     let (entry, into) = (Point3::from(hole.entry), -out);
     let middle = entry + into.into_inner() * (hole.depth / 2.0);
-    let [u, v] = directions_across(&out);
-    let offset = |step: u8| {
-        let angle = Deg(360.0 / f64::from(RIM_POINTS) * f64::from(step));
-        (u * angle.cos() + v * angle.sin()) * radius
-    };
-    let far = (0..RIM_POINTS).filter_map(|step| surface.exit(&(middle + offset(step)), &into));
+    let offsets = ring(&out, &Vector3::zeros(), radius, RIM_POINTS);
+    let far = offsets.iter().filter_map(|offset| surface.exit(&(middle + offset), &into));
     far.map(|far| (far - entry).dot(&into)).fold(thickness(surface, hole), f64::max)
 }
 
