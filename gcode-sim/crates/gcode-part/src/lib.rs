@@ -61,7 +61,7 @@ mod stock;
 mod surface;
 mod touch_uncertainty;
 
-pub use assumption::{Assumption, AssumptionPlace};
+pub use assumption::{Assumption, AssumptionPlace, Total};
 pub use clusters::Clusters;
 pub use entry_planes::{Collar, EntryPlanes, MAX_BREAK_THROUGH, Metal, PARALLEL_COSINE, POINT_LENGTH, Step};
 pub use feature::{DepthTo, Feature, FeatureKind, Hand};

@@ -134,12 +134,12 @@ impl Case {
             None => None,
             Some(NominalPart::Holes(reference)) => {
                 let tolerances = Tolerances::of(reference, None);
-                let verdict = revision.simulation.verify(reference, tolerances, &request.machine);
+                let verdict = revision.simulation.verify(reference, tolerances, &request);
                 fails(verdict.verdict, &verdict.diagnostics, &revision.simulation.run)
             }
             Some(NominalPart::Flutes(flutes)) => {
                 let grinding = gcode_session::grind(&request, &mut folders, flutes)?;
-                let verdict = grinding.verify();
+                let verdict = grinding.verify(&request);
                 fails(verdict.verdict, &verdict.diagnostics, &grinding.run)
             }
         };

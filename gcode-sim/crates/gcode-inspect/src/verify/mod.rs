@@ -2,6 +2,7 @@
 mod assumption;
 mod causes;
 mod checks;
+mod completion;
 mod conclusion;
 mod displacement;
 pub mod flutes;
@@ -19,7 +20,8 @@ mod tests;
 mod verdict;
 
 pub use assumption::{denied_assumptions, denied_words};
-pub use conclusion::{Answer, Conclusion, Ending, stop_sentence};
+pub use completion::{AnyVerdict, VerdictParts};
+pub use conclusion::{Answer, Conclusion, Ending, SummaryWords, stop_sentence};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
@@ -126,12 +128,9 @@ pub fn verify(
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
     let not_checked = not_checked::list(&inspection, locate);
-    let gaps = not_checked::gaps(&not_checked);
-    if !gaps.is_empty() {
-        verdict.summary.push_str("; not checked: ");
-        verdict.summary.push_str(&gaps.join(", "));
-    }
+    verdict.words.gaps = not_checked::gaps(&not_checked);
     verdict.not_checked = not_checked.iter().map(NotChecked::sentence).collect();
+    verdict.parts().update_summary();
     verdict
 }
 
