@@ -158,7 +158,7 @@ fn inspect_flutes(grinding: &GrindingRun, request: &Request) -> (ActualVerdict, 
         findings: finding_lines(&verdict.diagnostics, &verdict.findings, &grinding.run),
         missing: Vec::new(),
         not_checked: verdict.not_checked.clone(),
-        assumptions: Vec::new(),
+        assumptions: verdict.assumptions.iter().map(assumption_line).collect(),
         facts: vec![("burr".to_owned(), known_facts(found))],
         made: Vec::new(),
     };

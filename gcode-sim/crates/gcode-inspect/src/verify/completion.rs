@@ -1,7 +1,7 @@
 //! Completion of a verdict by what the comparison doesn't see: likely causes, errors of the whole program, assumptions.
 use super::assumption::{denied_assumptions, denied_words};
 use super::conclusion::{Answer, SummaryWords};
-use super::verdict::{Finding, finding_of, limit_per_kind};
+use super::verdict_finding::{Finding, finding_of, limit_per_kind};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;

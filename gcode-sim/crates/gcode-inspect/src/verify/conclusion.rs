@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::hole_finding::{HoleFinding, Subject};
-use super::verdict::Finding;
+use super::verdict_finding::Finding;
 use crate::findings::{HOLE_MISSING, HOLE_TWICE};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::{Diagnostic, Severity};

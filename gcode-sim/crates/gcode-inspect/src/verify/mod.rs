@@ -18,6 +18,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 mod verdict;
+mod verdict_finding;
 
 pub use assumption::{denied_assumptions, denied_words};
 pub use completion::{AnyVerdict, VerdictParts};
@@ -25,7 +26,8 @@ pub use conclusion::{Answer, Conclusion, Ending, SummaryWords, stop_sentence};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
-pub use verdict::{ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
+pub use verdict::{ExtraHole, HoleGeometry, HoleVerdict, Verdict};
+pub use verdict_finding::{Finding, PartPoint};
 
 use std::collections::BTreeMap;
 

@@ -12,7 +12,7 @@ use crate::findings::{
 use crate::flutes::{GrindingResult, Window};
 use crate::verify::completion::{AnyVerdict, VerdictParts};
 use crate::verify::conclusion::{Answer, Conclusion, Ending, SummaryWords, stop_sentence};
-use crate::verify::verdict::{Finding, finding_of, limit_per_kind};
+use crate::verify::verdict_finding::{Finding, finding_of, limit_per_kind};
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
