@@ -240,6 +240,30 @@ mod tests {
         assert_assumptions(&format!("IF[#510NE1]GOTO5\nM30\nN5 {hole}"), 1, &["#510=vacant@4: 1"]);
     }
 
+    /// Only a rapid cuts nothing, by the mode in force behind the blocks that are skipped with it.
+    #[test]
+    fn a_skipped_feed_is_a_cut_and_a_skipped_rapid_is_none() {
+        let around = |skipped: &str| {
+            format!("IF[#510NE1]GOTO10\n{skipped}\nN10 G90 G0 X0. Y0. Z50.\nG98 G81 X10. Y10. Z-5. R2. F100.\nX20.")
+        };
+        let cut = ["#510=vacant@4: "].as_slice();
+        for (skipped, expected) in [
+            ("X20.", [].as_slice()),
+            ("G90 G0 X20.", &[]),
+            ("G1\nX20. F100.", cut),
+            ("G1\nG0 X20.", &[]),
+            ("G1\nG0\nX20.", &[]),
+            ("G99 G81 Z-5. R2. L0\nX30. L1\nG80", cut),
+            ("G80\nX20.", &[]),
+            ("/G1\nX20. F100.", cut),
+            ("G1\n/G0\nX20. F100.", cut),
+            ("G1\nIF[#2EQ1]GOTO9\nG0\nN9 X20. F100.", cut),
+            ("G0\nIF[#2EQ1]GOTO9\nG0\nN9 X20.", &[]),
+        ] {
+            assert_assumptions(&around(skipped), 2, expected);
+        }
+    }
+
     #[test]
     fn a_loop_count_decides_the_holes_of_the_loop() {
         let text = "G81 X5. Y5. Z-5. R2. F100.\n#1=0\nWHILE[#1LT#510]DO1\n#1=#1+1\nX[10.*#1] Y10.\nEND1\nG80\nG0 X0. Y50. Z50.\nG81 X50. Y50. Z-5. R2. F100.";

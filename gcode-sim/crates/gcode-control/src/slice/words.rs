@@ -1,5 +1,6 @@
 //! Effect of a block of words on the marks: codes, moves, cycles, offsets, calls.
 use super::super::words::{computed_row, count};
+use super::possible::PossibleMotion;
 use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::program::g_codes::{self, Effect, GCodeRow, OneShot};
@@ -51,7 +52,8 @@ impl Slice {
             let switch = (*switch).max(1);
             let value = Some(f64::from(u8::from(data.is_skip_on(switch))));
             guard = self.outside(OutsideValue::BlockSkip(switch), value, block.flow, block.op);
-            self.add_possible_words(block.registers, words, guard);
+            let motion = PossibleMotion::of(block.registers).behind_words(block.registers, words);
+            self.add_possible_words(block.registers, words, guard, motion);
         }
         if block.registers.state.transform.is_identity() {
             self.machine.transform = Marks::NONE;
