@@ -230,10 +230,9 @@ fn an_assumption_decides_a_flute() {
     let expected =
         json!([{"what": "#510", "value": null, "place": {"program": "O8400", "line": 8}, "decides": ["3"]}]);
     let summary = "4 of 4 flutes ground";
-    for (name, assumptions, words, denied) in [
-        ("O1", json!([]), summary.to_owned(), 0),
-        ("O2", expected, format!("{summary}; assumes #510"), 1),
-    ] {
+    for (name, assumptions, words, denied) in
+        [("O1", json!([]), summary.to_owned(), 0), ("O2", expected, format!("{summary}; assumes #510"), 1)]
+    {
         let (verdict, code) = run_json(&format!("gcode-sim verify {name}.nc {flags} --format json"), place);
         assert_eq!((&verdict["assumptions"], &verdict["summary"], code), (&assumptions, &json!(words), 0));
         let (text, _) = run(&format!("gcode-sim verify {name}.nc {flags}"), place);

@@ -52,7 +52,11 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
     }
     let plural = if list.holes.len() == 1 { "" } else { "s" };
     let _ = writeln!(text, "{} hole{plural}, mm, in the part's frame", list.holes.len());
-    append_assumptions(&mut text, list.assumptions.as_deref().unwrap_or_default(), Total::holes(list.holes.len()));
+    append_assumptions(
+        &mut text,
+        list.assumptions.as_deref().unwrap_or_default(),
+        Total::holes(list.holes.len()),
+    );
     text
 }
 

@@ -100,7 +100,10 @@ pub fn of_verdict(
             .iter()
             .map(closing_sentence)
             .chain(verdict.neighbours.iter().flat_map(neighbour_range))
-            .chain(assumption_lines(&verdict.assumptions, Total::holes(verdict.holes.len() + verdict.extra.len())))
+            .chain(assumption_lines(
+                &verdict.assumptions,
+                Total::holes(verdict.holes.len() + verdict.extra.len()),
+            ))
             .collect(),
         verdict: Some(drawn_conclusion(&verdict.conclusion())),
         tolerance: Some(verdict.tolerance),
@@ -197,7 +200,10 @@ const MAX_ASSUMPTIONS: usize = 3;
 
 /// Returns a line for each of the first assumptions, and the number of the others; `total` is the number of all holes or
 /// flutes.
-pub(super) fn assumption_lines(assumptions: &[Assumption], total: Total) -> impl Iterator<Item = String> + '_ {
+pub(super) fn assumption_lines(
+    assumptions: &[Assumption],
+    total: Total,
+) -> impl Iterator<Item = String> + '_ {
     let first = assumptions.iter().take(MAX_ASSUMPTIONS);
     let more = assumptions.len().saturating_sub(MAX_ASSUMPTIONS);
     let first = first.map(move |assumption| format!("assumes {}", assumption.sentence(total)));

@@ -244,7 +244,9 @@ mod tests {
     #[test]
     fn a_skipped_feed_is_a_cut_and_a_skipped_rapid_is_none() {
         let around = |skipped: &str| {
-            format!("IF[#510NE1]GOTO10\n{skipped}\nN10 G90 G0 X0. Y0. Z50.\nG98 G81 X10. Y10. Z-5. R2. F100.\nX20.")
+            format!(
+                "IF[#510NE1]GOTO10\n{skipped}\nN10 G90 G0 X0. Y0. Z50.\nG98 G81 X10. Y10. Z-5. R2. F100.\nX20."
+            )
         };
         let cut = ["#510=vacant@4: "].as_slice();
         for (skipped, expected) in [

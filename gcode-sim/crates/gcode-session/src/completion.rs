@@ -29,7 +29,9 @@ pub(super) fn complete(
 /// Returns the error of a program without M02, M30 or M99 that has run to the end of its text.
 fn missing_end(run: &Run) -> Option<Diagnostic> {
     let lacks_end = matches!(run.outcome, Outcome::End) && run.control.lacks_end();
-    let message = "the text ends without M02, M30 or M99: a control stops with PS5010, and blocks may be missing";
+    let message =
+        "the text ends without M02, M30 or M99: a control stops with PS5010, and blocks may be missing";
     let finding = || Diagnostic::new(&NO_END, message).with_backtrace(run.control.backtrace());
-    lacks_end.then(|| finding().help("write M30 at the end of the program; transfer it again if it was cut off"))
+    lacks_end
+        .then(|| finding().help("write M30 at the end of the program; transfer it again if it was cut off"))
 }

@@ -4,7 +4,9 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use gcode_control::slice::Marks;
-use gcode_lang::motion::{Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal};
+use gcode_lang::motion::{
+    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
+};
 use gcode_lang::source::{SourceId, Span};
 
 /// Source of the calls that mark the backtraces of events: no text has it.
@@ -83,4 +85,3 @@ pub(super) fn marks_of<'p>(places: impl IntoIterator<Item = &'p Backtrace>, stro
     };
     places.into_iter().filter_map(stroke).collect()
 }
-

@@ -45,7 +45,8 @@ pub trait AnyVerdict {
         let before = causes.iter().map(|cause| finding_of(cause, None, true, locate));
         parts.findings.splice(0..0, before);
         // What stopped the run explains the rest.
-        let alarms = parts.diagnostics.iter().take_while(|finding| finding.severity == Severity::Alarm).count();
+        let alarms =
+            parts.diagnostics.iter().take_while(|finding| finding.severity == Severity::Alarm).count();
         parts.diagnostics.splice(alarms..alarms, limit_per_kind(causes.into_iter()));
         parts.update_summary();
     }

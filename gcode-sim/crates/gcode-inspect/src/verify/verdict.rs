@@ -5,7 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::completion::{AnyVerdict, VerdictParts};
-use super::conclusion::{Answer, Conclusion, Ending, SummaryWords, hole_counts, stop_sentence, uncounted_errors};
+use super::conclusion::{
+    Answer, Conclusion, Ending, SummaryWords, hole_counts, stop_sentence, uncounted_errors,
+};
 use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
 use super::verdict_finding::{Finding, finding_of, limit_per_kind, origin};

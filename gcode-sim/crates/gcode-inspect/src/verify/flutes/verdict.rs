@@ -242,7 +242,8 @@ pub(super) fn verdict(
     let samples = actual.passes.iter().flat_map(|pass| &pass.trace.samples);
     let flutes = inspection.spacing.flutes.len();
     let counts = flute_counts(flutes, nominal.count as usize, &findings);
-    let words = SummaryWords { stop: stop_sentence(findings.iter(), locate), counts, ..SummaryWords::default() };
+    let words =
+        SummaryWords { stop: stop_sentence(findings.iter(), locate), counts, ..SummaryWords::default() };
     let gauge = nominal.gauge;
     let worst_pass = worst.map_or(0, |worst| worst.pass);
     let along: Vec<HelixSample> = actual.passes.get(worst_pass).map_or(Vec::new(), |pass| {
