@@ -1,7 +1,7 @@
 //! Conditions and jumps that outside values decide, and how long they do: to the block where both ways meet again.
 //!
 //! A way that ends in an alarm decides nothing: the control stops, and no hole is cut behind it.
-use super::possible::PossibleMotion;
+use super::possible_motion::PossibleMotion;
 use super::{Block, Marks, Slice};
 use crate::control::Control;
 use crate::flow::ProgramFlow;

@@ -7,6 +7,7 @@ mod branches;
 mod marks;
 mod moves;
 mod possible;
+mod possible_motion;
 mod power_on;
 mod reads;
 mod words;

@@ -1,6 +1,6 @@
 //! Effect of a block of words on the marks: codes, moves, cycles, offsets, calls.
 use super::super::words::{computed_row, count};
-use super::possible::PossibleMotion;
+use super::possible_motion::PossibleMotion;
 use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::program::g_codes::{self, Effect, GCodeRow, OneShot};
