@@ -215,6 +215,31 @@ fn a_value_that_keeps_the_run_from_a_hole_is_listed() {
     assert!(text.contains("decides whether more holes are cut"), "{text}");
 }
 
+/// `test` states what `verify` does: hole b depends on #510, which is denied.
+#[test]
+fn a_case_of_test_lists_its_assumptions_and_fails_where_they_are_denied() {
+    let place = folder(PROGRAM);
+    let place = place.path();
+    std::fs::rename(place.join("r.csv"), place.join("reference.csv")).unwrap();
+    assert_eq!(run("gcode-sim test . --accept", place).1, 0);
+    let (verdict, _) = run_json("gcode-sim verify O1.nc --reference reference.csv --format json", place);
+    let (report, code) = run_json("gcode-sim test . --format json", place);
+    let case = &report["cases"][0];
+    assert_eq!((&case["verdict"]["assumptions"], code), (&verdict["assumptions"], 0));
+    let line = format!("PASS: {}", verdict["summary"].as_str().unwrap());
+    assert_eq!(case["verdict"]["summary"], line);
+    let (text, _) = run("gcode-sim test .", place);
+    assert!(text.contains("\nassumes  .: #510 = ") || text.starts_with("assumes  .: #510 = "), "{text}");
+    let (report, code) = run_json("gcode-sim test . --deny assumptions --format json", place);
+    assert_eq!((&report["cases"][0]["against"]["code"], code), (&json!("assumption"), 1));
+    // Without a reference too.
+    std::fs::remove_file(place.join("reference.csv")).unwrap();
+    assert_eq!(run("gcode-sim test .", place).1, 0);
+    assert_eq!(run("gcode-sim test . --deny assumptions", place).1, 1);
+    std::fs::write(place.join("O1.nc"), PROGRAM.replace("Y#510", "Y20.")).unwrap();
+    assert_eq!(run("gcode-sim test . --accept --deny assumptions", place).1, 0);
+}
+
 /// The angle of the third flute depends on #510, those of the others don't.
 #[test]
 fn an_assumption_decides_a_flute() {

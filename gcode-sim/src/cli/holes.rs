@@ -58,7 +58,7 @@ fn print_result(
         None => Origin::FeedStart,
     };
     let assumed = simulation.dependencies(request).numbered(&simulation.run);
-    let denied = arguments.deny.errors(&assumed, Total::holes(list.holes.len()));
+    let denied = arguments.deny.errors(&assumed, Total::Holes(list.holes.len()));
     list.assumptions = Some(assumed.into_iter().map(|(assumption, _)| assumption).collect());
     list.stopped = simulation.run.stop_sentence();
     print(&list, origin, arguments.format)?;

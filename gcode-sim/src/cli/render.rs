@@ -111,7 +111,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                 None => {
                     let found = simulation.dependencies(&request);
                     let assumed = found.numbered(&simulation.run);
-                    let denied = arguments.deny.errors(&assumed, Total::holes(found.count()));
+                    let denied = arguments.deny.errors(&assumed, Total::Holes(found.count()));
                     let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();
                     let drawn = top::of_holes(&name(&request), &simulation, &request.machine, &assumed);
                     let denial = (!denied.is_empty()).then(|| denied_words(denied.len()));

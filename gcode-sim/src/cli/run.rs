@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         output::write(path, &bytes)?;
     }
     let found = run.dependencies(&request);
-    let (assumed, holes) = (found.numbered(&run), Total::holes(found.count()));
+    let (assumed, holes) = (found.numbered(&run), Total::Holes(found.count()));
     let denied = arguments.deny.errors(&assumed, holes);
     let assumptions = (assumed.into_iter().map(|(assumption, _)| assumption).collect(), holes);
     let report = RunReport::new(&run, &request.machine, moves.as_ref(), system, assumptions);

@@ -59,7 +59,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }
-    append_assumptions(&mut text, &verdict.assumptions, Total::flutes(verdict.passes));
+    append_assumptions(&mut text, &verdict.assumptions, Total::Flutes(verdict.passes));
     text
 }
 

@@ -46,7 +46,7 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
             ),
         ]
         .into_iter()
-        .chain(assumption_lines(&verdict.assumptions, Total::flutes(verdict.passes)))
+        .chain(assumption_lines(&verdict.assumptions, Total::Flutes(verdict.passes)))
         .collect(),
         outline,
         tip_radius: -end.y,

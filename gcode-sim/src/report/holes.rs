@@ -55,7 +55,7 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
     append_assumptions(
         &mut text,
         list.assumptions.as_deref().unwrap_or_default(),
-        Total::holes(list.holes.len()),
+        Total::Holes(list.holes.len()),
     );
     text
 }

@@ -42,7 +42,7 @@ pub fn of_holes(
             .run
             .stop_sentence()
             .into_iter()
-            .chain(assumption_lines(assumptions, Total::holes(holes.len())))
+            .chain(assumption_lines(assumptions, Total::Holes(holes.len())))
             .collect(),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
@@ -102,7 +102,7 @@ pub fn of_verdict(
             .chain(verdict.neighbours.iter().flat_map(neighbour_range))
             .chain(assumption_lines(
                 &verdict.assumptions,
-                Total::holes(verdict.holes.len() + verdict.extra.len()),
+                Total::Holes(verdict.holes.len() + verdict.extra.len()),
             ))
             .collect(),
         verdict: Some(drawn_conclusion(&verdict.conclusion())),

@@ -178,7 +178,7 @@ fn summary(text: &mut String, verdict: &Verdict) {
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }
-    append_assumptions(text, &verdict.assumptions, Total::holes(verdict.holes.len() + verdict.extra.len()));
+    append_assumptions(text, &verdict.assumptions, Total::Holes(verdict.holes.len() + verdict.extra.len()));
     if !verdict.missing.is_empty() {
         let _ = writeln!(text, "missing  {}", list_first(&verdict.missing, |id| id.clone(), ", "));
     }

@@ -28,22 +28,13 @@ pub struct AssumptionPlace {
 }
 
 /// Number of all holes or flutes of a result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Total {
-    noun: &'static str,
-    count: usize,
-}
-
-impl Total {
-    /// Builds a number of holes.
-    pub fn holes(count: usize) -> Self {
-        Self { noun: "hole", count }
-    }
-
-    /// Builds a number of flutes, repeated passes over a flute included.
-    pub fn flutes(count: usize) -> Self {
-        Self { noun: "flute", count }
-    }
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Total {
+    /// Number of holes.
+    Holes(usize),
+    /// Number of flutes, repeated passes over a flute included.
+    Flutes(usize),
 }
 
 /// Number of holes that are listed by their ids.
@@ -51,7 +42,11 @@ const MAX_LISTED: usize = 8;
 
 impl Assumption {
     /// Returns `#510 = vacant (O0100 line 12) decides holes 3, 4`.
-    pub fn sentence(&self, Total { noun, count }: Total) -> String {
+    pub fn sentence(&self, total: Total) -> String {
+        let (noun, count) = match total {
+            Total::Holes(count) => ("hole", count),
+            Total::Flutes(count) => ("flute", count),
+        };
         let Self { what, value, place: AssumptionPlace { program, line }, decides } = self;
         let value = match value {
             Some(value) => format!(" = {value}"),
@@ -98,8 +93,8 @@ mod tests {
                 "/ = 0 (O0100 line 12) decides holes 1, 2, 3, 4, 5, 6, 7, 8, … and 2 more",
             ),
         ] {
-            assert_eq!(one.sentence(Total::holes(holes)), expected);
-            assert_eq!(one.sentence(Total::flutes(holes)), expected.replace("hole", "flute"));
+            assert_eq!(one.sentence(Total::Holes(holes)), expected);
+            assert_eq!(one.sentence(Total::Flutes(holes)), expected.replace("hole", "flute"));
         }
     }
 }

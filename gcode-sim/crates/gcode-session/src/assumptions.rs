@@ -240,6 +240,14 @@ mod tests {
         assert_assumptions(&format!("IF[#510NE1]GOTO5\nM30\nN5 {hole}"), 1, &["#510=vacant@4: 1"]);
     }
 
+    /// By #510 = 1 the block would move X, and Y would stay at 0.
+    #[test]
+    fn the_number_of_an_axis_decides_all_axes() {
+        let blocks = "AX[#510]=40.\nX60.\nG81 Z-5. R2. F100.";
+        assert_eq!(assumptions_with(blocks, &[(510, 2.0)]), (vec!["#510=2@4: 1".to_owned()], 1));
+        assert_assumptions("#510=2\nAX[#510]=40.\nX60.\nG81 Z-5. R2. F100.", 1, &[]);
+    }
+
     /// Only a rapid cuts nothing, by the mode in force behind the blocks that are skipped with it.
     #[test]
     fn a_skipped_feed_is_a_cut_and_a_skipped_rapid_is_none() {

@@ -31,7 +31,7 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
                     (conclusion.answer.word()) ", " (shown(conclusion.summary))
                 }
-                @let total = Total::holes(verdict.holes.len() + verdict.extra.len());
+                @let total = Total::Holes(verdict.holes.len() + verdict.extra.len());
                 @for assumption in &verdict.assumptions { p.note { "Assumes " (shown(&assumption.sentence(total))) } }
                 @for cause in &verdict.likely_causes { p.note { "Likely cause: " (shown(cause)) } }
             } @else {
@@ -55,7 +55,7 @@ fn assumptions_alone(page: &Page<'_>, side: &ReviewSide<'_>) -> Vec<String> {
     let simulation = &side.observed.revision.simulation;
     let found = simulation.dependencies(side.observed.request);
     let numbered = found.numbered(&simulation.run);
-    numbered.iter().map(|(assumption, _)| assumption.sentence(Total::holes(found.count()))).collect()
+    numbered.iter().map(|(assumption, _)| assumption.sentence(Total::Holes(found.count()))).collect()
 }
 
 /// Returns the table of both runs in numbers.

@@ -93,7 +93,11 @@ impl Slice {
             WordOperand::Literal(_) | WordOperand::Number(_) | WordOperand::G(..) => {}
         }
         if let Some(axis) = word.axis.and_then(|place| words.axis(place)) {
-            marks |= self.operand_marks(block, axis);
+            // Another value is another axis.
+            let axis_marks = self.operand_marks(block, axis);
+            self.machine.axes.iter_mut().for_each(|axis| *axis |= axis_marks);
+            self.further |= axis_marks;
+            marks |= axis_marks;
         }
         let evaluate = |registers: &Registers| registers.evaluate_word(words, word).ok().flatten();
         let value = block.registers.without_side_effects(evaluate).map(|raw| raw.value());

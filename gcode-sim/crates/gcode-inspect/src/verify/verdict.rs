@@ -288,7 +288,7 @@ impl Verdict {
 impl AnyVerdict for Verdict {
     fn parts(&mut self) -> VerdictParts<'_> {
         VerdictParts {
-            total: Total::holes(self.holes.len() + self.extra.len()),
+            total: Total::Holes(self.holes.len() + self.extra.len()),
             answer: &mut self.verdict,
             summary: &mut self.summary,
             words: &mut self.words,

@@ -146,7 +146,7 @@ impl FluteVerdict {
 impl AnyVerdict for FluteVerdict {
     fn parts(&mut self) -> VerdictParts<'_> {
         VerdictParts {
-            total: Total::flutes(self.passes),
+            total: Total::Flutes(self.passes),
             answer: &mut self.verdict,
             summary: &mut self.summary,
             words: &mut self.words,
