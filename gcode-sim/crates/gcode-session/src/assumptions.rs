@@ -292,7 +292,6 @@ mod tests {
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\n/X20.\nX30.", 3, &["/=0@5: 2"]);
         assert_assumptions("#100=#1005*10.\nG81 X10. Y#100 Z-5. R2. F100.\nX20. Y10.", 2, &["#1005=0@4: 1"]);
         assert_assumptions("G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &["H1=0@4: 1"]);
-        assert_assumptions("G10 L10 P1 R0\nG43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM21\nX20.", 2, &["M21=vacant@5: 2"]);
         // Whether the spindle goes on behind a stop.
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM00\nX20.", 2, &["M00=vacant@5: 2"]);
@@ -411,6 +410,26 @@ mod tests {
                 "{found:?}"
             );
         }
+    }
+
+    /// A length is the sum of its geometry and its wear, and G91 adds to what the operator has entered.
+    #[test]
+    fn an_offset_that_the_program_sets_in_part_is_an_assumption() {
+        let with = |set: &str, expected: &[&str]| {
+            assert_assumptions(&format!("{set}\nG90 G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100."), 1, expected);
+        };
+        with("G10 L10 P1 R0\nG10 L11 P1 R0", &[]);
+        with("G10 L10 P1 R0", &["#10001=0@5: 1"]);
+        with("#11001=0", &["#10001=0@5: 1"]);
+        with("#11001=0\n#10001=0", &[]);
+        with("G10 L11 P1 R0", &["H1=0@5: 1"]);
+        with("G91 G10 L10 P1 R0\nG10 L11 P1 R0", &["H1=0@6: 1"]);
+        let g55 = |set: &str, expected: &[&str]| {
+            let hole = "G90 G55 G81 X10. Y10. Z-5. R2. F100.";
+            assert_assumptions(&format!("{set} G10 L2 P2 X0 Y0 Z0\n{hole}"), 1, expected);
+        };
+        g55("G90", &[]);
+        g55("G91", &["G55=vacant@5: 1"]);
     }
 
     #[test]
