@@ -198,6 +198,13 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
                 no_angle(format!("the full diameter of {holes} on the far side"), tool)
             }
             ShapeGap::FullDepth(tool) => no_angle(format!("the depth of the full diameter of {holes}"), tool),
+            ShapeGap::Floor(tool) => {
+                let reason = format!(
+                    "the machine file has no kind or point_angle of {}, which is taken for flat",
+                    tool_name(tool)
+                );
+                NotChecked::gap(format!("the floor of the counterbore of {holes}"), reason)
+            }
             ShapeGap::Angle(tool) => no_angle(format!("the angle of the countersink of {holes}"), tool),
         }
     };

@@ -12,6 +12,9 @@ const ROUNDING_ALLOWANCE: f64 = 0.005;
 /// Relative deviation above which S or F is an error: tables of cutting data leave this range open.
 const ERROR_RATIO: f64 = 0.25;
 
+/// Largest cutting speed, m/min: coated tools in aluminium reach some 1500, PCD some 1800.
+const MAX_CUTTING_SPEED: f64 = 1800.0;
+
 /// Largest feed of a tool of unknown diameter, mm per revolution.
 const MAX_FEED_PER_TURN: f64 = 5.0;
 
@@ -56,13 +59,31 @@ fn reversed(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option
     })
 }
 
-fn speed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
-    let (actual, nominal) = (cut.speed.0, limits.tool_process(cut.tool)?.speed?);
+fn speed(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
     // A stopped spindle has its own finding.
-    let severity = severity(actual, nominal).filter(|_| cut.spindle_direction != SpindleDirection::Off)?;
+    if cut.spindle_direction == SpindleDirection::Off {
+        return None;
+    }
+    let Some(nominal) = limits.tool_process(cut.tool).and_then(|tool| tool.speed) else {
+        return cutting_speed(cut, machine);
+    };
+    let actual = cut.speed.0;
+    let severity = severity(actual, nominal)?;
     let message = format!("{} cuts at S{actual}; the job specifies S{nominal}", tool_name(cut.tool));
     let finding = Diagnostic::new(&DRILL_SPEED, message).with_severity(severity);
     Some(finding.help("correct S, or the tool's speed in the job"))
+}
+
+/// Reports a cutting speed far above those of tables, at which S has a digit too many.
+fn cutting_speed(cut: &CutConditions, machine: &Machine) -> Option<Diagnostic> {
+    let speed = std::f64::consts::PI * machine.diameter_of(cut.tool)? * cut.speed.0 / 1000.0;
+    if !exceeds(speed, MAX_CUTTING_SPEED) {
+        return None;
+    }
+    let (tool, actual) = (tool_name(cut.tool), cut.speed.0);
+    let message = format!("{tool} cuts at {speed:.0} m/min (S{actual}), more than {MAX_CUTTING_SPEED:.0}");
+    let finding = Diagnostic::new(&DRILL_SPEED, message).with_severity(Severity::Warning);
+    Some(finding.help("check S, and the tool's diameter in the machine file; speed in the job states it"))
 }
 
 fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {

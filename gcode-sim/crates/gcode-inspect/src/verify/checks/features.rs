@@ -20,6 +20,8 @@ pub(in crate::verify) enum ShapeGap {
     FullThrough(Option<u32>),
     /// The angle of its countersink is unknown.
     Angle(Option<u32>),
+    /// The floor of its counterbore is unknown: it counts as flat.
+    Floor(Option<u32>),
     /// It may be a comb mill, whose teeth are as long as its thread.
     ThreadLength(Option<u32>),
     /// It only widens or threads a hole, and the program doesn't drill that.
@@ -181,6 +183,9 @@ impl Judgement<'_> {
         let nominal = feature.bottom();
         if feature.kind == FeatureKind::Countersink && cut.point == PointShape::Unknown {
             self.gaps.push(ShapeGap::Angle(cut.pass.tool));
+        }
+        if feature.kind == FeatureKind::Counterbore && cut.point == PointShape::Unknown {
+            self.gaps.push(ShapeGap::Floor(cut.pass.tool));
         }
         let Some(actual) = cut.depth_of(feature) else {
             self.gaps.push(ShapeGap::FullDepth(cut.pass.tool));
