@@ -52,7 +52,7 @@ fn a_call_finds_the_programs_of_its_folder_and_then_the_common_ones() {
 fn the_choice_of_a_main_program_is_said() {
     let place = folder(&[("ALL-PROG.TXT", DUMP.as_bytes())]);
     let (_, _, text) = run("run ALL-PROG.TXT", place.path());
-    let note = "note[main-program]: //CNC_MEM/USER/PATH1/O0001 is executed, the first program of ALL-PROG.TXT, not \
+    let note = "warning[main-program]: //CNC_MEM/USER/PATH1/O0001 is executed, the first program of ALL-PROG.TXT, not \
                 //CNC_MEM/USER/PATH2/O0001";
     assert!(text.contains(note), "{text}");
     let (_, _, text) = run("run ALL-PROG.TXT --program O1", place.path());

@@ -13,17 +13,17 @@ use gcode_tests::programs::run_line;
 use gcode_tests::workspace;
 use serde_json::Value;
 
-/// The expected conclusion of a program.
-struct Expected {
-    answer: &'static str,
-    outcome: &'static str,
+/// A program with the conditions of its run, and its expected conclusion.
+#[derive(Clone, Copy, Default)]
+struct Row<'r> {
+    program: &'r str,
+    flags: &'r str,
+    answer: &'r str,
+    outcome: &'r str,
     /// Start of the summary.
-    summary: &'static str,
+    summary: &'r str,
     exit: i32,
 }
-
-/// More blocks than any of these programs has.
-const MANY: u64 = 1000;
 
 /// Two holes of a plate.
 const REFERENCE: &str = "id,x,y,z,i,j,k,depth,diameter\n1,10,20,0,0,0,1,10,6\n2,30,20,0,0,0,1,10,6\n";
@@ -43,8 +43,8 @@ fn run(line: &str, place: &Path) -> (String, i32) {
 }
 
 /// Compares all outputs for the program `O1.nc` in a folder with the expected conclusion.
-fn compare(place: &Path, arguments: &str, expected: &Expected) {
-    let Expected { answer, outcome, summary, exit } = expected;
+fn compare(place: &Path, arguments: &str, expected: &Row<'_>) {
+    let Row { answer, outcome, summary, exit, .. } = expected;
     let (json, code) = run(&format!("gcode-sim verify {arguments} --format json"), place);
     let json: Value = serde_json::from_str(&json).unwrap();
     let words = json["summary"].as_str().unwrap();
@@ -75,63 +75,135 @@ fn compare(place: &Path, arguments: &str, expected: &Expected) {
 }
 
 /// Returns the line of the picture for a program, with its status.
-fn drawn_verdict(program: &str, max_blocks: u64) -> (HoleStatus, String) {
-    let machine = Machine::default();
-    let mut request = Request::new("O1.nc", program.as_bytes(), machine.clone());
-    request.limits = Limits { blocks: max_blocks };
+fn drawn_verdict(Row { program, flags, .. }: &Row<'_>) -> (HoleStatus, String) {
+    let mut request = Request::new("O1.nc", program.as_bytes(), Machine::default());
+    match flags.split_once(' ') {
+        Some(("--max-blocks", blocks)) => request.limits = Limits { blocks: blocks.parse().unwrap() },
+        Some(("--control", setting)) => {
+            let (key, value) = setting.split_once('=').unwrap();
+            request.settings.set(key, value).unwrap();
+        }
+        Some(("--deny", _)) => request.denies_assumptions = true,
+        _ => {}
+    }
     let reference = NominalPart::parse(REFERENCE).unwrap().into_holes().unwrap();
     let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
     let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &request);
-    top::of_verdict("O1.nc", &simulation, &reference, &verdict, &machine).verdict.unwrap()
+    top::of_verdict("O1.nc", &simulation, &reference, &verdict, &request.machine).verdict.unwrap()
 }
 
 /// Compares the picture's words and the page's head too, which only holes have.
-fn compare_holes(program: &str, max_blocks: u64, expected: &Expected) {
-    let (status, line) = drawn_verdict(program, max_blocks);
-    assert_eq!(status == HoleStatus::Good, expected.answer == "PASS");
-    assert!(line.starts_with(&format!("{}: {}", expected.answer, expected.summary)), "{line}");
-    let flags = format!("--max-blocks {max_blocks}");
+fn compare_holes(row: &Row<'_>) {
+    let (status, line) = drawn_verdict(row);
+    assert_eq!(status == HoleStatus::Good, row.answer == "PASS", "{line}");
+    assert!(line.starts_with(&format!("{}: {}", row.answer, row.summary)), "{line}");
     let place = tempfile::tempdir().unwrap();
-    std::fs::write(place.path().join("O1.nc"), program).unwrap();
+    std::fs::write(place.path().join("O1.nc"), row.program).unwrap();
     std::fs::write(place.path().join("r.csv"), REFERENCE).unwrap();
-    let arguments = format!("O1.nc --reference r.csv {flags}");
-    compare(place.path(), &arguments, expected);
+    let arguments = format!("O1.nc --reference r.csv {}", row.flags);
+    compare(place.path(), &arguments, row);
     let (_, code) = run(&format!("gcode-sim verify {arguments} --page O1.html"), place.path());
-    assert_eq!(code, expected.exit);
+    assert_eq!(code, row.exit);
     let page = std::fs::read_to_string(place.path().join("O1.html")).unwrap();
-    let (class, other) = if expected.answer == "PASS" { ("yes", "no") } else { ("no", "yes") };
-    let start = format!("<p class=\"answer {class}\">{}, {}", expected.answer, expected.summary);
+    let (class, other) = if row.answer == "PASS" { ("yes", "no") } else { ("no", "yes") };
+    let start = format!("<p class=\"answer {class}\">{}, {}", row.answer, row.summary);
     assert!(page.contains(&start), "{start}");
     assert!(!page.contains(&format!("<p class=\"answer {other}\">")), "one answer alone");
 }
 
+/// The lines of the program: 6 drills the first hole, 8 the second, 11 ends it.
 #[test]
-fn a_pass_is_a_pass_everywhere() {
-    let expected = Expected { answer: "PASS", outcome: "end", summary: "2 of 2 holes in tolerance", exit: 0 };
-    compare_holes(&program("S1000 M03", "X10.", ""), MANY, &expected);
+fn each_conclusion_is_the_same_everywhere() {
+    let right = &program("S1000 M03", "X10.", "");
+    let pass = Row { program: right, answer: "PASS", outcome: "end", ..Row::default() };
+    let fail = Row { answer: "FAIL", exit: 1, ..pass };
+    let stopped = Row { answer: "FAIL", outcome: "alarm", exit: 3, ..pass };
+    let aside = &program("S1000 M03", "X10.2", "");
+    let standing = &program("", "X10.", "");
+    let one_hole = &program("S1000 M03", "X10.", "M30");
+    let twice = &program("S1000 M03", "X10.", "X10.");
+    let divided = &program("S1000 M03", "X10.", "#1=1/0");
+    let divided_late = &right.replace("M30", "#1=1/0\nM30");
+    let common = &right.replace("X30.", "X[30.+#510]");
+    let endless = &right.replace("M30\n", "");
+    let cut_off = &format!("%\n{endless}");
+    for row in [
+        // Nothing judges what the default machine doesn't know.
+        Row { summary: "2 of 2 holes in tolerance; not checked: diameters, ", ..pass },
+        // Φ0.4 of Φ0.1.
+        Row { program: aside, summary: "1 of 2 holes in tolerance", ..fail },
+        Row { program: one_hole, summary: "1 of 2 holes in tolerance, 1 missing", ..fail },
+        Row { program: "O0001\nM30\n", summary: "0 of 2 holes in tolerance, 2 missing", ..fail },
+        Row {
+            program: standing,
+            summary: "a feed with the spindle stopped (2 times); 2 of 2 holes in tolerance",
+            ..fail
+        },
+        Row {
+            program: twice,
+            summary: "2 of 2 holes in tolerance; warnings: hole-twice; not checked: ",
+            ..pass
+        },
+        Row { program: common, summary: "2 of 2 holes in tolerance; assumes #510; not checked: ", ..pass },
+        Row {
+            program: common,
+            flags: "--deny assumptions",
+            summary: "1 assumption is denied; 2 of 2 holes in tolerance; not checked: ",
+            ..fail
+        },
+        Row {
+            program: endless,
+            summary: "the program ends without M02, M30 or M99; 2 of 2 holes in tolerance",
+            ..fail
+        },
+        Row {
+            program: cut_off,
+            summary: "alarm PS5010 in O0001 line 11: the program ends without ",
+            ..stopped
+        },
+        Row {
+            program: divided,
+            summary: "alarm PS0112 in O0001 line 7: division by zero; 1 of 2 holes in tolerance, 1 missing",
+            ..stopped
+        },
+        Row {
+            program: divided_late,
+            summary: "alarm PS0112 in O0001 line 11: division by zero; 2 of 2 holes in tolerance",
+            ..stopped
+        },
+        // The second hole is beyond the stroke.
+        Row { flags: "--control 1320=X25", summary: "alarm OT0500 in O0001 line 8: ", ..stopped },
+        Row {
+            flags: "--max-blocks 6",
+            outcome: "limit",
+            summary: "the program has not ended after 6 blocks and ",
+            ..stopped
+        },
+    ] {
+        compare_holes(&row);
+    }
 }
 
-/// The first hole is off by 0.2 mm: Φ0.4 of Φ0.1.
+/// The sheet of a job states what `verify` states of its programs.
 #[test]
-fn a_hole_out_of_position_fails_everywhere() {
-    let expected = Expected { answer: "FAIL", outcome: "end", summary: "1 of 2 holes in tolerance", exit: 1 };
-    compare_holes(&program("S1000 M03", "X10.2", ""), MANY, &expected);
-}
-
-/// Both holes are in place; the spindle stands.
-#[test]
-fn an_error_in_the_motion_alone_fails_everywhere_and_comes_first() {
-    let summary = "a feed with the spindle stopped (2 times); 2 of 2 holes in tolerance";
-    let expected = Expected { answer: "FAIL", outcome: "end", summary, exit: 1 };
-    compare_holes(&program("", "X10.", ""), MANY, &expected);
-}
-
-/// A division by zero stops the control in line 7, behind the first hole.
-#[test]
-fn an_alarm_is_in_every_output() {
-    let summary = "alarm PS0112 in O0001 line 7: division by zero; 1 of 2 holes in tolerance, 1 missing";
-    let expected = Expected { answer: "FAIL", outcome: "alarm", summary, exit: 3 };
-    compare_holes(&program("S1000 M03", "X10.", "#1=1/0"), MANY, &expected);
+fn a_sheet_states_the_verdict() {
+    let place = tempfile::tempdir().unwrap();
+    let place = place.path();
+    for line in [
+        "gcode-gen new pin-holes -o job.toml",
+        "gcode-gen emit job.toml --out nc",
+        "gcode-gen sheet job.toml -o sheet.html",
+    ] {
+        assert_eq!(run(line, place).1, 0, "{line}");
+    }
+    let line = "gcode-sim verify nc/O8100.nc --machine nc/machine.toml --reference job.toml --format json";
+    let verdict: Value = serde_json::from_str(&run(line, place).0).unwrap();
+    let sheet = std::fs::read_to_string(place.join("sheet.html")).unwrap();
+    let words = verdict["summary"].as_str().unwrap();
+    assert!(
+        sheet.contains(&format!("<b>PASS. Predicted by simulation, not measured. </b>{words}")),
+        "{words}"
+    );
 }
 
 /// Without a reference nothing is judged, but the list and the picture state that the run has not reached its end.
@@ -160,34 +232,13 @@ fn an_alarm_is_in_a_list_and_in_a_picture_without_reference() {
     assert_eq!(top::of_holes("O1.nc", &simulation, &machine, &[]).lines, [sentence]);
 }
 
-/// An alarm behind the last hole leaves all holes in place.
-#[test]
-fn an_alarm_behind_the_last_hole_fails_everywhere() {
-    let summary = "alarm PS0112 in O0001 line 12: division by zero; 2 of 2 holes in tolerance";
-    let expected = Expected { answer: "FAIL", outcome: "alarm", summary, exit: 3 };
-    let program = program("S1000 M03", "X10.", "").replace("M30", "#1=1/0\nM30");
-    compare_holes(&program.replace("\nX30.", "\n\nX30."), MANY, &expected);
-}
-
-/// The limit of seven blocks ends the run behind the first hole.
-#[test]
-fn a_limit_is_in_every_output() {
-    let summary = "the program has not ended after 6 blocks and ";
-    let expected = Expected { answer: "FAIL", outcome: "limit", summary, exit: 3 };
-    compare_holes(&program("S1000 M03", "X10.", ""), 6, &expected);
-}
-
 /// Flutes have the same conclusion in every output.
 #[test]
 fn a_verdict_on_flutes_is_the_same_everywhere() {
     let folder = workspace().join("tests/suite/verify");
-    for (case, expected) in [
-        (
-            "four_flutes_of_a_burr_pass",
-            Expected { answer: "PASS", outcome: "end", summary: "4 of 4 flutes ground", exit: 0 },
-        ),
-        ("a_missing_flute_is_counted", Expected { answer: "FAIL", outcome: "end", summary: "", exit: 1 }),
-    ] {
+    let pass = Row { answer: "PASS", outcome: "end", summary: "4 of 4 flutes ground", ..Row::default() };
+    let fail = Row { answer: "FAIL", outcome: "end", exit: 1, ..Row::default() };
+    for (case, expected) in [("four_flutes_of_a_burr_pass", pass), ("a_missing_flute_is_counted", fail)] {
         let place = tempfile::tempdir().unwrap();
         let file = |name: &str| folder.join(name).display().to_string();
         let arguments = format!(

@@ -51,7 +51,7 @@ gcode_lang::finding_kinds! {
     JOB_TOOL = "job-tool", Warning, "the tool is not the one of the job, or no tool was inserted";
     LEAVES_HOLE_SIDEWAYS = "leaves-hole-sideways", Error, "the tool leaves the hole sideways";
     LENGTH_OFFSET = "length-offset", Error, "the tool's length offset is not its own";
-    MAIN_PROGRAM = "main-program", Note, "a file with several main programs";
+    MAIN_PROGRAM = "main-program", Warning, "a file with several main programs";
     MIRROR_IMAGE = "mirror-image", Error, "the pattern is mirrored, but not by the table";
     NO_END = "no-end", Error, "the program ends without M02, M30 or M99";
     PATH_NOT_READ = "path-not-read", Error, "the path of an edge finder leaves the surface";
