@@ -153,6 +153,12 @@ impl Ring {
         self.centre.coords.dot(&self.out)
     }
 
+    /// Returns the height of the whole run above the deepest full turn.
+    pub(super) fn height(&self) -> f64 {
+        let helix = self.helix.map_or(0.0, |helix| helix.height);
+        helix.max(self.top - self.level())
+    }
+
     /// Returns true if the tool comes down along the circle.
     pub(super) fn is_helix(&self) -> bool {
         self.top - self.level() > MAX_LEVEL_CHANGE

@@ -148,7 +148,7 @@ impl Strokes {
 
     /// Returns the nominal axis nearest to a circle; of a hole whose entry is above the circle if `is_below`.
     pub(super) fn nominal_of_ring(&self, ring: &Ring, is_below: bool) -> Option<&NominalAxis> {
-        let start = ring.centre + ring.out.into_inner() * (ring.top - ring.level());
+        let start = ring.centre + ring.out.into_inner() * ring.height();
         let pass = [&start, &ring.centre];
         match is_below {
             true => self.nominal.nearest_above(pass, &ring.out, MAX_AXIS_DISTANCE),
