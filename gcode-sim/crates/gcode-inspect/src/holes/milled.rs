@@ -139,6 +139,8 @@ impl HoleExtractor<'_> {
                 engagement.push_point(*from);
             }
         }
+        // An arc that rises leads out above the approach: the feed may begin at the bottom of a thread.
+        let exit = if arc.is_some() { top.max(engagement.approach_level) } else { top };
         let place = || (event.backtrace(), self.axis_position);
         match arc {
             None if is_across => {
@@ -171,7 +173,8 @@ impl HoleExtractor<'_> {
             engagement.push_point(to);
         }
         engagement.has_descended |= end < top - LEVEL_TOLERANCE;
-        let is_out = end > top + LEVEL_TOLERANCE || engagement.has_descended && end >= top - LEVEL_TOLERANCE;
+        let is_out =
+            end > exit + LEVEL_TOLERANCE || engagement.has_descended && end >= exit - LEVEL_TOLERANCE;
         // A feed out of a circle ends it as a rapid does.
         let is_retract = !is_across && begin < end && !engagement.rings.is_empty();
         if is_out || is_retract && !engagement.is_below(&to, &out) {
