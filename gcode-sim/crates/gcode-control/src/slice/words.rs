@@ -72,8 +72,18 @@ impl Slice {
         self.follow_m_codes(block, words, &list);
         self.follow_offsets(block, &list, &modes);
         self.follow_axes(block, &list, &modes);
+        self.follow_computed_axes(block, words);
         if let Some(call) = words.call() {
             self.follow_call(block, words, call);
+        }
+    }
+
+    /// Marks all axes with the number in `AX[#510]=40.`: another number is another axis.
+    fn follow_computed_axes(&mut self, block: &Block<'_>, words: &Words) {
+        for axis in words.list.iter().filter_map(|word| words.axis(word.axis?)) {
+            let marks = self.operand_marks(block, axis);
+            self.machine.axes.iter_mut().for_each(|one| *one |= marks);
+            self.further |= marks;
         }
     }
 
