@@ -226,7 +226,7 @@ impl HoleExtractor<'_> {
         self.check_spindle(backtrace, line);
         self.check_tool_changed(backtrace, &line.cutting_state);
         if line.is_fed_stopped {
-            self.report_spindle_stopped(backtrace);
+            self.report_spindle_stopped(backtrace, &line.cutting_state);
         }
     }
 

@@ -39,7 +39,7 @@ impl HoleExtractor<'_> {
         let backtrace = event.backtrace();
         // A full circle has its own finding.
         if is_stopped && is_straight {
-            self.report_spindle_stopped(&backtrace);
+            self.report_spindle_stopped(&backtrace, &state);
         }
         if let Some(kind) = wrong_kind {
             let name = tool_name(state.tool);

@@ -134,8 +134,6 @@ pub struct HoleExtractor<'m> {
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
-    /// Last M code of the machine builder since M03, M04 or M05: it may have started the spindle.
-    builder_code: Option<u32>,
     process_limits: ProcessLimits,
     clamp_state: ClampState,
     /// Frame of the part at `axis_position`.
@@ -197,7 +195,6 @@ impl<'m> HoleExtractor<'m> {
             feeds_in_air: Vec::new(),
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
-            builder_code: None,
             process_limits: ProcessLimits::default(),
             clamp_state: ClampState::default(),
             frame,
@@ -442,7 +439,7 @@ impl EventSink for HoleExtractor<'_> {
                 self.cutting_state.apply_rigid(*is_rigid);
                 self.has_tool_turned |= self.cutting_state.spindle_direction != SpindleDirection::Off;
                 self.update_spindle_in_hole(before);
-                self.builder_code = None;
+                self.cutting_state.builder_code = None;
             }
             EventKind::Stop { kind: StopKind::Message, text, variables } => {
                 if let Some(angle) = self.operator_head_angle(event, text, variables) {
@@ -451,7 +448,7 @@ impl EventSink for HoleExtractor<'_> {
             }
             EventKind::Auxiliary { code } => {
                 if !self.apply_clamp_code(*code) {
-                    self.builder_code = Some(*code);
+                    self.cutting_state.builder_code = Some(*code);
                 }
             }
             EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}
