@@ -64,6 +64,8 @@ pub(super) struct DrillPass {
     pub cut: PassCut,
     /// Direction of the tool out of the part; that of the feed if the tool's is unknown.
     pub axis: Unit<Vector3<f64>>,
+    /// False if that is the direction of the feed.
+    pub is_tool_axis_known: bool,
     /// Direction of the feed, out of the part.
     pub feed_direction: Unit<Vector3<f64>>,
     pub tool: Option<u32>,

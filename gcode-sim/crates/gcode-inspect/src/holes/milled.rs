@@ -256,6 +256,7 @@ impl HoleExtractor<'_> {
             let pass = DrillPass {
                 cut: PassCut { milled: Some(milled), ..cut },
                 axis: out,
+                is_tool_axis_known: self.pose.axis.is_some(),
                 feed_direction: out,
                 tool,
                 backtrace: ring.backtrace.clone(),

@@ -58,7 +58,7 @@ use self::feed_law::Gouge;
 use self::line::CuttingLine;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
-use self::milling::MillingConditions;
+use self::milling::MillingRates;
 use self::per_block::Findings;
 use self::profile::Profile;
 use self::strokes::{MilledStrokes, Strokes};
@@ -158,7 +158,7 @@ pub struct HoleExtractor<'m> {
     findings: Findings,
     close_motions: CloseMotions,
     cut_conditions: CutConditionsByBlock,
-    milling: MillingConditions,
+    milling: MillingRates,
     length_mismatches: Vec<LengthMismatch>,
     /// Number of probing moves.
     probe_count: u64,
@@ -211,7 +211,7 @@ impl<'m> HoleExtractor<'m> {
             findings: Findings::default(),
             close_motions: CloseMotions::default(),
             cut_conditions: CutConditionsByBlock::default(),
-            milling: MillingConditions::default(),
+            milling: MillingRates::default(),
             length_mismatches: Vec::new(),
             probe_count: 0,
             search_budget: SearchBudget::default(),

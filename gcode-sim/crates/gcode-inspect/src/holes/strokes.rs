@@ -324,6 +324,13 @@ impl MilledStrokes {
     }
 }
 
+impl CuttingLine {
+    /// Returns true for a feed across the tool, as far as its direction is known.
+    pub(super) fn is_across_tool(&self) -> bool {
+        self.tool_axis.is_some_and(|axis| axis.dot(&self.out) < MIN_TOOL_COSINE)
+    }
+}
+
 impl HoleExtractor<'_> {
     /// Returns the kind of a stroke that the tool has left, in feed if `is_feeding`.
     pub(super) fn cut_kind(&self, line: &CuttingLine, is_feeding: bool) -> CutKind {
@@ -332,8 +339,8 @@ impl HoleExtractor<'_> {
         }
         let is_between_rapids = !line.is_reached_by_feed && !is_feeding;
         let along_tool = CutKind::AlongTool { is_between_rapids };
-        if let Some(axis) = line.tool_axis {
-            return if axis.dot(&line.out) < MIN_TOOL_COSINE { CutKind::Oblique } else { along_tool };
+        if line.tool_axis.is_some() {
+            return if line.is_across_tool() { CutKind::Oblique } else { along_tool };
         }
         let tool = line.cutting_state.tool.and_then(|number| self.machine.find_tool(number));
         let is_mill = tool.is_some_and(|tool| tool.kind == Some(ToolKind::EndMill));
