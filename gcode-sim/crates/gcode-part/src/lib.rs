@@ -70,7 +70,7 @@ pub use hole::{Hole, HoleList, Origin, Unit};
 pub use indicator::tilted_ellipsoid;
 pub use limits::{NOISE, exceeds};
 pub use nominal::{NominalPart, ProbedPart};
-pub use nominal_axes::{NominalAxes, NominalAxis};
+pub use nominal_axes::{NominalAxes, NominalAxis, NominalThread};
 pub use overlap::overlaps;
 pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;

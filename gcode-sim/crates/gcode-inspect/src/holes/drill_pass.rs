@@ -44,6 +44,8 @@ pub struct MilledCut {
 pub struct Helix {
     /// Height of a turn, mm; negative if it is left-hand.
     pub lead: f64,
+    /// Height at which it crosses the direction from which angles count, from 0 to a turn, mm.
+    pub phase: f64,
     /// Height of the whole helix, mm.
     pub height: f64,
     /// True if it makes no hole: the mill comes up along it, or goes round once.

@@ -33,6 +33,7 @@ mod strokes;
 mod swallowed;
 #[cfg(test)]
 mod tests;
+mod thread_walls;
 mod tool_lines;
 pub(crate) mod unknown_axes;
 mod wall_cut;
@@ -350,6 +351,7 @@ impl<'m> HoleExtractor<'m> {
         if (self.pose.tip - before.tip).norm() < 1e-9 {
             return;
         }
+        self.check_thread_wall(event, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),

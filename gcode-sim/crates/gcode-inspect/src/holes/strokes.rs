@@ -116,6 +116,10 @@ impl Strokes {
         self.nominal = Arc::clone(axes);
     }
 
+    pub(super) fn nominal_axes(&self) -> &NominalAxes {
+        &self.nominal
+    }
+
     /// Records a feed across the tool at a height along it.
     pub(super) fn note_milling(&mut self, level: f64) {
         self.milled_level = Some(self.milled_level.map_or(level, |lowest| lowest.min(level)));
