@@ -21,6 +21,9 @@ use gcode_lang::units::Rpm;
 const FIRST_OUTPUT: u32 = 12_000;
 const LAST_OUTPUT: u32 = 255;
 
+/// Variable of input 0 of a Haas.
+const FIRST_INPUT: u32 = 11_000;
+
 fn is_skip(effect: Effect) -> bool {
     effect == Effect::OneShot(OneShot::Skip)
 }
@@ -50,6 +53,7 @@ impl Planner<'_> {
         self.check_modes(&before, state)?;
         let length_before = state.length_offset;
         self.update_coordinates(&before, state);
+        let starts_dynamic = state.modal.dynamic != before.dynamic && state.is_turned();
         if state.modal.cycle.is_some() && !is_cycle_active {
             self.begin_cycle(state)?;
         }
@@ -59,6 +63,9 @@ impl Planner<'_> {
             && state.modal.cycle.is_none()
             && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
         self.push_turned_length(plan, length_before);
+        if starts_dynamic && self.data.settings.kinematics.is_none() {
+            self.lose_position(plan, plan.state.modal.dynamic.code(), false);
+        }
         Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
     }
 
@@ -158,14 +165,16 @@ impl Planner<'_> {
             state.end_alignment();
             (state.transform.tilt, state.transform.plane_entry) = (None, None);
         }
-        if state.transform.scaling.is_none() && state.transform.rotation.is_none() {
+        let is_centred = state.transform.scaling.is_some() || state.transform.rotation.is_some();
+        if !is_centred && !state.is_turned() {
             state.transform.unknown_centre = 0;
         }
         if modal.polar == Polar::On && before.polar == Polar::Off {
             state.polar = PolarPoint::default();
         }
-        if modal.work != before.work {
+        if modal.work != before.work || modal.dynamic != before.dynamic {
             state.end_before_transform = None;
+            self.realign(state);
             self.data.recompute_position(state);
         } else if state.transform != self.registers.state.transform {
             self.data.apply_transform_change(state);
@@ -333,6 +342,8 @@ impl Planner<'_> {
                     let value = Value::Number(f64::from(u8::from(is_on)));
                     plan.writes.push(TableWrite::Variable { number: FIRST_OUTPUT + number, value });
                 }
+                MCodeEffect::JumpByInput => self.plan_jump_by_input(plan)?,
+                MCodeEffect::OperatorInput => self.plan_operator_input(plan)?,
                 MCodeEffect::SkipAlarm(_) if self.words.has_non_motion_code(is_skip) => {}
                 MCodeEffect::InterruptOn => {
                     self.words.mark_read(Letters::of(b"P"));
@@ -349,6 +360,30 @@ impl Planner<'_> {
         if self.words.has(b'S') && plan.state.spindle != SpindleDirection::Off && !changes_spindle() {
             self.set_spindle(plan, plan.state.spindle, Rpm(plan.state.modal_words.s));
         }
+        Ok(())
+    }
+
+    /// M96 P Q of a Haas.
+    fn plan_jump_by_input(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let missing = |letter| Alarm::MissingWord { code: "M96", letter }.located_at(self.block);
+        let number = self.words.count(b'P')?.ok_or_else(|| missing('P'))?;
+        let input = self.words.count(b'Q')?.ok_or_else(|| missing('Q'))?;
+        if input > LAST_OUTPUT {
+            return Err(self.not_simulated("M96 without Q0 to Q255"));
+        }
+        if self.registers.machine_value(FIRST_INPUT + input, None) == 0.0 {
+            plan.flow = BlockFlow::Jump { number, target: 0 };
+        }
+        Ok(())
+    }
+
+    /// M109 P of a Haas: the code of the key that the operator presses, as stated for the variable.
+    fn plan_operator_input(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let number = self.words.count(b'P')?;
+        let allowed = number.filter(|number| matches!(number, 500..=599 | 10_500..=10_599));
+        let number = allowed.ok_or_else(|| self.not_simulated("M109 without P500 to P599"))?;
+        let value = Value::Number(self.registers.machine_value(number, None));
+        plan.writes.push(TableWrite::Variable { number, value });
         Ok(())
     }
 

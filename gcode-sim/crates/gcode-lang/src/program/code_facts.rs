@@ -334,3 +334,12 @@ pub(super) const PATTERN: CodeFacts = CodeFacts {
     coordinates: NotScaled,
     ..ONE_SHOT
 };
+/// G47 of a Haas.
+pub(super) const ENGRAVING: CodeFacts = CodeFacts {
+    axis_words: PositionInAbsolute,
+    words: CodeWords { own: Letters::of(b"E"), angles: Letters::of(b"I"), ..CodeWords::NONE },
+    lookahead: Refused,
+    coordinates: NotScaled,
+    unsimulated: Unsimulated::Code(Letters::of(b"P")),
+    ..ONE_SHOT
+};

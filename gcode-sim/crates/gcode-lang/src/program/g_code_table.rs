@@ -3,7 +3,7 @@ use super::code_facts as facts;
 use super::cycles::{self, Cycle};
 use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot};
 use super::modes::{
-    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, Motion, Plane, Polar, ReturnTo, Rotation,
+    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, Motion, Plane, Polar, ReturnTo, Rotation,
     Scaling, SpindleMode, StrokeCheck, Unit,
 };
 use crate::control::Dialect;
@@ -121,7 +121,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     fanuc(450, Effect::OneShot(OneShot::ToolOffset(1)), "tool offset: increase").with(facts::TOOL_OFFSET),
     fanuc(460, Effect::OneShot(OneShot::ToolOffset(-1)), "tool offset: decrease").with(facts::TOOL_OFFSET),
     fanuc(470, Effect::OneShot(OneShot::ToolOffset(2)), "tool offset: double increase").with(facts::TOOL_OFFSET),
-    haas(470, Effect::NotSimulated, "text engraving"),
+    haas(470, Effect::OneShot(OneShot::Engraving), "text engraving").with(facts::ENGRAVING),
     fanuc(480, Effect::OneShot(OneShot::ToolOffset(-2)), "tool offset: double decrease").with(facts::TOOL_OFFSET),
     row(490, Effect::Length(Length::Off), "tool length compensation cancel"),
     fanuc(491, Effect::NotSimulated, "tool length compensation cancel"),
@@ -134,8 +134,8 @@ pub(super) const CODES: &[GCodeRow] = &[
     fanuc(512, Effect::NotSimulated, "polygon turning"),
     row(520, Effect::OneShot(OneShot::SetLocalCoordinateSystem), "local coordinate system setting").with(facts::SET_COORDINATE_SYSTEM),
     row(530, Effect::OneShot(OneShot::MachineCoordinateSystem), "machine coordinate system setting").with(facts::MACHINE_COORDINATE_SYSTEM),
-    fanuc(531, Effect::OneShot(OneShot::ToolAxis), "tool axis direction control").with(facts::TOOL_AXIS),
-    fanuc(536, Effect::NotSimulated, "tool centre point retention tool axis direction control"),
+    fanuc(531, Effect::OneShot(OneShot::ToolAxis { keeps_tip: false }), "tool axis direction control").with(facts::TOOL_AXIS),
+    fanuc(536, Effect::OneShot(OneShot::ToolAxis { keeps_tip: true }), "tool centre point retention tool axis direction control").with(facts::TOOL_AXIS),
     row(540, Effect::Work(1), "workpiece coordinate system 1 selection").with(facts::WORK),
     fanuc(541, Effect::AdditionalWork, "additional workpiece coordinate system selection").with(facts::WORK),
     fanuc(542, Effect::NotSimulated, "rotary table dynamic fixture offset"),
@@ -157,7 +157,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     row(680, Effect::Rotation(Rotation::On), "coordinate system rotation").with(facts::ROTATION),
     fanuc(681, Effect::NotSimulated, "three-dimensional coordinate conversion"),
     fanuc(682, Effect::Rotation(Rotation::Tilted), "tilted working plane indexing").with(facts::TILT),
-    fanuc(683, Effect::NotSimulated, "tilted working plane indexing by tool axis direction"),
+    fanuc(683, Effect::Rotation(Rotation::AlongTool), "tilted working plane indexing by tool axis direction").with(facts::TILT),
     fanuc(684, Effect::Rotation(Rotation::TiltedFurther), "tilted working plane indexing, incremental multi-command").with(facts::TILT),
     row(690, Effect::Rotation(Rotation::Off), "coordinate system rotation cancel"),
     haas(700, Effect::OneShot(OneShot::BoltHoles(HolePattern::Circle)), "bolt hole circle").with(facts::PATTERN),
@@ -236,11 +236,11 @@ pub(super) const CODES: &[GCodeRow] = &[
     haas(1740, Effect::NotSimulated, "counterclockwise non-vertical rigid tapping"),
     haas(1840, Effect::NotSimulated, "clockwise non-vertical rigid tapping"),
     haas(1870, Effect::Smoothness, "smoothness level setting").with(facts::SMOOTHNESS),
-    haas(2340, Effect::NotSimulated, "tool centre point control"),
-    haas(2530, Effect::NotSimulated, "orient spindle normal to feature coordinate system"),
-    haas(2540, Effect::NotSimulated, "dynamic work offset"),
-    haas(2550, Effect::NoEffect, "dynamic work offset cancel").with(facts::WITHOUT_EFFECT),
+    haas(2340, Effect::Length(Length::TipOfHaas), "tool centre point control"),
+    haas(2530, Effect::OneShot(OneShot::ToolAxis { keeps_tip: false }), "orient spindle normal to feature coordinate system").with(facts::TOOL_AXIS),
+    haas(2540, Effect::DynamicOffset(DynamicOffset::On), "dynamic work offset"),
+    haas(2550, Effect::DynamicOffset(DynamicOffset::Off), "dynamic work offset cancel"),
     haas(2660, Effect::NotSimulated, "linear rapid motion of all axes"),
-    haas(2680, Effect::NotSimulated, "feature coordinate system on"),
-    haas(2690, Effect::NotSimulated, "feature coordinate system off"),
+    haas(2680, Effect::Rotation(Rotation::Feature), "feature coordinate system on").with(facts::TILT),
+    haas(2690, Effect::Rotation(Rotation::Off), "feature coordinate system off"),
 ];

@@ -36,6 +36,7 @@ struct UncommonWords {
     /// Switch of `/n` inside the block, and the words left while it is on.
     form_if_skipped: Option<(u8, Words)>,
     punched_value: Option<u64>,
+    comment_length: Option<u32>,
     /// Code of the words, indexed by [`WordOperand::Code`].
     codes: Vec<Bytecode>,
     /// Axis numbers, indexed by [`LoweredWord::axis`].
@@ -149,6 +150,16 @@ impl Words {
 
     fn uncommon_mut(&mut self) -> &mut UncommonWords {
         self.uncommon.get_or_insert_default()
+    }
+
+    /// Keeps the number of characters in the comment of the block.
+    pub(super) fn set_comment_length(&mut self, length: u32) {
+        self.uncommon_mut().comment_length = Some(length);
+    }
+
+    /// Returns the number of characters in the comment of a block with G47, the text that a Haas engraves.
+    pub fn comment_length(&self) -> Option<u32> {
+        self.uncommon.as_ref()?.comment_length
     }
 
     /// Keeps the sixteen hexadecimal digits in the comment of the block.
