@@ -147,9 +147,12 @@ impl Alignment {
         Self { frame, tool: head.rotation, at: *at }
     }
 
-    /// Returns the alignment of a tool whose rotation is known and no axis of the machine.
-    pub(super) fn along(tool: Matrix) -> Self {
-        Self { frame: Frame { rotation: Matrix::IDENTITY, shift: [0.0; 3] }, tool, at: Position::default() }
+    /// Returns the alignment that turns a plane level about its origin, in machine coordinates, as a table does; for a machine that
+    /// nothing describes.
+    pub(super) fn level(plane: &Matrix, origin: Vector) -> Self {
+        let rotation = plane.transposed();
+        let shift = sum(origin, scaled(rotation.apply(origin), -1.0));
+        Self { frame: Frame { rotation, shift }, tool: Matrix::IDENTITY, at: Position::default() }
     }
 
     /// Returns the alignment of a table that doesn't turn with its axes.

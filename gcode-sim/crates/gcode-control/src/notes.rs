@@ -15,7 +15,7 @@ gcode_lang::finding_kinds! {
     DOUBLED_NUMBER = "doubled-number", Warning, "a jump to one of several N";
     DRILL_PLANE = "drill-plane", Warning, "a cycle drills along Z while another plane is active";
     END_BEFORE_SWITCH = "end-before-switch", Warning, "a position read after a change of coordinates";
-    ENGRAVING = "engraving", Warning, "the strokes of engraved text are unknown";
+    ENGRAVED_TEXT = "engraved-text", Warning, "the strokes of engraved text are unknown";
     G53_IGNORED = "g53-ignored", Warning, "G53 in G91 moves nothing";
     INTO_LOOP = "into-loop", Warning, "a jump into a loop";
     LARGE_ALARM_NUMBER = "large-alarm-number", Warning, "the number of #3000 exceeds its range";
@@ -177,9 +177,9 @@ impl Note {
             Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
             Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as 0: nothing states its value on the machine"), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
-            Self::Engraving { characters, height } => (&ENGRAVING, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),
+            Self::Engraving { characters, height } => (&ENGRAVED_TEXT, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),
             Self::MainRepeats => (&MAIN_REPEATS, "M99 ends the main program: a control starts it again for ever, the run ends after the first pass".into(), "give --cycles 2 for two passes"),
-            Self::NoKinematics(code) => (&NO_KINEMATICS, format!("{} without the rotary axes of the machine: X, Y and Z go to the programmed points, and where they and the rotary axes are on the machine is unknown", name(code)), "describe [[table]] or [[head.axis]], and [head], in the machine file"),
+            Self::NoKinematics(code) => (&NO_KINEMATICS, format!("{} without the rotary axes of the machine: X, Y and Z go on as if a table had turned the part, and where they and the rotary axes are on the machine is unknown", name(code)), "describe [[table]] or [[head.axis]], and [head], in the machine file"),
             Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),
             Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
             Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),

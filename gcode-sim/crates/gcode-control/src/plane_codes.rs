@@ -171,7 +171,8 @@ impl Planner<'_> {
         match alignment {
             Some(alignment) => self.align(plan, tilt, alignment, before),
             None => {
-                self.align(plan, tilt, Alignment::along(Matrix::IDENTITY), before);
+                let alignment = self.level_alignment(&plan.state, &tilt);
+                self.align(plan, tilt, alignment, before);
                 let code = self.code_of(|effect| effect == Effect::Rotation(Rotation::AlongTool));
                 self.lose_position(plan, code, false);
             }
@@ -207,11 +208,13 @@ impl Planner<'_> {
     /// Counts the plane that the rotary axes are aligned with from their work zeros, which have changed.
     pub(super) fn realign(&self, state: &mut State) {
         let zero = self.data.zeros(state);
-        if let (Some(tilt), Some(kinematics)) = (&mut state.transform.tilt, &self.data.settings.kinematics)
-            && let Some(alignment) = &mut tilt.alignment
-        {
-            *alignment = Alignment::new(kinematics, &alignment.at, &zero);
-        }
+        let Some(mut tilt) = state.transform.tilt else { return };
+        let Some(alignment) = tilt.alignment else { return };
+        tilt.alignment = Some(match &self.data.settings.kinematics {
+            Some(kinematics) => Alignment::new(kinematics, &alignment.at, &zero),
+            None => self.level_alignment(state, &tilt),
+        });
+        state.transform.tilt = Some(tilt);
     }
 
     /// Adds a block of P2 or P3; returns the plane with the last one.

@@ -2,7 +2,7 @@
 use super::control::Control;
 use super::data::{STANDARD_SYSTEMS, system_index};
 use gcode_lang::control::{Dialect, ParameterId};
-use gcode_lang::program::modes::{GROUPS, WorkSystem};
+use gcode_lang::program::modes::{DynamicOffset, GROUPS, ModalGroup, WorkSystem};
 
 /// Value that is no longer as it is when the control is switched on.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,9 @@ impl Control {
         for (number, value) in self.variables().filter(|(number, _)| *number >= 100) {
             push(ResidualKind::Variable, format!("#{number}"), value);
         }
-        for group in GROUPS {
+        // A dynamic work offset that is off is none, as a shift of 0.
+        let is_off = |group| group == ModalGroup::DynamicOffset && state.modal.dynamic == DynamicOffset::Off;
+        for group in GROUPS.iter().filter(|group| !is_off(**group)) {
             let code = state.modal.code_in(*group);
             push(ResidualKind::Mode, mode_name(group.number()), f64::from(code) / 10.0);
         }

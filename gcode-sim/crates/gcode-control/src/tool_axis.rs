@@ -1,6 +1,6 @@
 //! G53.1, and G53.6 about the tip: the rotary axes point the tool along Z of the tilted plane.
 use super::functions::ExecResult;
-use super::kinematics::{Alignment, Vector, choosing_axis, pointing_positions};
+use super::kinematics::{Alignment, Vector, choosing_axis, pointing_positions, sum};
 use super::linear_motion::Endpoint;
 use super::notes::Note;
 use super::plan::BlockPlan;
@@ -60,7 +60,7 @@ impl Planner<'_> {
         tilt.alignment = None;
         state.transform.tilt = Some(tilt);
         let Some(kinematics) = &self.data.settings.kinematics else {
-            let alignment = Alignment::along(tilt.plane.matrix);
+            let alignment = self.level_alignment(state, &tilt);
             self.align(plan, tilt, alignment, before);
             self.lose_position(plan, self.code_of(|effect| effect == tool_axis), true);
             return Ok(());
@@ -78,6 +78,12 @@ impl Planner<'_> {
         }
         self.align(plan, tilt, Alignment::new(kinematics, &target, &zero), before);
         Ok(())
+    }
+
+    /// Returns the alignment of a plane on a machine that nothing describes.
+    pub(super) fn level_alignment(&self, state: &State, tilt: &Tilt) -> Alignment {
+        let zero = self.data.zeros(state);
+        Alignment::level(&tilt.plane.matrix, sum(tilt.plane.origin, tilt.axes.map(|axis| zero[axis])))
     }
 
     /// Sets the alignment of part and tool in a plane, and turns the tool length with it; `before` is the length offset at the

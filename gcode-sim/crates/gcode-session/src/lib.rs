@@ -463,7 +463,7 @@ impl Run {
                 finding.note(why).help("check where the step gets its value: a step of 0 makes no progress")
             }
             None => finding
-                .help("end a wait for an input with --input '#1005=1', a main program's M99 with --cycles 1"),
+                .help("end a wait for an input with --input '#1005=1', a main program's M99 P with --cycles 1"),
         }
     }
 }
