@@ -14,7 +14,9 @@ use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
-use gcode_lang::program::modes::{CutterSide, Distance, Polar, Rotation, Scaling, StrokeCheck};
+use gcode_lang::program::modes::{
+    CutterSide, Distance, DynamicOffset, Polar, Rotation, Scaling, StrokeCheck,
+};
 use gcode_lang::units::Rpm;
 
 /// Variable of output 0 of a Haas, and the number of the last output.
@@ -53,7 +55,12 @@ impl Planner<'_> {
         self.check_modes(&before, state)?;
         let length_before = state.length_offset;
         self.update_coordinates(&before, state);
-        let starts_dynamic = state.modal.dynamic != before.dynamic && state.is_turned();
+        let starts_dynamic = state.modal.dynamic != before.dynamic
+            && match state.modal.dynamic {
+                DynamicOffset::Off => false,
+                DynamicOffset::On => self.data.settings.kinematics.is_none(),
+                DynamicOffset::Fixture | DynamicOffset::SettingError => true,
+            };
         if state.modal.cycle.is_some() && !is_cycle_active {
             self.begin_cycle(state)?;
         }
@@ -63,7 +70,7 @@ impl Planner<'_> {
             && state.modal.cycle.is_none()
             && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
         self.push_turned_length(plan, length_before);
-        if starts_dynamic && self.data.settings.kinematics.is_none() {
+        if starts_dynamic {
             self.lose_position(plan, plan.state.modal.dynamic.code(), false);
         }
         Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
@@ -91,6 +98,12 @@ impl Planner<'_> {
                 return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.description)));
             }
             uses.add(state.modal.apply(row.effect));
+            if let Effect::UnstatedOffset(offset) = row.effect {
+                state.modal.dynamic = match self.words.count(b'P')?.unwrap_or(1) {
+                    0 => DynamicOffset::Off,
+                    _ => offset,
+                };
+            }
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
                 state.is_tapping_rigid = false;
@@ -166,7 +179,7 @@ impl Planner<'_> {
             (state.transform.tilt, state.transform.plane_entry) = (None, None);
         }
         let is_centred = state.transform.scaling.is_some() || state.transform.rotation.is_some();
-        if !is_centred && !state.is_turned() {
+        if !is_centred && !state.is_turned() && modal.dynamic == DynamicOffset::Off {
             state.transform.unknown_centre = 0;
         }
         if modal.polar == Polar::On && before.polar == Polar::Off {

@@ -99,7 +99,13 @@ impl Plane {
     /// parallel, X is the axis after the vertical one: Y after X, Z after Y, X after Z.
     pub(super) fn along_tool(origin: Vector, tool: Vector, vertical: Vector, angle: f64) -> Self {
         let [x, y, z] = vertical.map(f64::abs);
-        let next = if x > y && x > z { Y } else if y > z { Z } else { X };
+        let next = if x > y && x > z {
+            Y
+        } else if y > z {
+            Z
+        } else {
+            X
+        };
         let x = unit_vector(cross(vertical, tool)).unwrap_or(next);
         let matrix = Matrix::from_columns([x, cross(tool, x), tool]);
         Self { origin, matrix: matrix.after(&Matrix::about(Z, angle)) }

@@ -37,7 +37,9 @@ impl Planner<'_> {
     /// G68.2, and G68.4 within the plane that is active: the forms P0 to P4. G268 of a Haas, and G68.3 along the tool.
     pub(super) fn plan_tilt(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         if plan.state.controls_tip() {
-            return Err(self.not_simulated("a tilted plane in tool centre point control (command G49 before it)"));
+            return Err(
+                self.not_simulated("a tilted plane in tool centre point control (command G49 before it)")
+            );
         }
         let axes = self.locate(self.slides())?;
         let rotation = plan.state.modal.rotation;
@@ -186,13 +188,16 @@ impl Planner<'_> {
         let axes = self.locate(self.slides())?;
         let state = &plan.state;
         if state.transform.rotation.is_some() || state.controls_tip() {
-            return Err(self.not_simulated("G68 with I J K in G68 of a plane, or in tool centre point control"));
+            return Err(
+                self.not_simulated("G68 with I J K in G68 of a plane, or in tool centre point control")
+            );
         }
         let mut origin = axes.map(|axis| state.programmed_position[axis]);
         for (value, axis) in origin.iter_mut().zip(axes) {
             *value = self.axis_dimension(axis, state)?.unwrap_or(*value);
         }
-        let direction = unit_vector(self.lengths(*b"IJK", state)?).ok_or_else(|| format("I, J and K are all 0"))?;
+        let direction =
+            unit_vector(self.lengths(*b"IJK", state)?).ok_or_else(|| format("I, J and K are all 0"))?;
         let angle = self.angle(b'R')?.ok_or_else(|| format("R is missing"))?;
         let plane = Plane { origin, matrix: Matrix::about(direction, angle) };
         let plane = match (&state.transform.tilt, self.registers.state.modal.rotation) {

@@ -6,8 +6,8 @@ use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirecti
 use gcode_lang::program::cycles::Cycle;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::{
-    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, ModalCall, ModalGroup, Motion, Plane, Polar,
-    ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
+    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, ModalCall, ModalGroup,
+    Motion, Plane, Polar, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
 };
 
 /// Control between two blocks; lengths in mm even with G20.
@@ -240,10 +240,9 @@ impl Modal {
                 return match rotation {
                     Rotation::Off => None,
                     Rotation::On => Some(AxisWordUse::Rotate),
-                    Rotation::Tilted
-                    | Rotation::TiltedFurther
-                    | Rotation::AlongTool
-                    | Rotation::Feature => Some(AxisWordUse::Tilt),
+                    Rotation::Tilted | Rotation::TiltedFurther | Rotation::AlongTool | Rotation::Feature => {
+                        Some(AxisWordUse::Tilt)
+                    }
                 };
             }
             Effect::Mirror(mirror) => {
@@ -253,6 +252,7 @@ impl Modal {
             Effect::AdditionalWork => return Some(AxisWordUse::AdditionalWork),
             Effect::OneShot(one) => return Some(AxisWordUse::OneShot(one)),
             Effect::Motion(_)
+            | Effect::UnstatedOffset(_)
             | Effect::NoEffect
             | Effect::LookAhead
             | Effect::Smoothness

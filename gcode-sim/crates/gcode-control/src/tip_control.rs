@@ -61,7 +61,7 @@ impl ControlData {
         }
         match state.modal.dynamic {
             DynamicOffset::On => self.dynamic_alignment(state, at),
-            DynamicOffset::Off => None,
+            DynamicOffset::Off | DynamicOffset::Fixture | DynamicOffset::SettingError => None,
         }
     }
 
@@ -298,9 +298,8 @@ impl Planner<'_> {
     /// Returns true if a rotary axis of the table turns between two positions.
     fn turns_table(&self, from: &Position, to: &Position) -> bool {
         let kinematics = self.data.settings.kinematics.as_ref();
-        kinematics.is_some_and(|kinematics| {
-            kinematics.table.iter().any(|axis| from[axis.axis] != to[axis.axis])
-        })
+        kinematics
+            .is_some_and(|kinematics| kinematics.table.iter().any(|axis| from[axis.axis] != to[axis.axis]))
     }
 
     /// Emits a rapid, or a cut with its rate and seconds.

@@ -165,8 +165,7 @@ impl Planner<'_> {
             let size = |axis: &AxisIndex| (from_zero(a[*axis]), from_zero(b[*axis]));
             let mut keys = axes.iter().map(way).chain(axes.iter().map(size));
             let differing = keys.find(|(a, b)| (a - b).abs() > 1e-6);
-            let (a, b) =
-                differing.or(axes.first().map(|axis| (-a[*axis], -b[*axis]))).unwrap_or_default();
+            let (a, b) = differing.or(axes.first().map(|axis| (-a[*axis], -b[*axis]))).unwrap_or_default();
             a.total_cmp(&b)
         };
         let nearest = reachable.min_by(order);

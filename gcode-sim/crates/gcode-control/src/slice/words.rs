@@ -286,7 +286,8 @@ impl Slice {
         let word = list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
         let number = word.map_or(modal, |value| value as u32);
         let marks = self.machine.code(letter) | self.machine.tool_table;
-        let is_set = if is_h { self.is_length_set(number) } else { self.is_radius_set(number, &data.settings) };
+        let is_set =
+            if is_h { self.is_length_set(number) } else { self.is_radius_set(number, &data.settings) };
         if number == 0 || is_set {
             return marks;
         }

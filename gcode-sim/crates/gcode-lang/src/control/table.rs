@@ -2,7 +2,8 @@
 use super::common_ranges;
 use super::machine_values::MachineValues;
 use super::{
-    ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetMemory, OffsetVariables, Settings, ToolAxisChoice,
+    ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetMemory, OffsetVariables, Settings,
+    ToolAxisChoice,
 };
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;

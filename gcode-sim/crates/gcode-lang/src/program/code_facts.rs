@@ -334,6 +334,8 @@ pub(super) const PATTERN: CodeFacts = CodeFacts {
     coordinates: NotScaled,
     ..ONE_SHOT
 };
+/// G54.2 and G54.4.
+pub(super) const UNSTATED_OFFSET: CodeFacts = CodeFacts { coordinates: NotTransformed, ..MODAL };
 /// G47 of a Haas.
 pub(super) const ENGRAVING: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,

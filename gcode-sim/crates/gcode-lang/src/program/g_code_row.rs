@@ -2,8 +2,8 @@
 use super::code_facts::CodeFacts;
 use super::cycles::Cycle;
 use super::modes::{
-    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, ModalGroup, Motion, Plane, Polar, ReturnTo,
-    Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
+    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, ModalGroup, Motion, Plane,
+    Polar, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
 };
 use crate::control::Dialect;
 
@@ -50,6 +50,8 @@ pub enum Effect {
     Mirror(Mirror),
     /// Group 23: G254 and G255 of a Haas.
     DynamicOffset(DynamicOffset),
+    /// Group 23: G54.2 and G54.4, with P0 to end it.
+    UnstatedOffset(DynamicOffset),
     /// Group 00: effect in its own block only.
     OneShot(OneShot),
     /// Feed and lookahead control without an effect on the path.
@@ -87,7 +89,7 @@ impl Effect {
             Self::Rotation(_) => ModalGroup::Rotation,
             Self::Polar(_) => ModalGroup::Polar,
             Self::Mirror(_) => ModalGroup::Mirror,
-            Self::DynamicOffset(_) => ModalGroup::DynamicOffset,
+            Self::DynamicOffset(_) | Self::UnstatedOffset(_) => ModalGroup::DynamicOffset,
             Self::OneShot(_)
             | Self::NoEffect
             | Self::LookAhead
@@ -123,6 +125,7 @@ impl Effect {
             | Self::Polar(_)
             | Self::Mirror(_)
             | Self::DynamicOffset(_)
+            | Self::UnstatedOffset(_)
             | Self::OneShot(_) => true,
             // The simulator has one state of the spindle mode.
             Self::SpindleMode(_) => true,

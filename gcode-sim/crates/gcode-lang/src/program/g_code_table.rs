@@ -3,8 +3,8 @@ use super::code_facts as facts;
 use super::cycles::{self, Cycle};
 use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot};
 use super::modes::{
-    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, Motion, Plane, Polar, ReturnTo, Rotation,
-    Scaling, SpindleMode, StrokeCheck, Unit,
+    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, Motion, Plane, Polar,
+    ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
 };
 use crate::control::Dialect;
 
@@ -63,7 +63,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     row(40, Effect::OneShot(OneShot::Dwell), "dwell").with(facts::DWELL),
     fanuc(50, Effect::NoEffect, "AI contour control, high-speed cycle machining").with(facts::CONTOUR_CONTROL),
     fanuc(51, Effect::NoEffect, "AI contour control, smooth interpolation").with(facts::SMOOTH_CONTOUR_CONTROL),
-    fanuc(54, Effect::NotSimulated, "HRV3, 4 on/off"),
+    fanuc(54, Effect::NoEffect, "HRV3, 4 on/off").with(facts::WITHOUT_EFFECT),
     fanuc(71, Effect::NotSimulated, "cylindrical interpolation"),
     fanuc(80, Effect::LookAhead, "advanced preview control").with(facts::LOOK_AHEAD),
     row(90, Effect::NoEffect, "exact stop").with(facts::EXACT_STOP),
@@ -138,8 +138,8 @@ pub(super) const CODES: &[GCodeRow] = &[
     fanuc(536, Effect::OneShot(OneShot::ToolAxis { keeps_tip: true }), "tool centre point retention tool axis direction control").with(facts::TOOL_AXIS),
     row(540, Effect::Work(1), "workpiece coordinate system 1 selection").with(facts::WORK),
     fanuc(541, Effect::AdditionalWork, "additional workpiece coordinate system selection").with(facts::WORK),
-    fanuc(542, Effect::NotSimulated, "rotary table dynamic fixture offset"),
-    fanuc(544, Effect::NotSimulated, "workpiece setting error compensation"),
+    fanuc(542, Effect::UnstatedOffset(DynamicOffset::Fixture), "rotary table dynamic fixture offset").with(facts::UNSTATED_OFFSET),
+    fanuc(544, Effect::UnstatedOffset(DynamicOffset::SettingError), "workpiece setting error compensation").with(facts::UNSTATED_OFFSET),
     row(550, Effect::Work(2), "workpiece coordinate system 2 selection").with(facts::WORK),
     row(560, Effect::Work(3), "workpiece coordinate system 3 selection").with(facts::WORK),
     row(570, Effect::Work(4), "workpiece coordinate system 4 selection").with(facts::WORK),
@@ -177,8 +177,8 @@ pub(super) const CODES: &[GCodeRow] = &[
     cycle(&cycles::COUNTER_BORING),
     cycle(&cycles::PECK_DRILLING),
     cycle(&cycles::TAPPING),
-    fanuc(842, Effect::NotSimulated, "rigid tapping cycle"),
-    fanuc(843, Effect::NotSimulated, "left-handed rigid tapping cycle"),
+    fanuc_cycle(&cycles::RIGID_TAPPING),
+    fanuc_cycle(&cycles::LEFT_HANDED_RIGID_TAPPING),
     cycle(&cycles::BORING_FEED_RETRACT),
     cycle(&cycles::BORING_SPINDLE_STOP),
     fanuc_cycle(&cycles::BACK_BORING),

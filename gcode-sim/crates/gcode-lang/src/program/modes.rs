@@ -139,8 +139,8 @@ group!(/// Group 17: polar coordinates.
     Polar { #[default] Off = 150, On = 160, });
 group!(/// Group 22: mirror image.
     Mirror { #[default] Off = 501, On = 511, });
-group!(/// Group 23: dynamic work offset of a Haas.
-    DynamicOffset { #[default] Off = 2550, On = 2540, });
+group!(/// Group 23: dynamic work offset of a Haas; G54.2 and G54.4 of a Fanuc, whose values nothing states.
+    DynamicOffset { #[default] Off = 2550, On = 2540, Fixture = 542, SettingError = 544, });
 
 /// Group 14: work coordinate system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -133,6 +133,9 @@ impl CallOp {
     }
 }
 
+/// G47 × 10: on a Haas the comment of its block is engraved.
+const ENGRAVING: u32 = 470;
+
 impl Words {
     fn new(list: Vec<LoweredWord>, call: Option<CallOp>) -> Self {
         let uncommon =
@@ -152,9 +155,11 @@ impl Words {
         self.uncommon.get_or_insert_default()
     }
 
-    /// Keeps the number of characters in the comment of the block.
-    pub(super) fn set_comment_length(&mut self, length: u32) {
-        self.uncommon_mut().comment_length = Some(length);
+    /// Keeps the number of characters in the comment of a block with G47.
+    pub(super) fn keep_text_length(&mut self, length: usize) {
+        if self.list.iter().any(|word| matches!(word.value, WordOperand::G(ENGRAVING, _))) {
+            self.uncommon_mut().comment_length = Some(length as u32);
+        }
     }
 
     /// Returns the number of characters in the comment of a block with G47, the text that a Haas engraves.

@@ -2,15 +2,11 @@
 mod expr;
 
 use super::bytecode::{AssignmentTarget, Bytecode, Instruction, Slot};
-use super::words::{LoweredWord, WordOperand};
 use super::{Assign, DialectSyntax, GuardedOp, Op, OpBody, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
 pub(super) use expr::ExprContext;
-
-/// G47 × 10: on a Haas the comment of its block is engraved.
-const ENGRAVING: u32 = 470;
 
 /// Most skips inside one block, one per switch.
 const MAX_INNER_SKIPS: usize = 9;
@@ -114,12 +110,8 @@ impl Lowering {
             }
             (None, false) => {
                 let mut lowered = self.lower_words(&block.items, &skips)?;
-                let is_engraving =
-                    |word: &LoweredWord| matches!(word.value, WordOperand::G(ENGRAVING, _));
-                if let Some(text) = block.comments.first()
-                    && lowered.list.iter().any(is_engraving)
-                {
-                    lowered.set_comment_length(text.text.len() as u32);
+                if let Some(comment) = block.comments.first() {
+                    lowered.keep_text_length(comment.text.len());
                 }
                 if let Some(value) = block.comments.first().and_then(|comment| sixteen_digits(&comment.text))
                 {
