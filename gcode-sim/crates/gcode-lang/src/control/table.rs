@@ -198,7 +198,7 @@ const DOCUMENTED: &[SettingRow] = &[
     whole!("ALARM-BASE", "the number that #3000=n adds to n", 0, 9000, |s, v| s.macro_alarm_base = v as u16),
     whole!("ALARM-MOST", "the largest n that the manual gives for #3000=n", 1, 4095, |s, v| s.macro_alarm_max = v as u16),
     row!("MORE-COMMONS", "common variables beyond #100 to #199 and #500 to #999", SettingValues::Ranges(common_ranges::PATTERN), |s, v| s.extra_commons = common_ranges::read(v).ok()?),
-    choice!("OFFSET-MEMORY", "8136#6, 8136#7: the tool offset memory, C with H and D apart, B with geometry and wear, A with one value", OffsetMemory::ALL, |s, v| s.offset_memory = v),
+    choice!("OFFSET-MEMORY", "the tool offset memory (8136#6, 8136#7): C has H and D apart, B geometry and wear for both, A one value", OffsetMemory::ALL, |s, v| s.offset_memory = v),
     choice!("OFFSET-VARIABLES", "numbering of the tool offset variables", OffsetVariables::ALL, |s, v| s.offset_variables = v),
     switch!("PLAIN-IF", "IF[..] accepts an assignment or words without THEN", allows_plain_if),
     switch!("VALUE-CONDITIONS", "IF[#1] and WHILE[#1] are true unless #1 is 0 or vacant", allows_value_conditions),
