@@ -4,10 +4,10 @@ use nalgebra::{Point3, Vector3};
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
 use super::metal::PointInMetal;
 use super::rapids::{PLUNGE_COSINE, error_if, format_point};
-use super::tool_lines::lines;
+use super::tool_lines::{deepest, lines};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
-use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolCylinder, arrivals};
+use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolPart, arrivals};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};
@@ -176,7 +176,7 @@ impl HoleExtractor<'_> {
         let is_clear = match surface {
             Some(body) => path.is_clear_by_planes(&self.tool_body, |p| body.nearest(p)),
             None => {
-                let radius = self.tool_body.iter().map(|part| part.radius).fold(0.0, f64::max);
+                let radius = self.tool_body.iter().map(ToolPart::radius).fold(0.0, f64::max);
                 !is_straight || !self.metal.is_touched(&begin, &pose.tip, &axis, radius)
             }
         };
@@ -233,11 +233,11 @@ impl HoleExtractor<'_> {
     /// Reports a rapid of unknown start at whose end the side of the tool is in metal.
     pub(super) fn check_body_at(&mut self, event: &Event<'_>, tip: &Point3<f64>) {
         let Some(axis) = self.pose.axis else { return };
-        let is_left_out = |part: &ToolCylinder| part.is_cutter && self.tool_radius().is_none();
-        let cut = self.tool_body.iter().filter(|part| !is_left_out(part)).find_map(|part| {
-            let lines = lines(part, &axis, &[*tip, *tip], &self.metal).into_iter();
-            lines.filter_map(|line| self.metal.uncut(&line)).reduce(PointInMetal::deeper)
-        });
+        let is_left_out = |part: &ToolPart| part.is_cutter && self.tool_radius().is_none();
+        let cut =
+            self.tool_body.iter().filter(|part| !is_left_out(part)).find_map(|part| {
+                deepest(part, &axis, &[*tip, *tip], &self.metal, |line| self.metal.uncut(line))
+            });
         if let Some(cut) = cut {
             self.report_side(event, cut, Severity::Error, "");
         }
