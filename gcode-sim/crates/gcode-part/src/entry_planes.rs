@@ -18,6 +18,9 @@ const WALL: f64 = 1.0;
 /// reamer, and some clearance.
 pub const MAX_BREAK_THROUGH: f64 = 10.0;
 
+/// Width by which a cone may break the edge of a hole without a countersink, mm.
+pub const MAX_EDGE_BREAK: f64 = 0.5;
+
 /// Length of a drill's point of 118° in diameters: a finishing tool need not reach below the drill's full diameter.
 pub const POINT_LENGTH: f64 = 0.300_430;
 
@@ -236,6 +239,14 @@ impl Collar {
     pub fn piece_below_entry(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<[f64; 2]> {
         let gain = (to - from).dot(&self.rod.axis);
         shares_between([0.0, 1.0], (-self.depth(from), gain), (f64::NEG_INFINITY, 0.0))
+    }
+
+    /// Returns the room of a cone that breaks the edge at the entry; `None` where the reference has a countersink or no diameter.
+    /// `slope` is the gain of the tool's radius per mm of height.
+    pub fn edge_break(&self, slope: f64) -> Option<Step> {
+        let has_edge = self.has_diameter && self.steps.iter().all(|step| step.taper.slope == 0.0);
+        let taper = Taper { radius: self.hole_radius + MAX_EDGE_BREAK, slope: -slope };
+        (has_edge && 0.0 < slope).then(|| Step { taper, max_depth: MAX_EDGE_BREAK / slope })
     }
 
     /// Returns the largest depth of a feed in the hole, mm.

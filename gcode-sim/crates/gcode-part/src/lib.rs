@@ -64,7 +64,9 @@ mod touch_uncertainty;
 pub use assumption::{Assumption, AssumptionPlace};
 pub use clusters::Clusters;
 pub use contact::Frustum;
-pub use entry_planes::{Collar, EntryPlanes, MAX_BREAK_THROUGH, Metal, PARALLEL_COSINE, POINT_LENGTH, Step};
+pub use entry_planes::{
+    Collar, EntryPlanes, MAX_BREAK_THROUGH, MAX_EDGE_BREAK, Metal, PARALLEL_COSINE, POINT_LENGTH, Step,
+};
 pub use feature::{DepthTo, Feature, FeatureKind, Hand};
 pub use flutes::Flutes;
 pub use hole::{Hole, HoleList, Origin, Unit};

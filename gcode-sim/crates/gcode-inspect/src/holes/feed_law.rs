@@ -226,7 +226,8 @@ impl HoleExtractor<'_> {
             if !self.may_cut(part, travel, axis) || self.metal.is_allowed(&base, axis, part.radius()) {
                 return None;
             }
-            let cut = |line: &[Point3<f64>; 2]| self.metal.gouge(line, FeedPart::Side(part.radius()));
+            let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
+            let cut = |line: &[Point3<f64>; 2]| self.metal.gouge(line, side);
             let at = deepest(part, axis, travel, &self.metal, cut)?;
             Some(Gouge { at, part: ToolRegion::Side })
         })

@@ -61,8 +61,11 @@ impl PointInMetal {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum FeedPart {
     Tip,
-    /// A cylinder about the tool's axis of this radius.
-    Side(f64),
+    /// The side of a part of this radius, a cone if it has a slope.
+    Side {
+        radius: f64,
+        slope: f64,
+    },
 }
 
 impl KnownMetal {
@@ -197,19 +200,26 @@ impl KnownMetal {
         if shares.is_empty() {
             return None;
         }
+        let mut take_away = |collar: &Collar, room: &Step| {
+            let pieces = collar.pieces_of_step(from, to, room).into_iter().flatten();
+            pieces.for_each(|piece| shares.take_away(piece));
+        };
         let mut allow = |collar: &Collar| {
+            if let FeedPart::Side { slope, .. } = part {
+                collar.edge_break(slope).iter().for_each(|edge| take_away(collar, edge));
+            }
             for step in &collar.steps {
                 let Taper { radius, slope } = step.taper;
                 let taper = match part {
                     FeedPart::Tip if slope == 0.0 => Taper::cylinder(radius.max(MAX_OFFSET) + ROUNDING),
                     FeedPart::Tip => Taper { radius: radius + MAX_OFFSET, slope },
-                    FeedPart::Side(_) if collar.has_diameter => Taper { radius: radius + SIDE_SLACK, slope },
-                    FeedPart::Side(radius) => Taper::cylinder(2.0 * radius),
+                    FeedPart::Side { .. } if collar.has_diameter => {
+                        Taper { radius: radius + SIDE_SLACK, slope }
+                    }
+                    FeedPart::Side { radius, .. } => Taper::cylinder(2.0 * radius),
                 };
                 let room = Step { taper, max_depth: step.max_depth + TOUCH_DEPTH };
-                for piece in collar.pieces_of_step(from, to, &room).into_iter().flatten() {
-                    shares.take_away(piece);
-                }
+                take_away(collar, &room);
             }
         };
         self.around(travel, MAX_HEIGHT, &mut allow);

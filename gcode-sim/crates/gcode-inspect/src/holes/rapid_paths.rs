@@ -1,10 +1,12 @@
 //! Rapids of several axes: any axis may arrive first, unless the rates of the axes or LRP give the path.
+use std::cell::Cell;
+
 use nalgebra::{Point3, Vector3};
 
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
 use super::metal::PointInMetal;
 use super::rapids::{PLUNGE_COSINE, error_if, format_point};
-use super::tool_lines::{deepest, lines};
+use super::tool_lines::deepest;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolPart, arrivals};
@@ -194,16 +196,16 @@ impl HoleExtractor<'_> {
             if part.is_cutter && self.tool_radius().is_none() && self.metal.is_solid(&[begin, pose.tip]) {
                 continue;
             }
-            let lines = travels.iter().flatten().flat_map(|travel| lines(part, &axis, travel, &self.metal));
-            let mut is_met = false;
-            for line in lines {
-                is_met |= surface.is_some_and(|body| body.piece(&line[0], &line[1], TOUCH_DEPTH).is_some());
-                if let Some(cut) = self.metal.uncut(&line) {
-                    found = Some(found.map_or(cut, |found| found.deeper(cut)));
-                }
-            }
+            let is_met = Cell::new(false);
+            let cut = |line: &[Point3<f64>; 2]| {
+                let in_body = surface.and_then(|body| body.piece(&line[0], &line[1], TOUCH_DEPTH));
+                is_met.set(is_met.get() || in_body.is_some());
+                self.metal.uncut(line)
+            };
+            let on_travel = |travel| deepest(part, &axis, travel, &self.metal, cut);
+            found = travels.iter().flatten().filter_map(on_travel).reduce(PointInMetal::deeper);
             // Between its ends the side of the tool may touch a round body.
-            if let Some(body) = surface.filter(|_| found.is_none() && !is_met) {
+            if let Some(body) = surface.filter(|_| found.is_none() && !is_met.get()) {
                 let deepest = path.with_tool(*part).deepest(&distance_from(&body), TOUCH_DEPTH, &mut budget);
                 found = match deepest {
                     // What is removed is not followed while an axis rotates.

@@ -48,7 +48,7 @@ pub(crate) fn ring(
 
 /// Returns the lines along which points of a part of the tool move: on its lower end, inside its rim too if it moves along
 /// itself, and on its side where it crosses the metal; and the lines up its side at both ends of a travel.
-pub(super) fn lines(
+fn lines(
     part: &ToolPart,
     axis: &Unit<Vector3<f64>>,
     [from, to]: &[Point3<f64>; 2],
@@ -57,7 +57,8 @@ pub(super) fn lines(
     let along = to - from;
     let out = axis.into_inner();
     let top = metal.top_of(part, from, axis).max(metal.top_of(part, to, axis));
-    let mut lines: Vec<[Point3<f64>; 2]> = Vec::new();
+    let at_ends = [from, to].into_iter().flat_map(|tip| sides(part, axis, (tip, &along), top));
+    let mut lines: Vec<[Point3<f64>; 2]> = at_ends.collect();
     let mut add = |height: f64, radius: f64| {
         let offsets = rim(axis, &along, radius).into_iter().map(|offset| offset + out * height);
         lines.extend(offsets.map(|offset| [from + offset, to + offset]));
@@ -90,7 +91,6 @@ pub(super) fn lines(
         }
     }
     lines.push([from, to].map(|tip| tip + out * part.from));
-    lines.extend([from, to].into_iter().flat_map(|tip| sides(part, axis, (tip, &along), top)));
     lines
 }
 
