@@ -64,7 +64,7 @@ use self::per_block::Findings;
 use self::profile::Profile;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolCylinder};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
@@ -123,7 +123,7 @@ pub struct HoleExtractor<'m> {
     axis_position: Position,
     setup: Setup,
     /// Parts of the tool in the spindle; empty if its diameter is unknown.
-    tool_body: Vec<ToolCylinder>,
+    tool_body: Vec<ToolPart>,
     /// Parts of it that cut in a feed; `None` if its diameter is unknown.
     profile: Option<Profile>,
     /// Gouge of the current line.

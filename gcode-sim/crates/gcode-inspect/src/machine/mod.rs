@@ -30,7 +30,7 @@ pub use random::RandomStream;
 pub use rapid::RapidPath;
 pub(crate) use rapid::arrivals;
 pub use sources::{ErrorSource, Quantity};
-pub(crate) use tool_body::{TOUCH_DEPTH, ToolCylinder};
+pub(crate) use tool_body::{TOUCH_DEPTH, ToolPart};
 pub use tool_shape::ToolKind;
 pub(crate) use tool_shape::{PointShape, tool_name};
 pub use wheel::Wheel;
