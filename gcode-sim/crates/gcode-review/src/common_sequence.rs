@@ -48,6 +48,28 @@ pub(super) fn common_runs(old: usize, new: usize, same: impl Fn(usize, usize) ->
     runs
 }
 
+/// Returns the longest common sequence of two lists of lines by their hashes, like [`common_runs`]. If there are too many
+/// edits, lines that one list alone has are left out first.
+pub(super) fn common_lines(hashes: [&[u64]; 2], is_equal: impl Fn(usize, usize) -> bool) -> Vec<EqualRun> {
+    let [old, new] = hashes;
+    let same = |i: usize, j: usize| old[i] == new[j] && is_equal(i, j);
+    let ends = |x: usize, y: usize| x == old.len() && y == new.len();
+    if let Ok(runs) = search((old.len(), new.len()), MOST_EDITS, same, ends) {
+        return runs;
+    }
+    let shared = |side: usize| -> Vec<usize> {
+        let mut others = hashes[1 - side].to_vec();
+        others.sort_unstable();
+        (0..hashes[side].len()).filter(|line| others.binary_search(&hashes[side][*line]).is_ok()).collect()
+    };
+    let (in_old, in_new) = (shared(0), shared(1));
+    let mut runs = Vec::new();
+    for (i, j) in common(in_old.len(), in_new.len(), |i, j| same(in_old[i], in_new[j])) {
+        append(&mut runs, (in_old[i], in_new[j], 1));
+    }
+    runs
+}
+
 /// Searches piece by piece if there are too many edits; each piece ends at the farthest point of [`EDITS_AHEAD`]
 /// edits.
 fn longest_or_long(rows: usize, columns: usize, same: impl Fn(usize, usize) -> bool) -> Vec<EqualRun> {

@@ -37,8 +37,8 @@ pub(super) struct Edits<'a> {
     all: Vec<Edit>,
     /// Edits by program and line, old and new.
     of_line: [BTreeMap<String, Vec<LineRun>>; 2],
-    /// Number of steps before each edit, and the edit, in that order; old and new.
-    by_step: [Vec<(u32, u32)>; 2],
+    /// Edits that a run executes, by the number of steps before them, old and new; `None` if all are in that order.
+    by_step: [Option<Vec<u32>>; 2],
 }
 
 impl<'a> Edits<'a> {
@@ -64,10 +64,15 @@ impl<'a> Edits<'a> {
         for runs in edits.of_line.iter_mut().flat_map(BTreeMap::values_mut) {
             runs.sort_by_key(|run| run.first);
         }
-        for (side, by_step) in edits.by_step.iter_mut().enumerate() {
-            let reached = edits.all.iter().zip(0..).map(|(edit, number)| (edit.reached[side], number));
-            by_step.extend(reached.filter(|(reached, _)| *reached != NONE));
-            by_step.sort_unstable();
+        for side in 0..2 {
+            let reached = |edit: &Edit| edit.reached[side];
+            if !edits.all.is_sorted_by_key(reached) || edits.all.iter().any(|edit| reached(edit) == NONE) {
+                let numbers = 0..edits.all.len() as u32;
+                let mut by_step: Vec<u32> =
+                    numbers.filter(|edit| reached(&edits.all[*edit as usize]) != NONE).collect();
+                by_step.sort_by_key(|edit| reached(&edits.all[*edit as usize]));
+                edits.by_step[side] = Some(by_step);
+            }
         }
         edits
     }
@@ -146,10 +151,16 @@ impl<'a> Edits<'a> {
             return Some(0);
         }
         let last = |side: usize| {
-            let (step, by_step) = (steps[side]? as u32, &self.by_step[side]);
-            let (reached, edit) =
-                by_step[..by_step.partition_point(|(reached, _)| *reached <= step)].last()?;
-            Some((step - reached, *edit as usize))
+            let step = steps[side]? as u32;
+            let is_before = |edit: &Edit| edit.reached[side] <= step;
+            let edit = match &self.by_step[side] {
+                Some(by_step) => {
+                    let behind = by_step.partition_point(|edit| is_before(&self.all[*edit as usize]));
+                    by_step[behind.checked_sub(1)?] as usize
+                }
+                None => self.all.partition_point(is_before).checked_sub(1)?,
+            };
+            Some((step - self.all[edit].reached[side], edit))
         };
         [last(0), last(1)].into_iter().flatten().min().map(|(_, edit)| edit)
     }

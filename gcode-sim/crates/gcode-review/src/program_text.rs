@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::block_list::{BlockList, ExecutedBlocks};
-use super::common_sequence::{EqualRun, common_runs};
+use super::common_sequence::{EqualRun, common_lines};
 use super::record::{BlockLocation, Record, Revision};
 
 /// Blocks of both revisions that cause a difference.
@@ -215,9 +215,7 @@ impl<'a> ChangedPassage<'a> {
 
     /// Returns the ranges of blocks between equal ones.
     fn differences(&self) -> Vec<[Range<usize>; 2]> {
-        let runs = common_runs(self.blocks[0].len(), self.blocks[1].len(), |i, j| {
-            self.hashes[0][i] == self.hashes[1][j] && self.words(0, i) == self.words(1, j)
-        });
+        let runs = common_lines([&self.hashes[0], &self.hashes[1]], |i, j| self.words(0, i) == self.words(1, j));
         let ends = [self.blocks[0].len(), self.blocks[1].len()];
         let mut from = [0, 0];
         let end = EqualRun { old: ends[0], new: ends[1], length: 0 };
@@ -228,31 +226,24 @@ impl<'a> ChangedPassage<'a> {
         ranges.filter(|[old, new]| !(old.is_empty() && new.is_empty())).collect()
     }
 
-    /// Returns the ranges in which the programs differ: block by block if both have the same number of blocks there. A
-    /// deletion and an insertion of the same blocks are one gap.
-    fn gaps(&self) -> Vec<[Range<usize>; 2]> {
-        let mut gaps = Vec::new();
-        for [old, new] in self.differences() {
-            if old.len() == new.len() {
-                gaps.extend(old.zip(new).map(|(i, j)| [i..i + 1, j..j + 1]));
-            } else {
-                gaps.push([old, new]);
-            }
-        }
+    /// Returns the ranges in which the programs differ. A deletion and an insertion of the same blocks are one gap.
+    /// True marks blocks that are moved.
+    fn gaps(&self) -> Vec<([Range<usize>; 2], bool)> {
+        let mut gaps: Vec<_> = self.differences().into_iter().map(|gap| (gap, false)).collect();
         let text = |side: usize, blocks: &Range<usize>| {
             blocks.clone().map(|index| self.words(side, index)).collect::<Vec<_>>().join("\n")
         };
-        let new = gaps.iter().filter(|gap| gap[0].is_empty());
+        let new = gaps.iter().map(|(gap, _)| gap).filter(|gap| gap[0].is_empty());
         let mut moved: BTreeMap<String, Range<usize>> =
             new.map(|gap| (text(1, &gap[1]), gap[1].clone())).collect();
         let mut taken = Vec::new();
-        for gap in gaps.iter_mut().filter(|gap| gap[1].is_empty()) {
+        for (gap, is_moved) in gaps.iter_mut().filter(|(gap, _)| gap[1].is_empty()) {
             if let Some(range) = moved.remove(&text(0, &gap[0])) {
                 taken.push(range.clone());
-                gap[1] = range;
+                (gap[1], *is_moved) = (range, true);
             }
         }
-        gaps.retain(|gap| !(gap[0].is_empty() && taken.contains(&gap[1])));
+        gaps.retain(|(gap, _)| !(gap[0].is_empty() && taken.contains(&gap[1])));
         gaps
     }
 
@@ -261,11 +252,17 @@ impl<'a> ChangedPassage<'a> {
     }
 }
 
-/// Passes on the passages in which two programs differ, as the indices of their blocks, old and new.
+/// Passes on the passages in which two programs differ, as the indices of their blocks, old and new: block by block if
+/// both have the same number of blocks there.
 pub(super) fn for_each_gap<'a>(sides: [&'a ProgramSide<'a>; 2], mut each: impl FnMut([&[u32]; 2])) {
     let passage = ChangedPassage::new(sides, words_and_text);
-    for gap in passage.gaps() {
-        each([0, 1].map(|side| passage.indices(side, &gap[side])));
+    for (gap, is_moved) in passage.gaps() {
+        let [old, new] = [0, 1].map(|side| passage.indices(side, &gap[side]));
+        if old.len() == new.len() && !is_moved {
+            old.chunks(1).zip(new.chunks(1)).for_each(|(old, new)| each([old, new]));
+        } else {
+            each([old, new]);
+        }
     }
 }
 
