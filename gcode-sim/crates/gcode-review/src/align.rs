@@ -81,12 +81,7 @@ impl<'a> StepRange<'a> {
 type Sides<'a> = (StepRange<'a>, StepRange<'a>);
 
 /// Aligns like [`align`]; if one run alone stops (old, new), later steps of the other are lost or added.
-pub(super) fn align_until_stop(
-    old: &StepList,
-    new: &StepList,
-    stops: (bool, bool),
-    tolerance: f64,
-) -> Links {
+pub(super) fn align_until_stop(old: &StepList, new: &StepList, stops: (bool, bool), tolerance: f64) -> Links {
     let same = |i: usize, j: usize| old.at(i).is_same(&new.at(j), tolerance);
     let (rows, columns) = match stops {
         (false, true) => (reach(old.len(), new.len(), same), new.len()),
@@ -200,14 +195,18 @@ fn reordered(
     let StepPair::Same(other_i, other_j) = between else { return None };
     let is_move = old.kind(i).is_move() && old.at(i).is_same(&new.at(j), tolerance);
     // A tool change after an unpaired step keeps its pair.
-    let is_of_pass = matches!(old.kind(other_i), StepKind::Tool(_))
-        && before.last().is_some_and(StepPair::is_unpaired);
+    let is_of_pass =
+        matches!(old.kind(other_i), StepKind::Tool(_)) && before.last().is_some_and(StepPair::is_unpaired);
     if !is_move || old.kind(other_i).is_move() || is_of_pass {
         return None;
     }
     let (lost, added) = (StepPair::Lost(other_i), StepPair::Added(other_j));
     let is_added_first = matches!(first, StepPair::Added(_));
-    Some(if is_added_first { [lost, StepPair::Same(i, j), added] } else { [added, StepPair::Same(i, j), lost] })
+    Some(if is_added_first {
+        [lost, StepPair::Same(i, j), added]
+    } else {
+        [added, StepPair::Same(i, j), lost]
+    })
 }
 
 type Side<'a> = (StepRange<'a>, std::ops::Range<usize>);

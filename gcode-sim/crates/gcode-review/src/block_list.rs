@@ -14,7 +14,7 @@ pub(super) enum BlockList {
     /// Blocks of a record from a file.
     Listed(Vec<BlockLocation>),
     /// Blocks of a run.
-    Executed(ExecutedBlocks),
+    Executed(Box<ExecutedBlocks>),
 }
 
 /// A block of a run: its program in the memory, and its index there.
@@ -161,7 +161,8 @@ impl BlockNumbers {
             span.source == block.source && span.start <= block.start && block.start <= span.end
         };
         if !self.programs.get(&self.last_program).is_some_and(is_in) {
-            self.last_program = self.programs.iter().find(|(_, program)| is_in(program)).map(|(id, _)| *id)?;
+            self.last_program =
+                self.programs.iter().find(|(_, program)| is_in(program)).map(|(id, _)| *id)?;
         }
         Some(self.last_program)
     }
@@ -250,13 +251,11 @@ impl ExecutedBlocks {
 
     /// Returns the name of the program that contains a span.
     fn label(&self, span: Span) -> &str {
-        let before = |program: &MemoryProgram| {
-            (program.span.source, program.span.end) < (span.source, span.start)
-        };
+        let before =
+            |program: &MemoryProgram| (program.span.source, program.span.end) < (span.source, span.start);
         let found = self.programs.get(self.programs.partition_point(before));
-        let is_in = |program: &&MemoryProgram| {
-            program.span.source == span.source && program.span.start <= span.start
-        };
+        let is_in =
+            |program: &&MemoryProgram| program.span.source == span.source && program.span.start <= span.start;
         found.filter(is_in).map_or(&self.sources.get(span.source).name, |program| &program.label)
     }
 
@@ -287,14 +286,18 @@ impl ExecutedBlocks {
             })
         };
         let blocks: Vec<_> = self.programs.iter().enumerate().filter_map(of_program).collect();
-        self.numbers.known.iter().filter_map(|((_, of_run), (length, first_number))| {
-            let numbers = blocks.iter().filter(|(program, ..)| *program == of_run.program);
-            let numbers = numbers.flat_map(|(_, first, end)| {
-                let from = (*first).max(of_run.index);
-                (from..(*end).min(of_run.index + length)).map(|index| first_number + index - of_run.index)
-            });
-            numbers.map(|number| number as usize).find(|number| self.location(*number) == *location)
-        }).min()
+        self.numbers
+            .known
+            .iter()
+            .filter_map(|((_, of_run), (length, first_number))| {
+                let numbers = blocks.iter().filter(|(program, ..)| *program == of_run.program);
+                let numbers = numbers.flat_map(|(_, first, end)| {
+                    let from = (*first).max(of_run.index);
+                    (from..(*end).min(of_run.index + length)).map(|index| first_number + index - of_run.index)
+                });
+                numbers.map(|number| number as usize).find(|number| self.location(*number) == *location)
+            })
+            .min()
     }
 
     /// Returns the number of steps before the first execution of a block, and whether it was ever executed as a whole.
@@ -338,7 +341,7 @@ impl BlockList {
     ) -> Option<T> {
         match self {
             Self::Listed(all) => {
-                all[number].from_outermost().find_map(|block| of(&block.program, block.line))
+                all[number].outermost_first().find_map(|block| of(&block.program, block.line))
             }
             Self::Executed(executed) => {
                 let (key, calls) = executed.numbers.entry(number);
@@ -355,7 +358,7 @@ impl BlockList {
 
 impl BlockLocation {
     /// Iterates over the calls that led to a block, the outermost first, and the block itself.
-    pub(super) fn from_outermost(&self) -> impl Iterator<Item = &Self> {
+    pub(super) fn outermost_first(&self) -> impl Iterator<Item = &Self> {
         self.calls.iter().rev().chain([self])
     }
 }

@@ -89,6 +89,9 @@ fn longest_or_long(rows: usize, columns: usize, same: impl Fn(usize, usize) -> b
     all
 }
 
+/// Equal items up to the farthest point of a search, and that point.
+type FarthestPoint = (Vec<EqualRun>, (usize, usize));
+
 /// Searches like Myers: for every number of edits up to `most` the farthest point on each diagonal, up to the first
 /// end.
 ///
@@ -99,7 +102,7 @@ pub(super) fn search(
     most: usize,
     same: impl Fn(usize, usize) -> bool,
     is_end: impl Fn(usize, usize) -> bool,
-) -> Result<Vec<EqualRun>, (Vec<EqualRun>, (usize, usize))> {
+) -> Result<Vec<EqualRun>, FarthestPoint> {
     let (n, m) = (rows as isize, columns as isize);
     let most = (rows + columns).min(most) as isize;
     let index = |k: isize| (k + most + 1) as usize;

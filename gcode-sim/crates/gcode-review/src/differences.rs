@@ -2,10 +2,10 @@
 use std::collections::BTreeSet;
 
 use super::align::Alignment;
-use super::links::StepPair;
 use super::arcs::reshaped;
 use super::change::Effect;
 use super::hole_groups::HoleEffect;
+use super::links::StepPair;
 use super::modal_conditions::ModalAspect;
 use super::redundant_commands::{is_redundant, redundant_commands};
 use super::reordered_cuts::ReorderedCuts;

@@ -132,7 +132,7 @@ impl<'a> Edits<'a> {
     }
 
     fn of_side(&self, side: usize, block: Option<&BlockLocation>) -> Option<usize> {
-        block?.from_outermost().find_map(|block| self.of_place(side, &block.program, block.line))
+        block?.outermost_first().find_map(|block| self.of_place(side, &block.program, block.line))
     }
 
     /// Returns the edit that causes an effect at numbered blocks and steps: theirs, else the last one before the steps.

@@ -1,12 +1,14 @@
 //! Equal differences, counted as one effect of an edit.
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
 
 use super::align::Alignment;
 use super::change::Effect;
 use super::descriptions::{coordinates, describe, point, short};
 use super::differences::{Difference, StepDifference};
 use super::edits::{Causes, Edits};
+use super::effect_groups::{EditSet, Group, Numbers, RepeatedBlocks, block_key};
 use super::entries::CausedEffect;
 use super::hole_groups::name_holes;
 use super::kinds;
@@ -15,74 +17,7 @@ use super::record::BlockLocation;
 use super::redundant_commands::is_speed_alone;
 use super::steps::{Step, StepKind, difference, near, with_article};
 use gcode_lang::diag::FindingKind;
-use gcode_lang::motion::{MAX_AXES, Position};
-
-/// Differences with one sentence, or those that one edit makes of moves.
-struct Group {
-    kind: &'static FindingKind,
-    /// The difference without its count.
-    text: String,
-    /// Names of the steps that differ, and the number of each.
-    counts: Vec<(&'static str, usize)>,
-    /// Others have other numbers than the first.
-    varies: bool,
-    numbers: Numbers,
-    /// Numbers of its edits, and whether its blocks are part of them.
-    causes: EditSet,
-    is_direct: bool,
-    /// Numbers of the first blocks in the records.
-    block_numbers: [Option<usize>; 2],
-}
-
-/// Edits in the order in which they are added, each once.
-#[derive(Clone, Default)]
-struct EditSet {
-    all: Vec<usize>,
-    sorted: BTreeSet<usize>,
-}
-
-impl EditSet {
-    fn insert(&mut self, edit: usize) {
-        if self.sorted.insert(edit) {
-            self.all.push(edit);
-        }
-    }
-}
-
-impl FromIterator<usize> for EditSet {
-    fn from_iter<T: IntoIterator<Item = usize>>(edits: T) -> Self {
-        let mut all = Self::default();
-        edits.into_iter().for_each(|edit| all.insert(edit));
-        all
-    }
-}
-
-/// Numbers that a group collects.
-#[derive(PartialEq)]
-enum Numbers {
-    None,
-    /// Largest deviation of each axis, and whether all machine positions are unchanged.
-    Shift {
-        most: Position,
-        is_compensated: bool,
-    },
-    /// Ratios of new to old feeds.
-    Factor {
-        smallest: f64,
-        largest: f64,
-    },
-    /// Spindle speeds of the old and the new run, rpm.
-    Speeds {
-        old: f64,
-        new: f64,
-    },
-    /// Moves under another condition by their numbers in the old run, and the first in the new run.
-    Moves {
-        aspect: ModalAspect,
-        old: Vec<usize>,
-        first_new: usize,
-    },
-}
+use gcode_lang::motion::Position;
 
 /// Description of one difference, from which its group begins.
 struct Description {
@@ -118,6 +53,7 @@ pub(super) struct Effects<'a> {
     before_steps: Option<usize>,
     /// The last difference of feeds, and its group.
     last_feed: Option<([u64; 2], [Option<usize>; 2], usize)>,
+    repeated: [OnceCell<RepeatedBlocks>; 2],
 }
 
 impl<'a> Effects<'a> {
@@ -132,6 +68,7 @@ impl<'a> Effects<'a> {
             others: Vec::new(),
             before_steps: None,
             last_feed: None,
+            repeated: Default::default(),
         }
     }
 
@@ -153,11 +90,13 @@ impl<'a> Effects<'a> {
     /// Returns the effects with their edits.
     pub(super) fn finish(mut self) -> Vec<CausedEffect> {
         self.join_shifts();
-        let effect = |group: &Group| {
+        let groups = std::mem::take(&mut self.all);
+        let effect = |group: Group| {
             let blocks = self.blocks(group.block_numbers);
-            (group.causes.all.clone(), Effect::new(group.kind, self.message(group), blocks))
+            let effect = Effect::new(group.kind, self.message(&group), blocks);
+            (group.causes.all.into_iter().map(|edit| edit as usize).collect(), effect)
         };
-        let of_steps: Vec<CausedEffect> = self.all.iter().map(effect).collect();
+        let of_steps: Vec<CausedEffect> = groups.into_iter().map(effect).collect();
         let index = self.before_steps.unwrap_or(self.others.len());
         self.others.splice(index..index, of_steps);
         self.others
@@ -172,7 +111,7 @@ impl<'a> Effects<'a> {
             return;
         }
         let group = self.group_of_difference(kind, steps);
-        let is_direct = group.is_direct;
+        let (is_direct, blocks) = (group.is_direct, group.block_numbers);
         let is_speed = matches!(group.numbers, Numbers::Speeds { .. });
         let is_of_block = ["feed", "move-added", "move-lost"].contains(&group.kind.code) || is_speed;
         let has_block_key = is_of_block || group.kind == &kinds::SPINDLE;
@@ -185,7 +124,8 @@ impl<'a> Effects<'a> {
         let known = self.by_text.get(&text).copied().or_else(of_block);
         let number = known.unwrap_or(self.all.len());
         self.by_text.entry(text).or_insert(number);
-        if let Some(key) = block_numbers {
+        // Blocks that make one step each have no other difference.
+        if let Some(key) = block_numbers.filter(|_| self.is_repeated(blocks)) {
             self.by_blocks.entry(key).or_insert(number as u32);
         }
         match known {
@@ -194,6 +134,15 @@ impl<'a> Effects<'a> {
         }
         // Another one of the same blocks has the same edits, unless these depend on the steps.
         self.last_feed = feed.filter(|_| is_direct).map(|(rates, blocks)| (rates, blocks, number));
+    }
+
+    /// Returns true if one of two blocks makes several steps, or sets a word of several.
+    fn is_repeated(&self, blocks: [Option<usize>; 2]) -> bool {
+        let repeated = |side: usize| {
+            let record = self.alignment.records[side];
+            self.repeated[side].get_or_init(|| RepeatedBlocks::of(&record.steps, record.blocks.len()))
+        };
+        (0..2).any(|side| blocks[side].is_some_and(|block| repeated(side).contains(block)))
     }
 
     /// Returns the rates and the blocks of a difference of feeds.
@@ -265,7 +214,12 @@ impl<'a> Effects<'a> {
     }
 
     /// Describes a move under another modal condition; its blocks are those that set the condition.
-    fn describe_condition(&self, aspect: ModalAspect, step: &Step<'_>, steps: [Option<usize>; 2]) -> Description {
+    fn describe_condition(
+        &self,
+        aspect: ModalAspect,
+        step: &Step<'_>,
+        steps: [Option<usize>; 2],
+    ) -> Description {
         let words = [0, 1].map(|side| Some(self.alignment.records[side].under(steps[side]?).word(aspect)));
         let [before, now] = words.map(|word| word.map_or("", |word| &word.text));
         let name = if aspect == ModalAspect::Cycle { "cycle " } else { "" };
@@ -428,47 +382,6 @@ impl<'a> Effects<'a> {
             n => format!("{n} holes"),
         }
     }
-}
-
-impl Group {
-    fn join(&mut self, other: Self) {
-        self.varies |= self.text != other.text;
-        match (self.is_direct, other.is_direct) {
-            (true, true) => {
-                other.causes.all.into_iter().for_each(|edit| self.causes.insert(edit));
-            }
-            (false, true) => (self.causes, self.is_direct) = (other.causes, true),
-            (_, false) => {}
-        }
-        match (&mut self.numbers, other.numbers) {
-            (
-                Numbers::Shift { most, is_compensated },
-                Numbers::Shift { most: others, is_compensated: is_other },
-            ) => {
-                (0..MAX_AXES).for_each(|axis| most[axis] = most[axis].max(others[axis]));
-                *is_compensated &= is_other;
-            }
-            (
-                Numbers::Factor { smallest, largest },
-                Numbers::Factor { smallest: other_smallest, largest: other_largest },
-            ) => (*smallest, *largest) = (smallest.min(other_smallest), largest.max(other_largest)),
-            (Numbers::Moves { old, .. }, Numbers::Moves { old: others, .. }) => old.extend(others),
-            _ => {}
-        }
-        for (what, times) in other.counts {
-            match self.counts.iter_mut().find(|(known, _)| *known == what) {
-                Some((_, count)) => *count += times,
-                None => self.counts.push((what, times)),
-            }
-        }
-    }
-}
-
-/// Returns a kind of change and the numbers of blocks, old and new, in little memory.
-fn block_key(kind: &FindingKind, blocks: [Option<usize>; 2]) -> (u8, u32, u32) {
-    let number = kinds::ALL.iter().position(|other| other.code == kind.code).unwrap_or(kinds::ALL.len());
-    let [old, new] = blocks.map(|block| block.map_or(0, |block| block as u32 + 1));
-    (number as u8, old, new)
 }
 
 /// Returns the kind of a change of a command.

@@ -1,10 +1,10 @@
 //! Commands that the new revision no longer gives before moves of both: modal codes, axis positions and offsets
 //! that it finds as the previous program left them.
 use super::align::Alignment;
-use super::links::StepPair;
 use super::change::{Effect, grouped};
 use super::first_command::{CommandKind, FirstCommand};
 use super::kinds;
+use super::links::StepPair;
 use super::modal_conditions::ModalAspect;
 use gcode_control::{Modal, modal_code};
 
@@ -45,7 +45,8 @@ fn for_each_shared_move(alignment: &Alignment<'_>, mut each: impl FnMut(SharedMo
     let mut before = [0, 0];
     for link in alignment.links.iter() {
         let sides = link.sides();
-        let is_move = |side: usize| sides[side].is_some_and(|step| alignment.records[side].steps.is_move(step));
+        let is_move =
+            |side: usize| sides[side].is_some_and(|step| alignment.records[side].steps.is_move(step));
         let moves = [0, 1].map(is_move);
         if let ([true, true], [Some(i), Some(j)]) = (moves, sides) {
             each(SharedMove { steps: [i, j], is_same: link.is_same(), before });

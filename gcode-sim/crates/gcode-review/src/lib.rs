@@ -32,6 +32,7 @@ mod cut_settings;
 mod descriptions;
 mod differences;
 mod edits;
+mod effect_groups;
 mod effects;
 mod end_state;
 mod entries;

@@ -40,7 +40,11 @@ pub(super) fn pass_changes(
     let Alignment { records: [old, new], tolerance, .. } = *alignment;
     let (was, is) = (&passes[0].steps[hole], &passes[1].steps[other]);
     let pairs = paired((was, &passes[0].tools[hole]), (is, &passes[1].tools[other]));
-    let pass = |(i, j): &(usize, usize)| PassPair { before: old.steps.at(was[*i]), now: new.steps.at(is[*j]), number: *i };
+    let pass = |(i, j): &(usize, usize)| PassPair {
+        before: old.steps.at(was[*i]),
+        now: new.steps.at(is[*j]),
+        number: *i,
+    };
     let find = |step: Option<usize>| pairs.iter().find(|(i, _)| Some(was[*i]) == step).map(pass);
     let finish = find(old.feeds[hole].last().copied());
     let deepest = find(deepest(old, hole, tolerance)).or(pairs.last().map(pass));

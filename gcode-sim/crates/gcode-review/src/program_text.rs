@@ -26,14 +26,21 @@ pub(super) fn cause(old: &BlockLocation, new: &BlockLocation) -> Cause {
 /// Returns a block without sequence number, comments and spaces.
 pub(super) fn words(block: &str) -> String {
     let mut depth = 0;
-    let code = block.chars().filter(|c| {
+    let is_code = |c: &char| {
         let is_comment = depth > 0 || *c == '(';
         depth += i32::from(*c == '(') - i32::from(*c == ')');
         !is_comment && !c.is_whitespace()
-    });
-    let code: String = code.collect();
-    let number = code.strip_prefix('N').map(|rest| rest.trim_start_matches(|c: char| c.is_ascii_digit()));
-    number.unwrap_or(&code).to_owned()
+    };
+    let mut code: String = if block.contains(['(', ')']) {
+        block.chars().filter(is_code).collect()
+    } else {
+        block.split_whitespace().collect()
+    };
+    if let Some(rest) = code.strip_prefix('N') {
+        let rest = rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        code.drain(..code.len() - rest);
+    }
+    code
 }
 
 /// Returns what a block says to the control: its words, or with the text of an alarm or a message.
@@ -136,7 +143,7 @@ pub(super) fn executed(record: &Record) -> Vec<ProgramSide<'_>> {
         if std::mem::replace(&mut is_known[block_number], true) {
             continue;
         }
-        for block in record.blocks.location(block_number).from_outermost() {
+        for block in record.blocks.location(block_number).outermost_first() {
             main.get_or_insert_with(|| block.program.clone());
             found.entry((block.program.clone(), block.line)).or_insert_with(|| (block.clone(), number));
         }
@@ -215,7 +222,8 @@ impl<'a> ChangedPassage<'a> {
 
     /// Returns the ranges of blocks between equal ones.
     fn differences(&self) -> Vec<[Range<usize>; 2]> {
-        let runs = common_lines([&self.hashes[0], &self.hashes[1]], |i, j| self.words(0, i) == self.words(1, j));
+        let runs =
+            common_lines([&self.hashes[0], &self.hashes[1]], |i, j| self.words(0, i) == self.words(1, j));
         let ends = [self.blocks[0].len(), self.blocks[1].len()];
         let mut from = [0, 0];
         let end = EqualRun { old: ends[0], new: ends[1], length: 0 };
@@ -279,11 +287,18 @@ pub struct UnexecutedChange {
 /// effect is unknown.
 pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
     let [was, is] = [old, new].map(|revision| written(&revision.record).unwrap_or_default());
-    let has_words = |side: &ProgramSide<'_>| (0..side.count()).any(|index| !words(&side.text(index)).is_empty());
+    let has_words = |side: &ProgramSide<'_>, index: usize| !words(&side.text(index)).is_empty();
+    let with_words = |side: &ProgramSide<'_>| (0..side.count()).any(|index| has_words(side, index));
+    let is_done =
+        |side: &ProgramSide<'_>, index: usize| side.reached(index).is_some_and(|(_, is_whole)| is_whole);
+    let is_idle = |side: &ProgramSide<'_>| {
+        (0..side.count()).any(|index| !is_done(side, index) && has_words(side, index))
+    };
     let mut all = Vec::new();
     for before in &was {
         let Some(now) = is.iter().find(|other| other.name == before.name) else { continue };
-        if !before.name.is_empty() && !(has_words(before) && has_words(now)) {
+        let is_compared = before.name.is_empty() || with_words(before) && with_words(now);
+        if !(is_compared && (is_idle(before) || is_idle(now))) {
             continue;
         }
         let sides = [before, now];
@@ -291,8 +306,9 @@ pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
         for gap in passage.differences() {
             let [mut lost, mut added] = [0, 1].map(|side| {
                 let blocks = passage.indices(side, &gap[side]).iter().map(|index| *index as usize);
-                let is_idle = move |index: &usize| !sides[side].reached(*index).is_some_and(|(_, is_whole)| is_whole);
-                blocks.filter(is_idle).map(move |index| sides[side].location(index))
+                blocks
+                    .filter(move |index| !is_done(sides[side], *index))
+                    .map(move |index| sides[side].location(index))
             });
             let changes = std::iter::from_fn(|| match (lost.next(), added.next()) {
                 (None, None) => None,
@@ -330,7 +346,10 @@ mod tests {
 
     #[test]
     fn each_rewritten_block_is_one_gap() {
-        assert_eq!(found("G0\nX1.\nY1.\nM30", "N5 G0\nX2.\nY2. (HERE)\nM30"), [[Some((1, 1)); 2], [Some((2, 2)); 2]]);
+        assert_eq!(
+            found("G0\nX1.\nY1.\nM30", "N5 G0\nX2.\nY2. (HERE)\nM30"),
+            [[Some((1, 1)); 2], [Some((2, 2)); 2]]
+        );
         assert_eq!(found("G0\nX1.\nM30", "G0\nX1. Y1.\nX2.\nM30"), [[Some((1, 1)), Some((1, 2))]]);
         assert_eq!(found("G0\nM30", "G0\nM0\nM30"), [[None, Some((1, 1))]]);
     }

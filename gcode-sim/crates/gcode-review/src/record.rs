@@ -210,7 +210,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
         holes,
         feeds,
         unfinished: BTreeSet::new(),
-        blocks: BlockList::Executed(ExecutedBlocks::new(numbers, memory)),
+        blocks: BlockList::Executed(Box::new(ExecutedBlocks::new(numbers, memory))),
     }
 }
 

@@ -2,13 +2,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::align::Alignment;
-use super::links::{Links, StepPair};
-use super::step_list::StepList;
 use super::change::{Effect, grouped};
 use super::cut_settings::changed_cut_settings;
 use super::descriptions::point;
 use super::kinds;
+use super::links::{Links, StepPair};
 use super::record::Record;
+use super::step_list::StepList;
 use super::steps::{Step, near};
 use gcode_lang::motion::MAX_AXES;
 
@@ -20,12 +20,7 @@ const MOST_ALIKE: usize = 16;
 
 /// Returns runs of reordered moves, each with a cut that is of no hole, on the other side of cuts that both make.
 /// Their steps lose other links.
-pub(super) fn reordered_runs(
-    links: &mut Links,
-    old: &Record,
-    new: &Record,
-    tolerance: f64,
-) -> Vec<MoveRun> {
+pub(super) fn reordered_runs(links: &mut Links, old: &Record, new: &Record, tolerance: f64) -> Vec<MoveRun> {
     let [was, is] = [(old, 0), (new, 1)].map(|(record, side)| RevisionMoves::new(record, links, side));
     let runs = find(&was, &is, tolerance);
     let (was, is): (BTreeSet<usize>, BTreeSet<usize>) =
@@ -131,7 +126,9 @@ fn find(old: &RevisionMoves<'_>, new: &RevisionMoves<'_>, tolerance: f64) -> Vec
         let Some((from, from_now, moves)) = longest else { continue };
         known.extend(from..from + moves);
         known_now.extend(from_now..from_now + moves);
-        runs.push(MoveRun((0..moves).map(|n| (old.free[from + n].step, new.free[from_now + n].step)).collect()));
+        runs.push(MoveRun(
+            (0..moves).map(|n| (old.free[from + n].step, new.free[from_now + n].step)).collect(),
+        ));
     }
     runs
 }
@@ -179,8 +176,9 @@ impl<'a> ReorderedCuts<'a> {
             }
             let side = usize::from(sides[0].is_none());
             let others = &self.alignment.records[1 - side].steps;
-            let equal =
-                unpaired[1 - side].iter().position(|other: &usize| others.at(*other).is_same(&step, tolerance));
+            let equal = unpaired[1 - side]
+                .iter()
+                .position(|other: &usize| others.at(*other).is_same(&step, tolerance));
             let number = sides[side].unwrap_or(0);
             match equal {
                 Some(index) => {

@@ -46,5 +46,8 @@ pub(super) fn take_with_runs(
     let with = shifted.values().flatten().filter(|(i, j, _)| cuts.is_before_run(*i, *j));
     let steps: BTreeSet<[Option<usize>; 2]> =
         with.flat_map(|(i, j, _)| [[Some(*i), None], [None, Some(*j)]]).collect();
-    shifted.extract_if(.., |k, _| links.get(*k).is_some_and(|link| steps.contains(&link.sides()))).map(|(k, _)| k).collect()
+    shifted
+        .extract_if(.., |k, _| links.get(*k).is_some_and(|link| steps.contains(&link.sides())))
+        .map(|(k, _)| k)
+        .collect()
 }

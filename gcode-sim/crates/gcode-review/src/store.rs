@@ -6,11 +6,11 @@ use nalgebra::{Point3, Unit, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::block_list::BlockList;
 use super::first_command::FirstCommand;
 use super::legacy_records::present_words;
 use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
 use super::record::{BlockLocation, EndState, Record, Totals};
-use super::block_list::BlockList;
 use super::step_list::{NewStep, StepList};
 use super::steps::{Step, StepKind, UnsimulatedKind};
 use gcode_inspect::holes::{DrilledHole, PassCut};

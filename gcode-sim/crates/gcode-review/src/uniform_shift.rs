@@ -29,9 +29,8 @@ pub(super) fn pair_shifted_program(
     }
     let block = |record: &Record, step: &Step<'_>| words(&record.blocks.location(step.block_number).block);
     let is_at_once = || both().all(|(a, b)| near(&a.at, &b.at, tolerance));
-    let is_by_the_same = || {
-        is_uniform_shift(both(), tolerance) && both().all(|(a, b)| block(old, &a) == block(new, &b))
-    };
+    let is_by_the_same =
+        || is_uniform_shift(both(), tolerance) && both().all(|(a, b)| block(old, &a) == block(new, &b));
     (is_at_once() || is_by_the_same()).then(|| linked(pairs(), old, new, tolerance))
 }
 
@@ -59,12 +58,7 @@ fn is_uniform_shift<'a>(both: impl Iterator<Item = (Step<'a>, Step<'a>)>, tolera
 }
 
 /// Links pairs of moves, and aligns the commands between them.
-fn linked(
-    pairs: impl Iterator<Item = (usize, usize)>,
-    old: &Record,
-    new: &Record,
-    tolerance: f64,
-) -> Links {
+fn linked(pairs: impl Iterator<Item = (usize, usize)>, old: &Record, new: &Record, tolerance: f64) -> Links {
     let mut links = Links::default();
     let (mut i, mut j) = (0, 0);
     let ends = (old.steps.len(), new.steps.len());
