@@ -61,9 +61,10 @@ impl Effect {
     pub(super) fn new(
         kind: &'static FindingKind,
         message: impl Into<String>,
-        [old, new]: [Option<&BlockLocation>; 2],
+        blocks: [Option<Cow<'_, BlockLocation>>; 2],
     ) -> Self {
-        Self { code: kind.code.into(), message: message.into(), old: old.cloned(), new: new.cloned() }
+        let [old, new] = blocks.map(|block| block.map(Cow::into_owned));
+        Self { code: kind.code.into(), message: message.into(), old, new }
     }
 }
 
