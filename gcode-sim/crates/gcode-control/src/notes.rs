@@ -25,7 +25,7 @@ gcode_lang::finding_kinds! {
     LOWER_CASE = "lower-case", Note, "lower-case letters are read as capitals";
     M_CODE_LOST = "m-code-lost", Warning, "only the last M code of a block counts";
     MACHINE_VALUE = "machine-value", Warning, "a value of the machine that nothing states";
-    MAIN_REPEATS = "main-repeats", Note, "the main program ends with M99";
+    MAIN_REPEATS = "main-repeats", Error, "the main program ends with M99";
     MIRROR_ENDED = "mirror-ended", Note, "G50.1 without an axis";
     NO_ANGLE = "no-angle", Warning, "G68 without R";
     NO_AXIS = "no-axis", Warning, "a code without an axis";
@@ -178,7 +178,7 @@ impl Note {
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
             Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as 0: nothing states its value on the machine"), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
             Self::Engraving { characters, height } => (&ENGRAVED_TEXT, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),
-            Self::MainRepeats => (&MAIN_REPEATS, "M99 ends the main program: a control starts it again for ever, the run ends after the first pass".into(), "give --cycles 2 for two passes"),
+            Self::MainRepeats => (&MAIN_REPEATS, "M99 ends the main program: a control starts it again for ever, the run ends after the first pass".into(), "end it with M30, or state the passes with --cycles 1"),
             Self::NoKinematics(code @ (542 | 544)) => (&NO_KINEMATICS, format!("the offsets of {} are taken as 0: nothing states them, and where X, Y and Z are on the part is unknown", name(code)), "write the offset into a work offset, or end it with P0"),
             Self::NoKinematics(code) => (&NO_KINEMATICS, format!("{} without the rotary axes of the machine: X, Y and Z go on as if a table had turned the part, and where they and the rotary axes are on the machine is unknown", name(code)), "describe [[table]] or [[head.axis]], and [head], in the machine file"),
             Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),

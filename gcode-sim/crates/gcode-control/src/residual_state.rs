@@ -150,7 +150,7 @@ mod tests {
                     Effect::AdditionalWork => (" P1", 541),
                     Effect::NumberedWork(_) => ("", 541),
                     Effect::Scaling(Scaling::On) => (" P2000", row.code),
-                    Effect::Mirror(Mirror::On) => (" X0", row.code),
+                    Effect::Mirror(mirror) => (if mirror == Mirror::On { " X0" } else { "" }, mirror.code()),
                     Effect::Rotation(Rotation::Off) => ("", Rotation::Off.code()),
                     Effect::Rotation(Rotation::Tilted) => (" X0 Y0 Z0 I0 J0 K0", row.code),
                     _ => ("", row.code),

@@ -57,8 +57,7 @@ impl Planner<'_> {
                 _ => continue,
             };
             let common = self.words.count(b'P')?.map(f64::from);
-            let factor =
-                own.or(common).ok_or_else(|| self.not_simulated("G51 without P (parameter 5411)"))?;
+            let factor = own.or(common).unwrap_or(self.data.settings.scale_factor * unit);
             if factor == 0.0 || factor.abs() > 999_999_999.0 {
                 return Err(Alarm::ScaleRate { value: factor }.located_at(self.block));
             }
@@ -102,6 +101,19 @@ impl Planner<'_> {
         for row in self.words.g_codes() {
             // G53 without an axis only waits.
             if row.effect == Effect::OneShot(OneShot::MachineCoordinateSystem) && !self.names_axis() {
+                continue;
+            }
+            let returns = matches!(
+                row.effect,
+                Effect::OneShot(
+                    OneShot::MachineCoordinateSystem
+                        | OneShot::CheckReference
+                        | OneShot::Reference
+                        | OneShot::FromReference
+                        | OneShot::SecondReference
+                )
+            );
+            if returns && self.data.settings.undocumented.returns_in_transforms {
                 continue;
             }
             let is_bound = row.facts.coordinates == CoordinateUse::NotTransformed;

@@ -275,6 +275,8 @@ with_defaults! {
         pub starts_up_by_type_b: bool = false,
         /// 19625: number of lookahead blocks in cutter compensation; two of them must move.
         pub lookahead_blocks: usize = 3,
+        /// 5411: factor of G51 for an axis that its words give none.
+        pub scale_factor: f64 = 1.0,
         /// SCR 5400#7: factors of G51 count in 0.001, not 0.00001.
         pub has_coarse_scaling: bool = true,
         /// Block skip switches 1 to 9 that are on.

@@ -212,6 +212,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("EVR", "5001#4: a changed offset of D applies from the next block", applies_radius_at_once),
     switch!("SUP", "5003#0: cutter compensation starts and ends by type B", starts_up_by_type_b),
     whole!("19625", "blocks of lookahead in cutter compensation", 3, 8, |s, v| s.lookahead_blocks = v),
+    number!("5411", "scale factor of G51 for an axis without P and without its I, J or K; 1 here", -999_999.0, 999_999.0, "a factor", |s, v| s.scale_factor = v),
     switch!("SCR", "5400#7: G51 scales in units of 0.001", has_coarse_scaling),
     row!("ROA", "1008#0: axes that roll over at 360 degrees", SettingValues::Text("^[A-Ca-c+]*$", "letters of rotary axes"), |s, v| roll_over(s, v)?),
     row!("BDT", "the block skip switches that are on", SettingValues::Text("^[1-9]([+][1-9])*$", "switches 1 to 9, as in 1+2"), |s, v| skip_switches(s, v)?),
@@ -318,6 +319,7 @@ undocumented_choices! {
     "CODES-BEFORE-CALL" allows_codes_before_call = true, "modal codes, F, S, T, D, H and M before G65, G66 or G66.1 act first; otherwise PS0125";
     "M06-STOPS-SPINDLE" tool_change_stops_spindle = true, "M06 stops the spindle";
     "M00-STOPS-SPINDLE" stop_stops_spindle = false, "M00 and M01 stop the spindle";
+    "TRANSFORM-RETURNS" returns_in_transforms = false, "G27 to G30 and G53 move in G68 and G51.1 as without them; otherwise SIM0001";
     "PLANE-TURNS" plane_turns_with_axes = false, "a rotary axis that moves after G53.1 takes the plane with it; otherwise the plane stays where G53.1 left it";
     "G268-TURNS" feature_axes_turn = false, "I, J and K of G268 are about axes that turn with one another, not about those of the work system";
     "M06-HOMES-Z" tool_change_homes_z = false, "M06 sends Z to machine zero before the tool changes";
