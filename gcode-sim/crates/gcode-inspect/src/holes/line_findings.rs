@@ -112,7 +112,7 @@ impl HoleExtractor<'_> {
         let order = line.order;
         let (pass, repeated) = line.finish();
         self.strokes.push(order, pass, kind);
-        if let Some(repeated) = repeated.filter(|_| has_retract) {
+        for repeated in repeated.filter(|_| has_retract) {
             let order = self.strokes.begin_pass();
             self.strokes.push(order, repeated, kind);
         }
