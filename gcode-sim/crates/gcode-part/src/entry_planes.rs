@@ -159,6 +159,22 @@ impl EntryPlanes {
     }
 }
 
+impl EntryPlanes {
+    /// Calls `each` with the holes whose metal, or the space up to a height above it, may reach into the box from `low` to
+    /// `high`.
+    pub fn below(&self, low: &Point3<f64>, high: &Point3<f64>, height: f64, each: &mut impl FnMut(usize)) {
+        // Without a common direction the space may be on any side.
+        let all = Vector3::repeat(height);
+        let (before, behind) = match self.top {
+            Some((out, _)) => {
+                (out.map(|out| (out * height).max(0.0)), out.map(|out| (-out * height).max(0.0)))
+            }
+            None => (all, all),
+        };
+        self.around(&(low - before), &(high + behind), each);
+    }
+}
+
 /// Returns the largest distance of a rod's point from its middle along each axis.
 fn extent(rod: &Rod) -> Vector3<f64> {
     rod.axis.map(|along| along.abs() * rod.length / 2.0 + rod.radius * (1.0 - along * along).max(0.0).sqrt())
