@@ -222,7 +222,12 @@ impl KnownMetal {
                 take_away(collar, &room);
             }
         };
-        holes.below(&from.inf(to), &from.sup(to), MAX_HEIGHT, &mut |hole| allow(holes.collar(hole)));
+        let margin = match part {
+            FeedPart::Tip => 0.0,
+            FeedPart::Side { radius, .. } => 2.0 * radius,
+        };
+        let near = (margin, MAX_HEIGHT);
+        holes.below(&from.inf(to), &from.sup(to), near, &mut |hole| allow(holes.collar(hole)));
         // Many feeds may have been here: they come last.
         if shares.is_empty() {
             return None;
