@@ -53,6 +53,8 @@ pub struct EntryPlanes {
     middles: PointTree,
     /// Largest distance of a collar's point from its middle.
     reach: f64,
+    /// Largest length by which the room of a hole leaves its collar, mm.
+    room: f64,
     /// The same along each axis.
     extent: Vector3<f64>,
     /// Direction of all axes if they agree, and the height of the highest entry along it.
@@ -102,6 +104,7 @@ impl EntryPlanes {
         Self {
             middles: PointTree::new(collars.iter().map(middle)),
             reach: collars.iter().map(reach).fold(0.0, f64::max),
+            room: collars.iter().map(|collar| collar.max_depth() - collar.rod.length).fold(WALL, f64::max),
             extent: collars.iter().map(|collar| extent(&collar.rod)).fold(Vector3::zeros(), |a, b| a.sup(&b)),
             top: top(&collars),
             ids: holes.iter().map(|hole| hole.id.clone().unwrap_or_default()).collect(),
@@ -156,6 +159,26 @@ impl EntryPlanes {
     /// Calls `each` with the holes whose metal, or the space above it, may reach into the box from `low` to `high`.
     pub fn around(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
         self.middles.in_box(&(low - self.extent), &(high + self.extent), each);
+    }
+}
+
+impl EntryPlanes {
+    /// Calls `each` with the holes whose room, or the space up to a height above it, may be nearer than `margin` to the box from
+    /// `low` to `high`.
+    pub fn below(
+        &self,
+        low: &Point3<f64>,
+        high: &Point3<f64>,
+        (margin, height): (f64, f64),
+        each: &mut impl FnMut(usize),
+    ) {
+        let margin = Vector3::repeat(margin.max(self.room));
+        // Without a common direction the space may be on any side.
+        let [before, behind] = match self.top {
+            Some((out, _)) => [height, -height].map(|height| out.map(|out| (out * height).max(0.0))),
+            None => [Vector3::repeat(height); 2],
+        };
+        self.around(&(low - margin - before), &(high + margin + behind), each);
     }
 }
 

@@ -18,6 +18,9 @@ const MAX_LEVEL_CHANGE: f64 = 0.01;
 /// Rounding of the height of an arc, mm.
 const LEAD_ROUNDING: f64 = 0.003;
 
+/// Largest difference of two circles that are one, mm.
+const SAME_CIRCLE: f64 = 1e-9;
+
 /// Largest angle between two samples of an arc, degrees.
 const MAX_SAMPLE: f64 = 5.0;
 
@@ -54,6 +57,13 @@ impl PartArc {
         let spoke = self.from - self.centre;
         let (cos, sin) = ((self.sweep * t).cos(), (self.sweep * t).sin());
         self.centre + spoke * cos + self.out.cross(&spoke) * sin + self.out.into_inner() * (self.rise() * t)
+    }
+
+    /// Returns true if the other arc is on the same circle, or above or below it, to rounding.
+    fn is_on_same_circle(&self, other: &Self) -> bool {
+        let aside = other.centre - self.centre;
+        let aside = aside - self.out.into_inner() * aside.dot(&self.out);
+        !self.is_chord && aside.norm() + (other.radius() - self.radius()).abs() < SAME_CIRCLE
     }
 
     /// Returns true if the other arc goes round the same axis in the same sense, with the same radius. Centres given by R
@@ -260,6 +270,9 @@ impl ArcRun {
     fn fit(&self) -> (Point3<f64>, f64, f64) {
         let (_, first) = &self.arcs[0];
         let out = first.out;
+        if self.arcs.iter().all(|(_, arc)| first.is_on_same_circle(arc)) {
+            return (first.centre, first.radius(), 0.0);
+        }
         let distance = |centre: &Point3<f64>, p: &Point3<f64>| {
             let spoke = p - centre;
             (spoke - out.into_inner() * spoke.dot(&out)).norm()

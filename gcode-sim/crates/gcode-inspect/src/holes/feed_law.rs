@@ -170,7 +170,7 @@ impl HoleExtractor<'_> {
         }
         // A tool of unknown diameter cuts a nominal hole to its width.
         let mut room: Option<f64> = None;
-        self.metal.around(travel, 0.0, &mut |collar: &Collar| {
+        self.metal.around(travel, &mut |collar: &Collar| {
             let aside = travel.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
             if collar.is_parallel(axis) && aside <= collar.hole_radius {
                 room = Some(room.unwrap_or(0.0).max(collar.hole_radius - aside));

@@ -222,7 +222,12 @@ impl KnownMetal {
                 take_away(collar, &room);
             }
         };
-        self.around(travel, MAX_HEIGHT, &mut allow);
+        let margin = match part {
+            FeedPart::Tip => 0.0,
+            FeedPart::Side { radius, .. } => 2.0 * radius,
+        };
+        let near = (margin, MAX_HEIGHT);
+        holes.below(&from.inf(to), &from.sup(to), near, &mut |hole| allow(holes.collar(hole)));
         // Many feeds may have been here: they come last.
         if shares.is_empty() {
             return None;
@@ -267,7 +272,7 @@ impl KnownMetal {
         radius: f64,
     ) -> Option<&Collar> {
         let mut found = None;
-        self.around(tips, 0.0, &mut |collar| {
+        self.around(tips, &mut |collar| {
             let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
             let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
             let is_in_step = |step: &Step| {
@@ -412,17 +417,10 @@ impl KnownMetal {
         self.pockets.iter().map(|pocket| pocket.nearest(p).distance).reduce(f64::min)
     }
 
-    /// Calls `each` with the nominal holes whose metal may be nearer to a travel than `margin`.
-    pub(super) fn around<'m>(
-        &'m self,
-        [from, to]: &[Point3<f64>; 2],
-        margin: f64,
-        each: &mut impl FnMut(&'m Collar),
-    ) {
+    /// Calls `each` with the nominal holes whose metal may be near a travel.
+    pub(super) fn around<'m>(&'m self, [from, to]: &[Point3<f64>; 2], each: &mut impl FnMut(&'m Collar)) {
         let Some(holes) = self.holes.as_deref() else { return };
-        let margin = Vector3::repeat(margin);
-        holes
-            .around(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |hole| each(holes.collar(hole)));
+        holes.around(&from.inf(to), &from.sup(to), &mut |hole| each(holes.collar(hole)));
     }
 
     /// Returns the deepest point of some shares of a travel.

@@ -1,4 +1,4 @@
-//! Lines along which points of the tool move: together they are as wide as the tool, to 0.01 mm.
+//! Lines along which points of the tool move: together they are as wide as the tool, to 0.01 mm up to a diameter of 16.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::directions_across;
@@ -16,7 +16,7 @@ const MAX_RINGS: u32 = 6;
 const BELOW_LEVEL: f64 = 2.0 * TOUCH_DEPTH;
 
 /// Returns the offsets from the tool's axis to points of its rim; the chords between them are inside by at most
-/// [`TOUCH_DEPTH`]. One of them is in the direction of the travel, unless that is along the axis, and two are square to it.
+/// [`TOUCH_DEPTH`], and at radii above 8.3 mm by 0.0012 of the radius. One of them is in the direction of the travel, unless that is along the axis, and two are square to it.
 pub(super) fn rim(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
     ring(axis, along, radius, rim_count(radius))
 }
