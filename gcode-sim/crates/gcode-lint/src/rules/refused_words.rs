@@ -93,6 +93,10 @@ mod tests {
             ("M98 P2 D2.0", "PS0007"),
             ("G08 P2", "PS0109"),
             ("S123456 M3", "PS0003"),
+            ("G51 X0 Y0 P0", "PS0142"),
+            ("G10 P1 R50.", "PS1144"),
+            ("G65 P2 I1. I2. I3. I4. I5. I6. I7. I8. I9. I10. I11.", "PS1095"),
+            ("G01 X20. ,R4. ,C4. F300.", "PS0053"),
         ] {
             let found = messages(&RULE, &format!("O1\n{block}\nM30\nO2\nM99\n"));
             assert!(found.len() == 1 && found[0].starts_with(alarm), "{block}: {found:?}");
@@ -123,6 +127,8 @@ mod tests {
             "O1\nG66 P2 A1.\nX5. L3\nG67\nM30\nO2\nM99\n",
             "O1\nM98 P2 L3\nG65 P2 L3 D5.\nM30\nO2\nM99\n",
             "O1\nM88 P1.5 Q2\nM30\n",
+            "O1\nG51 X0 Y0 P#1\nG50\nG10 L#1 P1 R50.\nG10 L10 P#1 R50.\nM30\n",
+            "O1\nG01 X20. ,R4. F300.\nY20. ,C#1\nX0\nM30\n",
             "O1\nG68 X0 Y0 R45.\nG69\nG51 X0 Y0 P2000\nG50\nG54.1 P5\nM30\n",
         ] {
             assert_eq!(messages(&RULE, text), [""; 0], "{text}");
