@@ -7,7 +7,7 @@ use super::planner::Planner;
 use super::variables::{Value, VariableClass};
 use super::words::WordNumber;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
-use gcode_lang::control::{ParameterError, ParameterId, Settings, is_without_effect};
+use gcode_lang::control::{OffsetMemory, ParameterError, ParameterId, Settings, is_without_effect};
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::Distance;
 
@@ -67,12 +67,16 @@ impl Planner<'_> {
 
     /// L1 and L10 to L13: tool offsets.
     fn plan_tool_offset(&self, l: u32, number: u32, plan: &mut BlockPlan) -> ExecResult<()> {
-        let register = match l {
-            10 => Register::HGeometry,
-            12 => Register::DGeometry,
-            13 => Register::DWear,
-            _ => Register::HWear,
+        let (register, is_known) = match l {
+            10 => (Register::HGeometry, self.data.settings.offset_memory != OffsetMemory::A),
+            12 => (Register::DGeometry, self.data.settings.offset_memory == OffsetMemory::C),
+            13 => (Register::DWear, self.data.settings.offset_memory == OffsetMemory::C),
+            _ => (Register::HWear, true),
         };
+        if !is_known {
+            return Err(self.format_alarm(&format!("L{l} is not available in this tool offset memory")));
+        }
+        let register = self.data.table(register);
         let old = self.locate(self.data.offsets.tool(register, number))?;
         if number == 0 {
             return Err(Alarm::OffsetNumber { number: 0 }.located_at(self.block));

@@ -399,7 +399,7 @@ impl Hole {
             tool: self.tool,
             backtrace: Backtrace::default(),
             axis_position: Position::default(),
-            tool_axis_deviation: Deg::ZERO,
+            is_tool_axis_known: false,
             unknown_axes: UnknownAxes::default(),
             earlier_passes: Vec::new(),
             finishing_cut: PassCut::new(entry, entry - axis * self.depth),

@@ -88,8 +88,9 @@ impl Slice {
             Some(OneShot::Dwell | OneShot::DataInputEnd | OneShot::CheckReference) => return,
             Some(
                 OneShot::FromReference
-                | OneShot::ToolAxis
+                | OneShot::ToolAxis { .. }
                 | OneShot::CornerArc
+                | OneShot::Engraving
                 | OneShot::CirclePocket(_)
                 | OneShot::BoltHoles(_),
             ) => {

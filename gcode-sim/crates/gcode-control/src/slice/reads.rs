@@ -7,7 +7,7 @@ use super::super::functions::variable_number;
 use super::super::variables::VariableClass;
 use super::{Block, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
-use gcode_lang::control::{OffsetVariables, Settings};
+use gcode_lang::control::{OffsetMemory, OffsetVariables, Settings};
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
 
@@ -202,8 +202,11 @@ impl Slice {
     }
 
     /// Returns true if the machine file states the cutter radius D or a block has set it.
-    pub(super) fn is_radius_set(&self, number: u32) -> bool {
-        self.stated.radii.contains(&number) || self.set_radii.contains(&number)
+    pub(super) fn is_radius_set(&self, number: u32, settings: &Settings) -> bool {
+        match settings.offset_memory {
+            OffsetMemory::A | OffsetMemory::B => self.is_length_set(number),
+            OffsetMemory::C => self.stated.radii.contains(&number) || self.set_radii.contains(&number),
+        }
     }
 
     /// Returns the axes, as bits, whose offset in a work coordinate system is an outside value. G54 is the part's zero unless

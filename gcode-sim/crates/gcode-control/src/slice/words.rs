@@ -72,8 +72,18 @@ impl Slice {
         self.follow_m_codes(block, words, &list);
         self.follow_offsets(block, &list, &modes);
         self.follow_axes(block, &list, &modes);
+        self.follow_computed_axes(block, words);
         if let Some(call) = words.call() {
             self.follow_call(block, words, call);
+        }
+    }
+
+    /// Marks all axes with the number in `AX[#510]=40.`: another number is another axis.
+    fn follow_computed_axes(&mut self, block: &Block<'_>, words: &Words) {
+        for axis in words.list.iter().filter_map(|word| words.axis(word.axis?)) {
+            let marks = self.operand_marks(block, axis);
+            self.machine.axes.iter_mut().for_each(|one| *one |= marks);
+            self.further |= marks;
         }
     }
 
@@ -205,6 +215,11 @@ impl Slice {
                 }
                 Some(MCodeEffect::RigidTapping) => self.machine.spindle |= control | marked.marks,
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
+                // The operator's key, and the input, may be any.
+                Some(MCodeEffect::OperatorInput | MCodeEffect::JumpByInput) => {
+                    let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
+                    self.machine.rest |= marks;
+                }
                 // An output may drive anything.
                 Some(MCodeEffect::Output { .. }) => {
                     let output = list.iter().find(|word| word.letter == b'P');
@@ -258,7 +273,7 @@ impl Slice {
             CutterSide::Off if !mills_circle => self.machine.radius = control,
             _ if begins || mills_circle => {
                 let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
-                if d != 0 && !self.is_radius_set(d) {
+                if d != 0 && !self.is_radius_set(d, &registers.data.settings) {
                     let value = registers.data.offset_radius(d);
                     marks |= self.outside(OutsideValue::CutterRadius(d), value, block.flow, block.op);
                 }
@@ -281,7 +296,8 @@ impl Slice {
         let word = list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
         let number = word.map_or(modal, |value| value as u32);
         let marks = self.machine.code(letter) | self.machine.tool_table;
-        let is_set = if is_h { self.is_length_set(number) } else { self.is_radius_set(number) };
+        let is_set =
+            if is_h { self.is_length_set(number) } else { self.is_radius_set(number, &data.settings) };
         if number == 0 || is_set {
             return marks;
         }

@@ -80,7 +80,7 @@ impl HoleExtractor<'_> {
         // A turn along a thread cuts no hole.
         let is_thread = |ring: &&Ring| {
             let hole = self.strokes.nominal_of_ring(ring, true);
-            hole.is_some_and(|axis| axis.is_threaded) && self.is_at_nominal_wall(ring, cutter)
+            hole.is_some_and(|axis| axis.thread.is_some()) && self.is_at_nominal_wall(ring, cutter)
         };
         let threads = threads.into_iter().filter(is_thread);
         holes.retain(|circles| !self.is_in_pocket(&circles.widest, cutter));

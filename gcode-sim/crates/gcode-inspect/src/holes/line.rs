@@ -354,6 +354,7 @@ impl CuttingLine {
                 milled: None,
             },
             axis: self.tool_axis.unwrap_or(self.out),
+            is_tool_axis_known: self.tool_axis.is_some(),
             feed_direction: self.out,
             tool: self.cutting_state.tool,
             backtrace: end.backtrace.clone(),

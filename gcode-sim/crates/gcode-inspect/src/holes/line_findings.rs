@@ -94,16 +94,15 @@ impl HoleExtractor<'_> {
             }
             ToolExit::OnLine | ToolExit::AlongLine => {}
         }
-        // In a known body a feed across the tool is judged by what it removes, and so is one in a pocket.
-        let is_across = line.tool_axis.is_some_and(|axis| axis.dot(&line.out) < MIN_TOOL_COSINE);
-        if surface.is_some() && self.metal.holes.is_some() && (is_across || self.is_pocketing(&line)) {
-            if !is_across {
+        if self.is_milled(&line) {
+            if !line.is_across_tool() {
                 self.report_conditions(&line);
+                self.note_unsized_mill(line.cutting_state.tool);
             }
             return;
         }
         let kind = self.cut_kind(&line, is_feeding);
-        if !matches!(kind, CutKind::Oblique) {
+        if !matches!(kind, CutKind::Oblique) || self.strokes.nominal_of_line(&line).is_some() {
             self.report_feed(&line, tilt);
         }
         // A stroke in a hole that was cut before, as of a mill that goes on sideways, has no retract either.
@@ -116,6 +115,20 @@ impl HoleExtractor<'_> {
             let order = self.strokes.begin_pass();
             self.strokes.push(order, repeated, kind);
         }
+    }
+
+    /// Records a tool of unknown diameter in a pocket, whose walls it may cut.
+    fn note_unsized_mill(&mut self, tool: Option<u32>) {
+        if self.machine.diameter_of(tool).is_none() && !self.unsized_mills.contains(&tool) {
+            self.unsized_mills.push(tool);
+        }
+    }
+
+    /// Returns true if what a line removes is judged as milling: in a known body a feed across the tool, and one in a pocket.
+    pub(super) fn is_milled(&self, line: &CuttingLine) -> bool {
+        self.surface.is_some()
+            && self.metal.holes.is_some()
+            && (line.is_across_tool() || self.is_pocketing(line))
     }
 
     /// Records a feed without retract, unless it belongs to a milled hole: an error `inside` the part, by its depth, a
@@ -226,7 +239,7 @@ impl HoleExtractor<'_> {
         self.check_spindle(backtrace, line);
         self.check_tool_changed(backtrace, &line.cutting_state);
         if line.is_fed_stopped {
-            self.report_spindle_stopped(backtrace);
+            self.report_spindle_stopped(backtrace, &line.cutting_state);
         }
     }
 

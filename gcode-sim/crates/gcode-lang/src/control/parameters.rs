@@ -106,7 +106,9 @@ const ROWS: &[ParameterRow] = &[
     bit_row(6008, 1, ParameterAccess::Key("MCA", |s| f64::from(s.macro_alarm_base == 0))),
     bit_row(6008, 6, ParameterAccess::Key("GMP", |s| f64::from(s.code_calls.allows_nested_calls))),
     bit_row(6008, 7, ParameterAccess::Key("IJK", |s| f64::from(s.reads_ijk_plainly))),
+    number_row(12321, ParameterAccess::Key("12321", |s| s.vertical_axis as f64)),
     number_row(19625, ParameterAccess::Key("19625", |s| s.lookahead_blocks as f64)),
+    bit_row(19696, 5, ParameterAccess::Key("WKP", |s| f64::from(s.tip_in_work_system))),
 ];
 
 /// Parameters that can be written and read back but have no effect on a run.
