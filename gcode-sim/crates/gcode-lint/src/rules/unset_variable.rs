@@ -13,7 +13,7 @@ use crate::vacancy::{Locals, states};
 use super::missing_argument::factor_reads;
 
 pub(super) static RULE: Rule =
-    Rule::new("unset-variable", Severity::Warning, "a local variable that is read before it is set", find);
+    Rule::new("unset-variable", Severity::Error, "a local variable that is read before it is set", find);
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut unset: BTreeMap<(OpIndex, u32), (Span, ValueUse)> = BTreeMap::new();
@@ -51,7 +51,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         let (severity, so) = if is_divisor {
             (Severity::Error, PS0112.to_string())
         } else {
-            (RULE.kind.severity, so.to_owned())
+            (Severity::Warning, so.to_owned())
         };
         let message = format!("#{local} is read but never set: {so}");
         let help = format!("set #{local} before it is read, or correct its number");
