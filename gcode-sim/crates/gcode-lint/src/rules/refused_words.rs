@@ -4,7 +4,7 @@
 use gcode_control::static_plan::StaticPlanner;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Motion;
-use gcode_lang::program::{Words, m_codes};
+use gcode_lang::program::{LoweredWord, Words, m_codes};
 
 use crate::literal;
 use crate::modes::modes_before;
@@ -29,7 +29,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         }
         let Some(modes) = modes_before(context, unit)[block] else { continue };
         let alarm = planner.certain_alarm(words, unit.op(block).span, modes.in_force());
-        if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node)) {
+        if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node, words)) {
             let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
             found.push(if has_builder_code(context, words) {
                 context.unless_optional(finding)
@@ -42,8 +42,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 }
 
 /// Returns true for the alarms that `stray-word` reports.
-fn has_own_rule(alarm: &Alarm) -> bool {
-    matches!(alarm, Alarm::ImproperAddress { letter: 'A'..='C' | 'E' | 'U'..='Z' })
+fn has_own_rule(alarm: &Alarm, words: &Words) -> bool {
+    let is_stray = |word: &LoweredWord| word.comma && !matches!(word.letter, b'R' | b'C');
+    match alarm {
+        Alarm::ImproperAddress { letter: 'A'..='C' | 'E' | 'U'..='Z' } => true,
+        Alarm::CornerWords => words.list.iter().any(is_stray),
+        _ => false,
+    }
 }
 
 /// Returns true if a block has an M code of the machine builder, which may call a macro with the words as arguments.
