@@ -4,9 +4,10 @@
 //! points.
 use std::borrow::Cow;
 
+use super::block_location::BlockLocation;
 use super::common_sequence::{EqualRun, MOST_EDITS, common, common_runs, search};
 use super::links::{Links, StepPair};
-use super::record::{BlockLocation, Record};
+use super::record::Record;
 use super::step_list::StepList;
 use super::steps::{Step, StepKind, difference};
 use gcode_lang::motion::{Axes, MAX_AXES};

@@ -3,7 +3,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::record::BlockLocation;
+use super::block_location::BlockLocation;
 use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::program::{BlockTexts, Memory};
 use gcode_lang::source::{Sources, Span};
@@ -353,12 +353,5 @@ impl BlockList {
                 })
             }
         }
-    }
-}
-
-impl BlockLocation {
-    /// Iterates over the calls that led to a block, the outermost first, and the block itself.
-    pub(super) fn outermost_first(&self) -> impl Iterator<Item = &Self> {
-        self.calls.iter().rev().chain([self])
     }
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::record::BlockLocation;
+use super::block_location::BlockLocation;
 use gcode_lang::diag::FindingKind;
 
 /// Entry of one edit: its effects on part and control, the one with the highest precedence first.

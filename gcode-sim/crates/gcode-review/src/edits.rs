@@ -2,10 +2,11 @@
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::block_location::BlockLocation;
 use super::change::Effect;
 use super::hole_groups::HoleEffect;
 use super::program_text::{ProgramSide, executed, for_each_gap, written};
-use super::record::{BlockLocation, Record};
+use super::record::Record;
 
 /// A block that is written differently, or consecutive blocks that are added, removed, moved or rewritten together.
 #[derive(Clone, Copy, Debug)]

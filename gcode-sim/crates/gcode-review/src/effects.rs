@@ -4,6 +4,7 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use super::align::Alignment;
+use super::block_location::BlockLocation;
 use super::change::Effect;
 use super::descriptions::{coordinates, describe, point, short};
 use super::differences::{Difference, StepDifference};
@@ -13,7 +14,6 @@ use super::entries::CausedEffect;
 use super::hole_groups::name_holes;
 use super::kinds;
 use super::modal_conditions::ModalAspect;
-use super::record::BlockLocation;
 use super::redundant_commands::is_speed_alone;
 use super::steps::{Step, StepKind, difference, near, with_article};
 use gcode_lang::diag::FindingKind;

@@ -26,6 +26,7 @@ mod align;
 mod anchor;
 mod arcs;
 mod block_list;
+mod block_location;
 mod change;
 mod common_sequence;
 mod cut_settings;
@@ -62,11 +63,12 @@ mod store;
 mod tool_setup;
 mod uniform_shift;
 
+pub use block_location::BlockLocation;
 pub use change::{Change, Effect};
 pub use holes::Paired;
 pub use path::Leg;
 pub use program_text::{UnexecutedChange, unexecuted};
-pub use record::{BlockLocation, Record, Revision, Totals, alarm_code};
+pub use record::{Record, Revision, Totals, alarm_code};
 pub use store::{AcceptedFile, StoreError};
 
 use self::align::Alignment;

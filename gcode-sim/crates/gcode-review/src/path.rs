@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use nalgebra::Point3;
 
-use super::record::{BlockLocation, Record};
+use super::block_location::BlockLocation;
+use super::record::Record;
 use super::steps::{Step, StepKind};
 use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};

@@ -8,8 +8,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::block_list::{BlockList, ExecutedBlocks};
+use super::block_location::BlockLocation;
 use super::common_sequence::{EqualRun, common_lines};
-use super::record::{BlockLocation, Record, Revision};
+use super::record::{Record, Revision};
 
 /// Blocks of both revisions that cause a difference.
 pub(super) type Cause = (BlockLocation, BlockLocation);

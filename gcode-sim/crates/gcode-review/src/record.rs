@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::block_list::{BlockList, ExecutedBlocks};
+use super::block_location::BlockLocation;
 use super::first_command::FirstCommand;
 use super::kinds;
 use super::modal_conditions::ModalConditions;
@@ -45,21 +46,6 @@ pub struct Record {
     pub(super) ending: EndState,
     /// Totals of the run.
     pub totals: Totals,
-}
-
-/// A block by program and line, and the calls that led to it, innermost first.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BlockLocation {
-    /// Name of the program.
-    pub program: String,
-    /// Line in its file, from 1.
-    pub line: u32,
-    /// Text of the block.
-    pub block: String,
-    /// Calls that led to the block, innermost first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub calls: Vec<Self>,
 }
 
 /// Totals of one revision.
@@ -291,20 +277,6 @@ impl Record {
 /// Returns the alarm's code from the text of a run's end: `alarm PS0076 program O0009 is not found`.
 pub fn alarm_code(words: &str) -> Option<&str> {
     words.strip_prefix("alarm ")?.split(' ').next()
-}
-
-impl BlockLocation {
-    /// Locates a block of a run and the calls that led to it.
-    pub fn of(run: &Run, backtrace: &Backtrace) -> Self {
-        let sources = run.control.memory().sources();
-        let at = |span| {
-            let (program, line) = run.locate(span);
-            Self { program, line, block: sources.text(span).trim().to_owned(), calls: Vec::new() }
-        };
-        let chain = std::iter::successors(backtrace.calls.as_deref(), |call| call.outer_calls.as_deref());
-        let calls = chain.map(|call| at(call.calling_block)).collect();
-        Self { calls, ..at(backtrace.block) }
-    }
 }
 
 /// Returns end and final state of a run.

@@ -7,10 +7,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::block_list::BlockList;
+use super::block_location::BlockLocation;
 use super::first_command::FirstCommand;
 use super::legacy_records::present_words;
 use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
-use super::record::{BlockLocation, EndState, Record, Totals};
+use super::record::{EndState, Record, Totals};
 use super::step_list::{NewStep, StepList};
 use super::steps::{Step, StepKind, UnsimulatedKind};
 use gcode_inspect::holes::{DrilledHole, PassCut};

@@ -3,11 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::align::Alignment;
+use super::block_location::BlockLocation;
 use super::change::Effect;
 use super::descriptions::describe;
 use super::kinds;
 use super::modal_conditions::ModalAspect;
-use super::record::{BlockLocation, Record};
+use super::record::Record;
 use super::steps::{StepKind, UnsimulatedKind, near};
 use gcode_lang::diag::FindingKind;
 use gcode_lang::motion::{Axes, Position, SpindleDirection};

@@ -9,7 +9,7 @@ mod typos;
 use crate::source::{Span, Spanned};
 
 pub use code::AlarmCode;
-pub use typos::remedy;
+pub use typos::{missing_macro_help, remedy};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
