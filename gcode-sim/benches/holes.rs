@@ -42,7 +42,7 @@ impl Case {
 
     fn passes(&self, simulation: &Simulation) -> bool {
         let tolerances = Tolerances::of(&self.reference, None);
-        let verdict = simulation.verify(&self.reference, tolerances, &self.request.machine);
+        let verdict = simulation.verify(&self.reference, tolerances, &self.request);
         verdict.verdict == Answer::Pass && verdict.holes.len() == self.reference.holes.len()
     }
 }

@@ -93,7 +93,7 @@ fn five_holes(part: Placement, zero: f64) -> Verdict {
     request.variables.push((5222, zero));
     let reference = NominalPart::from_job(&bench.job).unwrap().into_holes().unwrap();
     let done = simulate(&request, &mut Programs(&bench.package), reference.surface).unwrap();
-    done.verify(&reference, Tolerances::of(&reference, Some(0.1)), &request.machine)
+    done.verify(&reference, Tolerances::of(&reference, Some(0.1)), &request)
 }
 
 /// What is left of a misplacement when the part is moved back by what was found: R'⁻¹·(R·p + d − d'), written out with

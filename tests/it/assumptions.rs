@@ -148,8 +148,8 @@ fn an_alarm_stands_before_denied_assumptions() {
     let line = "gcode-sim verify O1.nc --reference r.csv --deny assumptions --format json";
     let (verdict, code) = run_json(line, place.path());
     let summary = verdict["summary"].as_str().unwrap();
-    assert!(summary.starts_with("alarm PS0112 in O0001 line 11: division by zero; "), "{summary}");
-    assert!(summary.ends_with("; 1 assumption is denied"), "{summary}");
+    let start = "alarm PS0112 in O0001 line 11: division by zero; 1 assumption is denied; ";
+    assert!(summary.starts_with(start), "{summary}");
     assert_eq!(code, 3);
 }
 
@@ -215,17 +215,59 @@ fn a_value_that_keeps_the_run_from_a_hole_is_listed() {
     assert!(text.contains("decides whether more holes are cut"), "{text}");
 }
 
+/// `test` states what `verify` does: hole b depends on #510, which is denied.
 #[test]
-fn flutes_have_no_assumptions_to_deny() {
-    let folder = gcode_tests::workspace().join("tests/suite/verify");
-    let file = |name: &str| folder.join(name).display().to_string();
-    let line = format!(
-        "gcode-sim verify {} --machine {} --reference {} --deny assumptions",
-        file("four_flutes_of_a_burr_pass/case.nc"),
-        file("grinder.toml"),
-        file("burr.toml")
-    );
-    assert_eq!(run(&line, &folder).1, 2);
+fn a_case_of_test_lists_its_assumptions_and_fails_where_they_are_denied() {
+    let place = folder(PROGRAM);
+    let place = place.path();
+    std::fs::rename(place.join("r.csv"), place.join("reference.csv")).unwrap();
+    assert_eq!(run("gcode-sim test . --accept", place).1, 0);
+    let (verdict, _) = run_json("gcode-sim verify O1.nc --reference reference.csv --format json", place);
+    let (report, code) = run_json("gcode-sim test . --format json", place);
+    let case = &report["cases"][0];
+    assert_eq!((&case["verdict"]["assumptions"], code), (&verdict["assumptions"], 0));
+    let line = format!("PASS: {}", verdict["summary"].as_str().unwrap());
+    assert_eq!(case["verdict"]["summary"], line);
+    let (text, _) = run("gcode-sim test .", place);
+    assert!(text.contains("\nassumes  .: #510 = ") || text.starts_with("assumes  .: #510 = "), "{text}");
+    let (report, code) = run_json("gcode-sim test . --deny assumptions --format json", place);
+    assert_eq!((&report["cases"][0]["against"]["code"], code), (&json!("assumption"), 1));
+    // Without a reference too.
+    std::fs::remove_file(place.join("reference.csv")).unwrap();
+    assert_eq!(run("gcode-sim test .", place).1, 0);
+    assert_eq!(run("gcode-sim test . --deny assumptions", place).1, 1);
+    std::fs::write(place.join("O1.nc"), PROGRAM.replace("Y#510", "Y20.")).unwrap();
+    assert_eq!(run("gcode-sim test . --accept --deny assumptions", place).1, 0);
+}
+
+/// The angle of the third flute depends on #510, those of the others don't.
+#[test]
+fn an_assumption_decides_a_flute() {
+    let suite = gcode_tests::workspace().join("tests/suite/verify");
+    let program = std::fs::read_to_string(suite.join("four_flutes_of_a_burr_pass/case.nc")).unwrap();
+    let reads = program.replace("#5=#1*90\n", "#5=#1*90\nIF[#1 EQ 2]THEN #5=#5+#510\n");
+    assert_ne!(program, reads);
+    let place = folder(&program);
+    let place = place.path();
+    std::fs::write(place.join("O2.nc"), reads).unwrap();
+    let file = |name: &str| suite.join(name).display().to_string();
+    let flags = format!("--machine {} --reference {}", file("grinder.toml"), file("burr.toml"));
+    let expected =
+        json!([{"what": "#510", "value": null, "place": {"program": "O8400", "line": 8}, "decides": ["3"]}]);
+    let summary = "4 of 4 flutes ground";
+    for (name, assumptions, words, denied) in
+        [("O1", json!([]), summary.to_owned(), 0), ("O2", expected, format!("{summary}; assumes #510"), 1)]
+    {
+        let (verdict, code) = run_json(&format!("gcode-sim verify {name}.nc {flags} --format json"), place);
+        assert_eq!((&verdict["assumptions"], &verdict["summary"], code), (&assumptions, &json!(words), 0));
+        let (text, _) = run(&format!("gcode-sim verify {name}.nc {flags}"), place);
+        let line = "assumes  #510 = vacant (O8400 line 8) decides flute 3\n";
+        assert_eq!(text.contains(line), denied == 1, "{text}");
+        for command in ["verify", "render -o b.png --size 480x360"] {
+            let line = format!("gcode-sim {command} {name}.nc {flags} --deny assumptions");
+            assert_eq!(run(&line, place).1, denied, "{line}");
+        }
+    }
 }
 
 /// A block or two of a program: its kind, and what chooses its numbers.

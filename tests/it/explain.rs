@@ -116,7 +116,7 @@ fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
         page.fenced("csv").into_iter().chain(job).next().map(|text| NominalPart::parse(text).unwrap());
     let mut request = Request::new("example.nc", program.as_bytes(), machine.clone());
     if let Some(NominalPart::Flutes(flutes)) = &nominal {
-        return grind(&request, &mut NoLibrary, flutes).unwrap().verify().diagnostics;
+        return grind(&request, &mut NoLibrary, flutes).unwrap().verify(&request).diagnostics;
     }
     let reference = nominal.and_then(NominalPart::into_holes);
     // Of a job on these pages only the surface counts, or the pattern.
@@ -133,11 +133,8 @@ fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
         Some(reference)
             if surface.is_none() || reference.pattern.is_some() || page.code.starts_with("hole-") =>
         {
-            let mut verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
-            if page.code == "assumption" {
-                simulation.add_assumptions(&mut verdict, &request, true);
-            }
-            verdict.diagnostics
+            request.denies_assumptions = page.code == "assumption";
+            simulation.verify(&reference, Tolerances::of(&reference, None), &request).diagnostics
         }
         _ => simulation.extracted.findings,
     }

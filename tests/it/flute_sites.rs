@@ -9,16 +9,18 @@ use gcode_tests::verify::{machine_of, reference_of};
 use nalgebra::Vector3;
 
 /// The sites of the finding of that code.
-fn sites(grinding: &GrindingRun, code: &str) -> Vec<PartPoint> {
-    let verdict = grinding.verify();
+fn sites((request, grinding): &(Request, GrindingRun), code: &str) -> Vec<PartPoint> {
+    let verdict = grinding.verify(request);
     let finding = verdict.findings.iter().find(|finding| finding.code == code);
     finding.unwrap_or_else(|| panic!("no {code} in {:?}", verdict.findings)).sites.clone()
 }
 
-fn run(program: &str, machine: &str, reference: &str) -> GrindingRun {
+fn run(program: &str, machine: &str, reference: &str) -> (Request, GrindingRun) {
     let machine = Machine::parse(machine).unwrap();
     let NominalPart::Flutes(nominal) = NominalPart::parse(reference).unwrap() else { panic!("a burr") };
-    grind(&Request::new("case.nc", program.as_bytes(), machine), &mut NoLibrary, &nominal).unwrap()
+    let request = Request::new("case.nc", program.as_bytes(), machine);
+    let grinding = grind(&request, &mut NoLibrary, &nominal).unwrap();
+    (request, grinding)
 }
 
 /// Program, machine and reference of a case of kind `verify`.
@@ -38,7 +40,7 @@ fn the_site_of_a_missing_flute_is_its_nominal_place() {
     let [x, y, z] = site.at;
     // Halfway from 4 to −6·cos 30° it is the ball: r² = 36 − x² but for the foot's own place.
     assert!((x + 0.598).abs() < 0.01 && (Vector3::new(x, y, z).norm() - 6.0).abs() < 1e-9, "{site:?}");
-    let across = grinding.result.passes[1].trace.angle_at(x).unwrap();
+    let across = grinding.1.result.passes[1].trace.angle_at(x).unwrap();
     let radius = Vector3::new(0.0, y, z).norm();
     let (there, here) = ([radius * across.cos(), -radius * across.sin()], [y, z]);
     assert!((there[0] + here[0]).abs() < 0.01 && (there[1] + here[1]).abs() < 0.01, "{there:?} {here:?}");
@@ -61,7 +63,7 @@ fn a_fault_of_all_passes_has_a_site_on_each() {
     let grinding = run(program, machine, reference);
     let mut passes: Vec<_> = sites(&grinding, "flute-helix").iter().map(|site| site.pass).collect();
     passes.sort_unstable();
-    let all: Vec<_> = (1..=grinding.result.passes.len()).map(Some).collect();
+    let all: Vec<_> = (1..=grinding.1.result.passes.len()).map(Some).collect();
     assert_eq!(passes, all);
 }
 

@@ -26,7 +26,7 @@ fn drilled(r: f64, y: f64, angles: &[f64], machine: &Machine, reference: &Refere
     text.push_str("M30\n");
     let request = Request::new("O1.nc", text.into_bytes(), machine.clone());
     let done = simulate(&request, &mut NoLibrary, None).unwrap();
-    done.verify(reference, Tolerances::of(reference, Some(1.0)), machine)
+    done.verify(reference, Tolerances::of(reference, Some(1.0)), &request)
 }
 
 /// The holes of [`drilled`] on a part in its place.

@@ -81,7 +81,7 @@ fn drawn_verdict(program: &str, max_blocks: u64) -> (HoleStatus, String) {
     request.limits = Limits { blocks: max_blocks };
     let reference = NominalPart::parse(REFERENCE).unwrap().into_holes().unwrap();
     let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
-    let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
+    let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &request);
     top::of_verdict("O1.nc", &simulation, &reference, &verdict, &machine).verdict.unwrap()
 }
 

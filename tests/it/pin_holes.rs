@@ -94,7 +94,7 @@ fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
             request.settings.returns_signed_angles = is_signed;
             request.machine = machine.clone();
             let done = simulate(&request, &mut Programs(&bench.package), reference.surface).unwrap();
-            let verdict = done.verify(&reference, Tolerances::of(&reference, None), &machine);
+            let verdict = done.verify(&reference, Tolerances::of(&reference, None), &request);
             assert_eq!(verdict.verdict, Answer::Pass, "{:?}", verdict.findings);
             assert_eq!(verdict.holes.len(), 5);
         }

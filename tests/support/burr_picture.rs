@@ -21,7 +21,7 @@ pub(super) fn picture(job: &str, program: Option<String>, view: &str) -> Picture
         panic!("the job is no burr")
     };
     let grinding = grind(&request, &mut NoLibrary, &flutes).unwrap();
-    let view_of = flute_view::of("O8400.nc", &grinding, &grinding.verify());
+    let view_of = flute_view::of("O8400.nc", &grinding, &grinding.verify(&request));
     match view {
         "side" => side_view(&view_of),
         "tip" => tip_view(&view_of),

@@ -111,8 +111,7 @@ fn check_holes(
     request.process_limits = reference.process_limits.clone();
     let simulation = simulate(&request, &mut Programs(package), request.metal(reference))
         .map_err(|e| broken_package("the main program", &e))?;
-    let mut verdict = simulation.verify(reference, Tolerances::of(reference, None), &request.machine);
-    simulation.add_assumptions(&mut verdict, &request, false);
+    let verdict = simulation.verify(reference, Tolerances::of(reference, None), &request);
     let top = top::of_verdict(&request.name, &simulation, reference, &verdict, &request.machine);
     let mut also = Vec::new();
     // A pattern checks for overlaps before it computes any holes.
@@ -140,7 +139,7 @@ fn check_flutes(
 ) -> Result<CheckedPackage, CheckError> {
     let grinding = grind(request, &mut Programs(package), nominal)
         .map_err(|e| broken_package("the main program", &e))?;
-    let verdict = grinding.verify();
+    let verdict = grinding.verify(request);
     let view = flute_view::of(&request.name, &grinding, &verdict);
     let (refusals, warnings) = messages(&verdict.diagnostics, &grinding.run, Vec::new(), verdict.verdict);
     Ok(CheckedPackage {

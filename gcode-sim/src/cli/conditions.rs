@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use gcode_inspect::verify::denied_assumptions;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
-use gcode_part::Assumption;
+use gcode_part::{Assumption, Total};
 
 /// What a result must not rest on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -18,7 +18,7 @@ pub(super) enum DeniedKind {
 /// Flag that denies assumptions.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct DenyArguments {
-    /// Fail if a hole depends on a value that the run reads and nothing in the program sets: a common variable, an
+    /// Fail if a hole or a flute depends on a value that the run reads and nothing in the program sets: a common variable, an
     /// input, a clock, a block skip, an offset, an M code of the machine builder
     #[arg(long, value_name = "WHAT", value_enum)]
     deny: Option<DeniedKind>,
@@ -30,9 +30,9 @@ impl DenyArguments {
         self.deny == Some(DeniedKind::Assumptions)
     }
 
-    /// Returns the errors of assumptions that are denied; `holes` is the number of all holes.
-    pub(super) fn errors(self, assumptions: &[(Assumption, Backtrace)], holes: usize) -> Vec<Diagnostic> {
-        if self.denies_assumptions() { denied_assumptions(assumptions, holes) } else { Vec::new() }
+    /// Returns the errors of assumptions that are denied; `total` is the number of all holes.
+    pub(super) fn errors(self, assumptions: &[(Assumption, Backtrace)], total: Total) -> Vec<Diagnostic> {
+        if self.denies_assumptions() { denied_assumptions(assumptions, total) } else { Vec::new() }
     }
 }
 

@@ -7,7 +7,7 @@ use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, options, output, page, progress};
 use crate::report::holes::{self as report, Origin};
-use gcode_part::HoleList;
+use gcode_part::{HoleList, Total};
 use gcode_session::{Request, Simulation};
 
 #[derive(Debug, Args)]
@@ -58,7 +58,7 @@ fn print_result(
         None => Origin::FeedStart,
     };
     let assumed = simulation.dependencies(request).numbered(&simulation.run);
-    let denied = arguments.deny.errors(&assumed, list.holes.len());
+    let denied = arguments.deny.errors(&assumed, Total::Holes(list.holes.len()));
     list.assumptions = Some(assumed.into_iter().map(|(assumption, _)| assumption).collect());
     list.stopped = simulation.run.stop_sentence();
     print(&list, origin, arguments.format)?;

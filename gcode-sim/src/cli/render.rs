@@ -11,7 +11,7 @@ use crate::report::{flute_view, top};
 use gcode_draw::{FluteView, Picture, Size, TopView};
 use gcode_inspect::verify::{Answer, Tolerances, denied_words};
 use gcode_lang::diag::Diagnostic;
-use gcode_part::{Assumption, NominalPart};
+use gcode_part::{Assumption, NominalPart, Total};
 use gcode_session::{Request, Run};
 
 #[derive(Debug, Args)]
@@ -67,15 +67,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         options::checked_request(&program, arguments.reference.as_deref(), Some(&arguments.output), None)?;
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
+    request.denies_assumptions = arguments.deny.denies_assumptions();
     let drawn = match nominal {
-        Some(NominalPart::Flutes(_)) if arguments.deny.denies_assumptions() => {
-            return Err(UsageError::new("--deny is for holes, and the reference is a burr"));
-        }
         Some(NominalPart::Flutes(mut flutes)) => {
             flutes.surface_tolerance = tolerance.unwrap_or(flutes.surface_tolerance);
             let grind = |request: &Request| gcode_session::grind(request, &mut folders, &flutes);
             let grinding = progress::of_run(&mut request, grind)?;
-            let verdict = grinding.verify();
+            let verdict = grinding.verify(&request);
             let view = arguments.view.unwrap_or(View::Side);
             let picture = flute_picture(view, &flute_view::of(&name(&request), &grinding, &verdict))?;
             Drawn {
@@ -98,9 +96,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             match &reference {
                 Some(reference) => {
                     let tolerances = Tolerances::of(reference, tolerance);
-                    let mut verdict = simulation.verify(reference, tolerances, &request.machine);
-                    let is_denied = arguments.deny.denies_assumptions();
-                    simulation.add_assumptions(&mut verdict, &request, is_denied);
+                    let verdict = simulation.verify(reference, tolerances, &request);
                     let drawn =
                         top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
                     Drawn {
@@ -115,7 +111,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                 None => {
                     let found = simulation.dependencies(&request);
                     let assumed = found.numbered(&simulation.run);
-                    let denied = arguments.deny.errors(&assumed, found.hole_count());
+                    let denied = arguments.deny.errors(&assumed, Total::Holes(found.count()));
                     let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();
                     let drawn = top::of_holes(&name(&request), &simulation, &request.machine, &assumed);
                     let denial = (!denied.is_empty()).then(|| denied_words(denied.len()));

@@ -9,6 +9,7 @@ use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress};
 use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport};
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::stylus::RapidChecker;
+use gcode_part::Total;
 use gcode_session::SessionError;
 
 #[derive(Debug, Args)]
@@ -67,7 +68,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         output::write(path, &bytes)?;
     }
     let found = run.dependencies(&request);
-    let (assumed, holes) = (found.numbered(&run), found.hole_count());
+    let (assumed, holes) = (found.numbered(&run), Total::Holes(found.count()));
     let denied = arguments.deny.errors(&assumed, holes);
     let assumptions = (assumed.into_iter().map(|(assumption, _)| assumption).collect(), holes);
     let report = RunReport::new(&run, &request.machine, moves.as_ref(), system, assumptions);

@@ -83,6 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let results = (arguments.picture.as_deref(), arguments.page.as_deref());
     let (mut request, folders) =
         options::checked_request(&arguments.program, Some(path), results.0, results.1)?;
+    request.denies_assumptions = arguments.deny.denies_assumptions();
     match options::read_nominal(path)? {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);
@@ -92,7 +93,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
                 ("--depth-tolerance", depth.is_some()),
-                ("--deny", arguments.deny.denies_assumptions()),
                 ("--worst-first", arguments.worst_first),
                 ("--full", arguments.full),
                 ("--page", arguments.page.is_some()),
@@ -113,7 +113,7 @@ fn flutes(
     nominal: &Flutes,
 ) -> Result<ExitStatus, UsageError> {
     let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, nominal))?;
-    let verdict = grinding.verify();
+    let verdict = grinding.verify(request);
     let table = || flute_table::table(&verdict);
     let picture = || gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
     let result = (&verdict, verdict.conclusion(), verdict.diagnostics.as_slice());
@@ -164,14 +164,9 @@ fn holes(
         let picture = || gcode_draw::main_view(&view());
         print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
-    let add_assumptions = |simulation: &Simulation, verdict: &mut Verdict, request: &Request| {
-        let is_denied = arguments.deny.denies_assumptions();
-        simulation.add_assumptions(verdict, request, is_denied);
-    };
     if let Some(path) = &arguments.page {
         let traced = page::simulate_traced(request, &mut folders, request.metal(reference))?;
-        let mut verdict = traced.0.simulation.verify(reference, tolerances, &machine);
-        add_assumptions(&traced.0.simulation, &mut verdict, request);
+        let verdict = traced.0.simulation.verify(reference, tolerances, request);
         let judged = Some((path_of_reference, reference, &verdict));
         page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;
         let status = print(&traced.0.simulation, &verdict)?;
@@ -181,8 +176,7 @@ fn holes(
     let simulate =
         |request: &Request| gcode_session::simulate(request, &mut folders, request.metal(reference));
     let simulation = progress::of_run(request, simulate)?;
-    let mut verdict = simulation.verify(reference, tolerances, &machine);
-    add_assumptions(&simulation, &mut verdict, request);
+    let verdict = simulation.verify(reference, tolerances, request);
     // The process ends with the result: the system takes its memory back as a whole.
     print(&ManuallyDrop::new(simulation), &ManuallyDrop::new(verdict))
 }

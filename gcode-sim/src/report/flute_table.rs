@@ -1,8 +1,9 @@
 //! The verdict on flutes as text, with the helix angles of both laws side by side.
 use std::fmt::Write;
 
-use super::verdict_table::append_conclusion;
+use super::verdict_table::{append_assumptions, append_conclusion};
 use gcode_inspect::verify::flutes::{FluteVerdict, LawAngles, NominalFlutes};
+use gcode_part::Total;
 
 /// Formats the verdict; lengths in mm, angles in degrees. Values are judged unrounded and shown rounded.
 pub fn table(verdict: &FluteVerdict) -> String {
@@ -58,6 +59,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }
+    append_assumptions(&mut text, &verdict.assumptions, Total::Flutes(verdict.passes));
     text
 }
 

@@ -1,14 +1,14 @@
 //! Contents of a burr's pictures: its outline, the ground flutes, and the helix angle along them.
 use nalgebra::Point3;
 
-use super::top::drawn_conclusion;
+use super::top::{assumption_lines, drawn_conclusion};
 use gcode_draw::{Fault, FlutePoint, FluteView, HelixCourses, HelixPoint, HoleStatus};
 use gcode_inspect::findings::{FLUTE_EXTRA, FLUTE_MISSING};
 use gcode_inspect::flutes::{GrindingPass, Trace};
 use gcode_inspect::verify::flutes::{FluteVerdict, describe_kind};
 use gcode_lang::units::Deg;
 use gcode_part::job::FluteLaw;
-use gcode_part::{Flutes, Profile};
+use gcode_part::{Flutes, Profile, Total};
 use gcode_session::GrindingRun;
 
 /// Builds the view of the program `name`.
@@ -32,7 +32,7 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
     FluteView {
         name: name.to_owned(),
         verdict: drawn_conclusion(&verdict.conclusion()),
-        lines: vec![
+        lines: [
             format!("Law: {}, {}° on the cylinder", verdict.law, verdict.helix),
             format!(
                 "Helix angle {}° to {}°, largest deviation from the law on pass {}",
@@ -44,7 +44,10 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
                 "Contact deviation from the surface: at most {} mm",
                 number(verdict.surface_deviation, 4)
             ),
-        ],
+        ]
+        .into_iter()
+        .chain(assumption_lines(&verdict.assumptions, Total::Flutes(verdict.passes)))
+        .collect(),
         outline,
         tip_radius: -end.y,
         flutes: grinding.result.passes.iter().map(points).collect(),

@@ -2,7 +2,7 @@
 use std::fmt::Write;
 
 use super::verdict_table::append_assumptions;
-use gcode_part::{HoleList, STOPPED};
+use gcode_part::{HoleList, STOPPED, Total};
 
 /// Point from which the depth of each hole counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,11 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
     }
     let plural = if list.holes.len() == 1 { "" } else { "s" };
     let _ = writeln!(text, "{} hole{plural}, mm, in the part's frame", list.holes.len());
-    append_assumptions(&mut text, list.assumptions.as_deref().unwrap_or_default(), list.holes.len());
+    append_assumptions(
+        &mut text,
+        list.assumptions.as_deref().unwrap_or_default(),
+        Total::Holes(list.holes.len()),
+    );
     text
 }
 

@@ -11,7 +11,7 @@ use gcode_inspect::machine::Machine;
 use gcode_lang::alarm::remedy;
 use gcode_lang::motion::{Axes, Event, EventKind, EventSink, Position};
 use gcode_lang::source::Span;
-use gcode_part::Assumption;
+use gcode_part::{Assumption, Total};
 use gcode_review::BlockLocation;
 use gcode_session::Run;
 
@@ -53,7 +53,7 @@ pub(crate) struct RunReport {
     work_unit: &'static str,
     /// Number of holes that the run makes.
     #[serde(skip)]
-    hole_count: usize,
+    total: Total,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -189,7 +189,7 @@ impl RunReport {
         machine: &Machine,
         moves: Option<&MoveRecorder>,
         system: Vec<(u32, Value)>,
-        (assumptions, hole_count): (Vec<Assumption>, usize),
+        (assumptions, total): (Vec<Assumption>, Total),
     ) -> Self {
         let control = &run.control;
         let axes = &control.settings().axes;
@@ -241,7 +241,7 @@ impl RunReport {
             moves: control.moves(),
             seconds: control.seconds().0,
             assumptions,
-            hole_count,
+            total,
             path,
             uncommanded: axes.names(uncommanded),
             work_unit: if control.is_inch() { "inches" } else { "mm" },
@@ -281,7 +281,7 @@ impl RunReport {
             );
         }
         for assumption in &self.assumptions {
-            let _ = writeln!(text, "assumes    {}", assumption.sentence(self.hole_count));
+            let _ = writeln!(text, "assumes    {}", assumption.sentence(self.total));
         }
         for (number, value) in &self.variables {
             let _ = writeln!(text, "{:<11}{}", format!("#{number}"), plain(*value));

@@ -10,6 +10,7 @@ use super::figures::count;
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::alarm::kinds::PS0076;
 use gcode_lang::diag::Severity;
+use gcode_part::{Assumption, Total};
 use gcode_review::{BlockLocation, Change, Totals, alarm_code, kinds};
 
 /// The document of `test --format json`, which `test --merge` reads.
@@ -55,6 +56,9 @@ pub(crate) struct CaseReport {
     pub(crate) not_compared: Vec<String>,
     /// The first error of the verification against the reference.
     pub(crate) against: Option<FirstFailure>,
+    /// The verdict against the reference, and what the case rests on; null if the case is invalid.
+    #[serde(default)]
+    pub(crate) verdict: Option<CaseVerdict>,
     /// The reason why the case is invalid.
     pub(crate) error: Option<String>,
     pub(crate) totals: Option<Totals>,
@@ -84,6 +88,18 @@ pub(crate) enum CaseAnswer {
 /// Text for [`CaseAnswer::Older`].
 pub(super) const OLDER_TEXT: &str =
     "accepted by an earlier version that recorded less; everything it recorded is unchanged";
+
+/// What a case rests on.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CaseVerdict {
+    /// The line of the verdict, as of `verify`; null without a reference.
+    pub(crate) summary: Option<String>,
+    /// Number of all holes or flutes.
+    pub(crate) total: Total,
+    /// Values that the run read and nothing in the program set.
+    pub(crate) assumptions: Vec<Assumption>,
+}
 
 /// The first error of a failed verdict.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -209,6 +225,12 @@ impl CaseReport {
         }
         if let Some(FirstFailure { code, message, .. }) = &self.against {
             let _ = writeln!(text, "fails    {name}: {code}: {message}");
+        }
+        let verdict = self.verdict.iter().filter(|verdict| verdict.summary.is_some());
+        for (verdict, one) in
+            verdict.flat_map(|verdict| verdict.assumptions.iter().map(move |one| (verdict, one)))
+        {
+            let _ = writeln!(text, "assumes  {name}: {}", one.sentence(verdict.total));
         }
     }
 

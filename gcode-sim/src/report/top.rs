@@ -14,6 +14,7 @@ use gcode_part::Hole;
 use gcode_part::Pattern;
 use gcode_part::Reference;
 use gcode_part::Surface;
+use gcode_part::Total;
 use gcode_session::Simulation;
 
 /// Builds the view of holes without a reference.
@@ -41,7 +42,7 @@ pub fn of_holes(
             .run
             .stop_sentence()
             .into_iter()
-            .chain(assumption_lines(assumptions, holes.len()))
+            .chain(assumption_lines(assumptions, Total::Holes(holes.len())))
             .collect(),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
@@ -99,7 +100,10 @@ pub fn of_verdict(
             .iter()
             .map(closing_sentence)
             .chain(verdict.neighbours.iter().flat_map(neighbour_range))
-            .chain(assumption_lines(&verdict.assumptions, verdict.holes.len() + verdict.extra.len()))
+            .chain(assumption_lines(
+                &verdict.assumptions,
+                Total::Holes(verdict.holes.len() + verdict.extra.len()),
+            ))
             .collect(),
         verdict: Some(drawn_conclusion(&verdict.conclusion())),
         tolerance: Some(verdict.tolerance),
@@ -194,11 +198,15 @@ fn neighbour_range(neighbours: &Neighbours) -> Option<String> {
 /// Number of assumptions that a picture lists.
 const MAX_ASSUMPTIONS: usize = 3;
 
-/// Returns a line for each of the first assumptions, and the number of the others; `holes` is the number of all holes.
-fn assumption_lines(assumptions: &[Assumption], holes: usize) -> impl Iterator<Item = String> + '_ {
+/// Returns a line for each of the first assumptions, and the number of the others; `total` is the number of all holes or
+/// flutes.
+pub(super) fn assumption_lines(
+    assumptions: &[Assumption],
+    total: Total,
+) -> impl Iterator<Item = String> + '_ {
     let first = assumptions.iter().take(MAX_ASSUMPTIONS);
     let more = assumptions.len().saturating_sub(MAX_ASSUMPTIONS);
-    let first = first.map(move |assumption| format!("assumes {}", assumption.sentence(holes)));
+    let first = first.map(move |assumption| format!("assumes {}", assumption.sentence(total)));
     first.chain((0 < more).then(|| format!("and {}", count(more, "more assumption"))))
 }
 

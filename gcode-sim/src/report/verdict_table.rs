@@ -5,7 +5,7 @@ use super::figures::{count, rounded, signed, signed_to};
 use gcode_inspect::verify::{
     Conclusion, Distance, ExtraHole, HoleGeometry, HoleVerdict, Neighbours, Verdict,
 };
-use gcode_part::{Assumption, exceeds};
+use gcode_part::{Assumption, Total, exceeds};
 
 /// Extent and order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -178,7 +178,7 @@ fn summary(text: &mut String, verdict: &Verdict) {
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }
-    append_assumptions(text, &verdict.assumptions, verdict.holes.len() + verdict.extra.len());
+    append_assumptions(text, &verdict.assumptions, Total::Holes(verdict.holes.len() + verdict.extra.len()));
     if !verdict.missing.is_empty() {
         let _ = writeln!(text, "missing  {}", list_first(&verdict.missing, |id| id.clone(), ", "));
     }
@@ -220,10 +220,10 @@ fn made_by(hole: &HoleVerdict) -> String {
     format!("{} line {}{tool}{}", hole.from.program, hole.from.line, calls.concat())
 }
 
-/// Writes a line for each assumption; `holes` is the number of all holes of the result.
-pub(super) fn append_assumptions(text: &mut String, assumptions: &[Assumption], holes: usize) {
+/// Writes a line for each assumption; `total` is the number of all holes or flutes of the result.
+pub(super) fn append_assumptions(text: &mut String, assumptions: &[Assumption], total: Total) {
     for assumption in assumptions {
-        let _ = writeln!(text, "assumes  {}", assumption.sentence(holes));
+        let _ = writeln!(text, "assumes  {}", assumption.sentence(total));
     }
 }
 
@@ -238,7 +238,7 @@ pub(super) fn append_conclusion(text: &mut String, conclusion: &Conclusion<'_>, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gcode_inspect::verify::{Answer, Ending};
+    use gcode_inspect::verify::{Answer, Ending, SummaryWords};
     use gcode_part::Origin;
 
     fn hole(id: &str, phi: f64, error_codes: &[&'static str]) -> HoleVerdict {
@@ -285,6 +285,7 @@ mod tests {
             missing: (3..18).map(|id| id.to_string()).collect(),
             extra: Vec::new(),
             repeated: Vec::new(),
+            words: SummaryWords::default(),
             findings: Vec::new(),
             neighbours: None,
             not_checked: Vec::new(),

@@ -58,7 +58,8 @@ fn grind_flutes(bench: &Bench) -> FluteVerdict {
     let NominalPart::Flutes(flutes) = NominalPart::from_job(&bench.job).unwrap() else {
         panic!("a burr has flutes")
     };
-    grind(&bench.request(8400), &mut Programs(&bench.package), &flutes).unwrap().verify()
+    let request = bench.request(8400);
+    grind(&request, &mut Programs(&bench.package), &flutes).unwrap().verify(&request)
 }
 
 /// The verdict on an emitted program in which `from` is replaced.

@@ -36,17 +36,14 @@ pub(crate) fn run(case: &Case) {
     let nominal = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
     let (actual, layout) = match nominal {
         Some(NominalPart::Flutes(flutes)) => {
-            inspect_flutes(&grind(&request, &mut NoLibrary, &flutes).unwrap())
+            inspect_flutes(&grind(&request, &mut NoLibrary, &flutes).unwrap(), &request)
         }
         Some(nominal) => {
             let reference = nominal.into_holes().unwrap();
             request.process_limits = reference.process_limits.clone();
             let simulation =
                 simulate(&request, &mut NoLibrary, reference.metal(machine.stock.as_ref())).unwrap();
-            let mut verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
-            if text.lines().any(|line| line.starts_with("assumes ")) {
-                simulation.add_assumptions(&mut verdict, &request, false);
-            }
+            let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &request);
             inspect_holes(&verdict, &simulation.run)
         }
         None => list_holes(&simulate(&request, &mut NoLibrary, None).unwrap()),
@@ -138,8 +135,8 @@ fn deviations(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
     ]
 }
 
-fn inspect_flutes(grinding: &GrindingRun) -> (ActualVerdict, String) {
-    let verdict = grinding.verify();
+fn inspect_flutes(grinding: &GrindingRun, request: &Request) -> (ActualVerdict, String) {
+    let verdict = grinding.verify(request);
     let found = [
         ("contact", verdict.surface_deviation),
         ("helix_min", verdict.helix_min),
@@ -161,7 +158,7 @@ fn inspect_flutes(grinding: &GrindingRun) -> (ActualVerdict, String) {
         findings: finding_lines(&verdict.diagnostics, &verdict.findings, &grinding.run),
         missing: Vec::new(),
         not_checked: verdict.not_checked.clone(),
-        assumptions: Vec::new(),
+        assumptions: verdict.assumptions.iter().map(assumption_line).collect(),
         facts: vec![("burr".to_owned(), known_facts(found))],
         made: Vec::new(),
     };

@@ -283,7 +283,8 @@ impl Planner<'_> {
 }
 
 impl Executor {
-    /// Ends a program after its last block: a text may end there, but `%` or another program raises an alarm.
+    /// Ends a program after its last block: a text without `%` may end there, but `%`, cut off or not, or another program raises
+    /// an alarm.
     #[cold]
     fn end_of_program(&mut self, memory: &Memory) -> ExecResult<()> {
         let frame = &self.flow.frame;
@@ -293,6 +294,7 @@ impl Executor {
         };
         self.flow.block = Span { start: program.span.end, ..program.span };
         if is_main && !program.is_closed {
+            self.log.lacks_end = true;
             self.registers.block_effects.end_run(RunEnd::ProgramEnd);
             return Ok(());
         }

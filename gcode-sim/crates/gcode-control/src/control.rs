@@ -351,6 +351,11 @@ impl Control {
         self.executor.log.notes.iter().map(|(note, block)| (*note, *block))
     }
 
+    /// Returns true if the text of the main program has ended the run, without M02, M30 or M99.
+    pub fn lacks_end(&self) -> bool {
+        self.executor.log.lacks_end
+    }
+
     /// Returns the work offsets other than G54 that the run has used before anything set them.
     pub fn unset_work_offsets(&self) -> &[UnsetWorkOffset] {
         &self.executor.log.unset_systems

@@ -57,6 +57,18 @@ pub(super) enum Register {
     DWear,
 }
 
+impl Register {
+    /// Returns the table that G10 L1 or L10 to L13 sets.
+    pub(super) fn of_data_input(l: u32) -> Self {
+        match l {
+            10 => Self::HGeometry,
+            12 => Self::DGeometry,
+            13 => Self::DWear,
+            _ => Self::HWear,
+        }
+    }
+}
+
 /// Number of the systems that every control has: the external offset and G54 to G59.
 pub(super) const STANDARD_SYSTEMS: usize = 7;
 

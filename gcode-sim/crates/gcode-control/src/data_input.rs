@@ -1,5 +1,5 @@
 //! G10: offsets, variables and parameters that a program writes.
-use super::data::{Register, STANDARD_SYSTEMS, parameter_bit};
+use super::data::{Register, STANDARD_SYSTEMS, parameter_bit, system_index};
 use super::functions::ExecResult;
 use super::notes::Note;
 use super::plan::{BlockPlan, TableWrite};
@@ -9,7 +9,7 @@ use super::words::WordNumber;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::{OffsetMemory, ParameterError, ParameterId, Settings, is_without_effect};
 use gcode_lang::program::g_codes::{Effect, OneShot};
-use gcode_lang::program::modes::Distance;
+use gcode_lang::program::modes::{Distance, WorkSystem};
 
 impl Planner<'_> {
     /// G10: L2 and L20 work offsets, L10 to L13 tool offsets, L50 and L52 parameters, L85 variables.
@@ -53,7 +53,10 @@ impl Planner<'_> {
         for (axis, _) in self.data.settings.axes.iter() {
             let Some(value) = self.axis_dimension(axis, &plan.state)? else { continue };
             let value = self.table_value(plan, offsets[system][axis], value)?;
-            plan.writes.push(TableWrite::Work { system, axis, value });
+            // The zero of G54 is the part's whatever it was.
+            let is_set = plan.state.modal.distance == Distance::Absolute
+                || system == system_index(WorkSystem::default());
+            plan.writes.push(TableWrite::Work { system, axis, value, is_set });
         }
         Ok(())
     }
@@ -67,16 +70,16 @@ impl Planner<'_> {
 
     /// L1 and L10 to L13: tool offsets.
     fn plan_tool_offset(&self, l: u32, number: u32, plan: &mut BlockPlan) -> ExecResult<()> {
-        let (register, is_known) = match l {
-            10 => (Register::HGeometry, self.data.settings.offset_memory != OffsetMemory::A),
-            12 => (Register::DGeometry, self.data.settings.offset_memory == OffsetMemory::C),
-            13 => (Register::DWear, self.data.settings.offset_memory == OffsetMemory::C),
-            _ => (Register::HWear, true),
+        let memory = self.data.settings.offset_memory;
+        let is_known = match l {
+            10 => memory != OffsetMemory::A,
+            12 | 13 => memory == OffsetMemory::C,
+            _ => true,
         };
         if !is_known {
             return Err(self.format_alarm(&format!("L{l} is not available in this tool offset memory")));
         }
-        let register = self.data.table(register);
+        let register = self.data.table(Register::of_data_input(l));
         let old = self.locate(self.data.offsets.tool(register, number))?;
         if number == 0 {
             return Err(Alarm::OffsetNumber { number: 0 }.located_at(self.block));

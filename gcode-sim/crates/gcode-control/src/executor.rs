@@ -87,7 +87,12 @@ impl Executor {
         let Registers { data, variables, panel, .. } = &mut self.registers;
         for write in &plan.writes {
             match *write {
-                TableWrite::Work { system, axis, value } => data.set_work_offset(system, axis, value),
+                TableWrite::Work { system, axis, value, is_set: true } => {
+                    data.set_work_offset(system, axis, value)
+                }
+                TableWrite::Work { system, axis, value, is_set: false } => {
+                    data.offsets.work[system][axis] = value;
+                }
                 TableWrite::Tool { register, number, value } => {
                     data.offsets.tools[register as usize][number as usize] = value;
                 }

@@ -175,6 +175,8 @@ pub(super) struct RunLog {
     pub(super) late_groups: GroupSet,
     /// A canned cycle has drilled.
     pub(super) has_drilled: bool,
+    /// The text of the main program has ended without M02, M30 or M99.
+    pub(super) lacks_end: bool,
 }
 
 impl RunLog {

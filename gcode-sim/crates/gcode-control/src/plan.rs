@@ -54,6 +54,8 @@ pub(super) enum TableWrite {
         system: usize,
         axis: usize,
         value: f64,
+        /// The offset is known afterwards: it is no sum of an unknown one.
+        is_set: bool,
     },
     Tool {
         register: Register,

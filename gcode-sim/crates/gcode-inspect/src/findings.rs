@@ -53,6 +53,7 @@ gcode_lang::finding_kinds! {
     LENGTH_OFFSET = "length-offset", Error, "the tool's length offset is not its own";
     MAIN_PROGRAM = "main-program", Note, "a file with several main programs";
     MIRROR_IMAGE = "mirror-image", Error, "the pattern is mirrored, but not by the table";
+    NO_END = "no-end", Error, "the program ends without M02, M30 or M99";
     PATH_NOT_READ = "path-not-read", Error, "the path of an edge finder leaves the surface";
     RAPID_BEYOND_CUT = "rapid-beyond-cut", Error, "a rapid beyond the cut";
     RAPID_INTO_PART = "rapid-into-part", Error, "a rapid through the part";

@@ -2,7 +2,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A value that the run read and nothing in its program set, and that can touch a hole.
+/// A value that the run read and nothing in its program set, and that can touch a hole or a flute.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Assumption {
@@ -12,7 +12,7 @@ pub struct Assumption {
     pub value: Option<f64>,
     /// The block of the first read.
     pub place: AssumptionPlace,
-    /// Ids of the holes that it can touch, or their numbers without a reference; those without a nominal one are `extra 1`,
+    /// Ids of the holes that it can touch, or their numbers without a reference, or the numbers of flutes; those without a nominal one are `extra 1`,
     /// `extra 2`, …. Empty if it touches none of them, and another value may make further ones.
     pub decides: Vec<String>,
 }
@@ -27,12 +27,26 @@ pub struct AssumptionPlace {
     pub line: u32,
 }
 
+/// Number of all holes or flutes of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Total {
+    /// Number of holes.
+    Holes(usize),
+    /// Number of flutes, repeated passes over a flute included.
+    Flutes(usize),
+}
+
 /// Number of holes that are listed by their ids.
 const MAX_LISTED: usize = 8;
 
 impl Assumption {
-    /// Returns `#510 = vacant (O0100 line 12) decides holes 3, 4`; `holes` is the number of all holes of the result.
-    pub fn sentence(&self, holes: usize) -> String {
+    /// Returns `#510 = vacant (O0100 line 12) decides holes 3, 4`.
+    pub fn sentence(&self, total: Total) -> String {
+        let (noun, count) = match total {
+            Total::Holes(count) => ("hole", count),
+            Total::Flutes(count) => ("flute", count),
+        };
         let Self { what, value, place: AssumptionPlace { program, line }, decides } = self;
         let value = match value {
             Some(value) => format!(" = {value}"),
@@ -41,11 +55,11 @@ impl Assumption {
         };
         let shown = decides.iter().take(MAX_LISTED).cloned().collect::<Vec<_>>().join(", ");
         let decided = match decides.len() {
-            0 => "whether more holes are cut".to_owned(),
-            1 => format!("hole {shown}"),
-            all if all == holes => format!("all {all} holes"),
-            all if MAX_LISTED < all => format!("holes {shown}, … and {} more", all - MAX_LISTED),
-            _ => format!("holes {shown}"),
+            0 => format!("whether more {noun}s are cut"),
+            1 => format!("{noun} {shown}"),
+            all if all == count => format!("all {all} {noun}s"),
+            all if MAX_LISTED < all => format!("{noun}s {shown}, … and {} more", all - MAX_LISTED),
+            _ => format!("{noun}s {shown}"),
         };
         format!("{what}{value} ({program} line {line}) decides {decided}")
     }
@@ -79,7 +93,8 @@ mod tests {
                 "/ = 0 (O0100 line 12) decides holes 1, 2, 3, 4, 5, 6, 7, 8, … and 2 more",
             ),
         ] {
-            assert_eq!(one.sentence(holes), expected);
+            assert_eq!(one.sentence(Total::Holes(holes)), expected);
+            assert_eq!(one.sentence(Total::Flutes(holes)), expected.replace("hole", "flute"));
         }
     }
 }

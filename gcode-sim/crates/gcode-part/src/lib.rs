@@ -61,7 +61,7 @@ mod stock;
 mod surface;
 mod touch_uncertainty;
 
-pub use assumption::{Assumption, AssumptionPlace};
+pub use assumption::{Assumption, AssumptionPlace, Total};
 pub use clusters::Clusters;
 pub use contact::Frustum;
 pub use entry_planes::{

@@ -1,63 +1,78 @@
 //! Assumptions of a result: values that the run read and nothing in its program set, with the holes that each can touch.
-use std::cell::Cell;
 use std::collections::BTreeSet;
-use std::rc::Rc;
-use std::sync::Arc;
 
+use super::marked_events::{MarkedEvents, marks_of};
 use super::outside_text::names_outside;
 use super::{Request, Run, set_up_control};
 use gcode_control::OperatorStop;
 use gcode_control::slice::{KEPT_GROUPS, Marks, OutsideRead, Slice, StatedValues};
-use gcode_inspect::holes::{DrilledHole, HoleExtractor};
-use gcode_lang::motion::{
-    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal, StopKind,
-};
+use gcode_inspect::flutes::FluteTracker;
+use gcode_inspect::holes::DrilledHole;
+use gcode_lang::motion::{Backtrace, EventSink, StopKind};
 use gcode_lang::program::NoLibrary;
 use gcode_lang::program::modes::ModalGroup;
-use gcode_lang::source::{SourceId, Span};
 use gcode_part::{Assumption, AssumptionPlace, Metal};
 
-/// Holes of a run, and the values from outside on which each depends.
+/// Values from outside on which the holes of a run, or its passes over flutes, depend.
 #[derive(Clone, Debug, Default)]
-pub struct HoleDependencies {
+pub struct Dependencies {
     reads: Vec<OutsideRead>,
-    /// Sets of reads, by hole in the order of the extraction.
-    holes: Vec<Marks>,
+    /// Sets of reads, by hole or pass in the order of their extraction.
+    marks: Vec<Marks>,
 }
 
-/// Follows the outside values through a second run, if the first one can have read any. `metal` is that of the first run.
-pub(super) fn dependencies(request: &Request, run: &Run, metal: &Metal, has_holes: bool) -> HoleDependencies {
-    if run.control.is_cancelled() || !may_read_outside(request, run, has_holes) {
-        return HoleDependencies::default();
+/// Follows the outside values to the holes through a second run, if the first one can have read any. `metal` is that of the
+/// first run.
+pub(super) fn of_holes(request: &Request, run: &Run, metal: &Metal, has_holes: bool) -> Dependencies {
+    let Some((reads, extractor, strokes)) =
+        follow(request, run, has_holes, || super::extractor(request, metal.clone()))
+    else {
+        return Dependencies::default();
+    };
+    let marks_of = |hole: &DrilledHole| {
+        let passes = hole.earlier_passes.iter().map(|pass| &pass.backtrace);
+        marks_of(passes.chain([&hole.backtrace]), &strokes)
+    };
+    Dependencies { reads, marks: extractor.finish().holes.iter().map(marks_of).collect() }
+}
+
+/// Follows the outside values to the passes over flutes.
+pub(super) fn of_flutes(request: &Request, run: &Run, tracker: FluteTracker<'_>) -> Dependencies {
+    let Some((reads, tracker, strokes)) = follow(request, run, true, || tracker) else {
+        return Dependencies::default();
+    };
+    let passes = tracker.finish().passes;
+    Dependencies { reads, marks: passes.iter().map(|pass| marks_of([&pass.backtrace], &strokes)).collect() }
+}
+
+/// Runs the program again into a sink, and returns the outside values, the sink, and the values of each stroke; `None` if the
+/// first run can't have read any. `makes_any` states that there are holes or flutes.
+fn follow<S: EventSink>(
+    request: &Request,
+    run: &Run,
+    makes_any: bool,
+    sink: impl FnOnce() -> S,
+) -> Option<(Vec<OutsideRead>, S, Vec<Marks>)> {
+    if run.control.is_cancelled() || !may_read_outside(request, run, makes_any) {
+        return None;
     }
-    let Ok(mut control) = set_up_control(request, run.control.memory().reload()) else {
-        return HoleDependencies::default();
-    };
+    let mut control = set_up_control(request, run.control.memory().reload()).ok()?;
     let mut slice = Slice::new(stated_values(request), &request.settings, &request.variables);
-    let mut sink = MarkedEvents {
-        extractor: super::extractor(request, metal.clone()),
-        motion: slice.motion(),
-        strokes: Vec::new(),
-        position: Position::default(),
-        last: None,
-        has_fed: false,
-    };
-    control.run_observed(request.limits, &mut NoLibrary, &mut sink, &mut slice);
-    let MarkedEvents { extractor, strokes, .. } = sink;
-    let holes = extractor.finish().holes.iter().map(|hole| marks_of(hole, &strokes)).collect();
-    HoleDependencies { reads: slice.into_reads(), holes }
+    let mut events = MarkedEvents::new(sink(), slice.motion());
+    control.run_observed(request.limits, &mut NoLibrary, &mut events, &mut slice);
+    Some((slice.into_reads(), events.sink, events.strokes))
 }
 
-impl HoleDependencies {
-    /// Returns the assumptions that can touch a hole, each with its block; `names` returns the name of a hole by its index in
-    /// the extraction.
+impl Dependencies {
+    /// Returns the assumptions that can touch a hole or flute, each with its block; `names` returns the name of a hole or pass
+    /// by its index in the extraction.
     pub fn assumptions(
         &self,
         run: &Run,
         names: impl Fn(usize) -> Option<String>,
     ) -> Vec<(Assumption, Backtrace)> {
         let assumption = |(index, read): (usize, &OutsideRead)| {
-            let touched = self.holes.iter().enumerate().filter(|(_, marks)| marks.contains(index));
+            let touched = self.marks.iter().enumerate().filter(|(_, marks)| marks.contains(index));
             // A through hole drilled from both sides is two drilled ones of one name.
             let mut named = BTreeSet::new();
             let decides = touched.filter_map(|(hole, _)| names(hole));
@@ -71,14 +86,14 @@ impl HoleDependencies {
         self.reads.iter().enumerate().filter_map(assumption).collect()
     }
 
-    /// Returns the assumptions, with the holes named by their numbers from 1.
+    /// Returns the assumptions, with holes or passes named by their numbers from 1.
     pub fn numbered(&self, run: &Run) -> Vec<(Assumption, Backtrace)> {
         self.assumptions(run, |hole| Some((hole + 1).to_string()))
     }
 
-    /// Returns the number of holes.
-    pub fn hole_count(&self) -> usize {
-        self.holes.len()
+    /// Returns the number of holes or passes.
+    pub fn count(&self) -> usize {
+        self.marks.len()
     }
 }
 
@@ -135,76 +150,6 @@ fn stated_values(request: &Request) -> StatedValues {
         has_part: request.part.is_some(),
         has_unit: request.settings.is_inch_at_power_on.is_some(),
     }
-}
-
-/// Source of the calls that mark the backtraces of events: no text has it.
-const MARKER: SourceId = SourceId(u32::MAX);
-
-/// Cosine of the largest angle between two moves along one line.
-const MIN_COSINE: f64 = 1.0 - 1e-9;
-
-/// Sink that marks each event with the stroke it belongs to, and records the outside values on which a stroke depends.
-///
-/// A stroke is a series of feeds, with the rapids along the line of the move before. The mark is an innermost call that no
-/// program has, so that the passes of the extraction carry it.
-struct MarkedEvents<'m> {
-    extractor: HoleExtractor<'m>,
-    motion: Rc<Cell<Marks>>,
-    strokes: Vec<Marks>,
-    position: Position,
-    /// Direction of the last move, and whether it was a rapid.
-    last: Option<(Position, bool)>,
-    /// The stroke has fed: rapids before a feed decide no hole but by their end, from which it feeds.
-    has_fed: bool,
-}
-
-impl EventSink for MarkedEvents<'_> {
-    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
-        self.extractor.skip_signal(feed)
-    }
-
-    fn event(&mut self, event: &Event<'_>) {
-        let Some(to) = event.kind.end() else { return self.extractor.event(event) };
-        let is_rapid = matches!(event.kind, EventKind::Rapid { .. });
-        let from = std::mem::replace(&mut self.position, *to);
-        let mut direction = Position::default();
-        (0..MAX_AXES).for_each(|axis| direction[axis] = to[axis] - from[axis]);
-        let length = (0..MAX_AXES).map(|axis| direction[axis] * direction[axis]).sum::<f64>().sqrt();
-        if length > 0.0 {
-            (0..MAX_AXES).for_each(|axis| direction[axis] /= length);
-            let is_along = |last: &Position| {
-                let cosine: f64 = (0..MAX_AXES).map(|axis| last[axis] * direction[axis]).sum();
-                cosine.abs() >= MIN_COSINE
-            };
-            let continues =
-                self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
-            if !continues {
-                self.strokes.push(Marks::NONE);
-                self.has_fed = false;
-            }
-            self.last = Some((direction, is_rapid));
-        } else if self.strokes.is_empty() {
-            self.strokes.push(Marks::NONE);
-        }
-        let stroke = self.strokes.len() - 1;
-        self.has_fed |= !is_rapid;
-        if self.has_fed {
-            self.strokes[stroke] |= self.motion.get();
-        }
-        let place = Span { source: MARKER, start: stroke as u32, end: stroke as u32 };
-        let calls = Some(Arc::new(Call { calling_block: place, outer_calls: event.calls.clone() }));
-        self.extractor.event(&Event { calls: &calls, ..*event });
-    }
-}
-
-/// Returns the outside values on which the passes of a hole depend.
-fn marks_of(hole: &DrilledHole, strokes: &[Marks]) -> Marks {
-    let stroke = |place: &Backtrace| {
-        let call = place.calls.as_ref().filter(|call| call.calling_block.source == MARKER)?;
-        strokes.get(call.calling_block.start as usize).copied()
-    };
-    let passes = hole.earlier_passes.iter().map(|pass| &pass.backtrace);
-    passes.chain([&hole.backtrace]).filter_map(stroke).collect()
 }
 
 #[cfg(test)]
@@ -295,6 +240,40 @@ mod tests {
         assert_assumptions(&format!("IF[#510NE1]GOTO5\nM30\nN5 {hole}"), 1, &["#510=vacant@4: 1"]);
     }
 
+    /// By #510 = 1 the block would move X, and Y would stay at 0.
+    #[test]
+    fn the_number_of_an_axis_decides_all_axes() {
+        let blocks = "AX[#510]=40.\nX60.\nG81 Z-5. R2. F100.";
+        assert_eq!(assumptions_with(blocks, &[(510, 2.0)]), (vec!["#510=2@4: 1".to_owned()], 1));
+        assert_assumptions("#510=2\nAX[#510]=40.\nX60.\nG81 Z-5. R2. F100.", 1, &[]);
+    }
+
+    /// Only a rapid cuts nothing, by the mode in force behind the blocks that are skipped with it.
+    #[test]
+    fn a_skipped_feed_is_a_cut_and_a_skipped_rapid_is_none() {
+        let around = |skipped: &str| {
+            format!(
+                "IF[#510NE1]GOTO10\n{skipped}\nN10 G90 G0 X0. Y0. Z50.\nG98 G81 X10. Y10. Z-5. R2. F100.\nX20."
+            )
+        };
+        let cut = ["#510=vacant@4: "].as_slice();
+        for (skipped, expected) in [
+            ("X20.", [].as_slice()),
+            ("G90 G0 X20.", &[]),
+            ("G1\nX20. F100.", cut),
+            ("G1\nG0 X20.", &[]),
+            ("G1\nG0\nX20.", &[]),
+            ("G99 G81 Z-5. R2. L0\nX30. L1\nG80", cut),
+            ("G80\nX20.", &[]),
+            ("/G1\nX20. F100.", cut),
+            ("G1\n/G0\nX20. F100.", cut),
+            ("G1\nIF[#2EQ1]GOTO9\nG0\nN9 X20. F100.", cut),
+            ("G0\nIF[#2EQ1]GOTO9\nG0\nN9 X20.", &[]),
+        ] {
+            assert_assumptions(&around(skipped), 2, expected);
+        }
+    }
+
     #[test]
     fn a_loop_count_decides_the_holes_of_the_loop() {
         let text = "G81 X5. Y5. Z-5. R2. F100.\n#1=0\nWHILE[#1LT#510]DO1\n#1=#1+1\nX[10.*#1] Y10.\nEND1\nG80\nG0 X0. Y50. Z50.\nG81 X50. Y50. Z-5. R2. F100.";
@@ -313,7 +292,6 @@ mod tests {
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\n/X20.\nX30.", 3, &["/=0@5: 2"]);
         assert_assumptions("#100=#1005*10.\nG81 X10. Y#100 Z-5. R2. F100.\nX20. Y10.", 2, &["#1005=0@4: 1"]);
         assert_assumptions("G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &["H1=0@4: 1"]);
-        assert_assumptions("G10 L10 P1 R0\nG43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM21\nX20.", 2, &["M21=vacant@5: 2"]);
         // Whether the spindle goes on behind a stop.
         assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM00\nX20.", 2, &["M00=vacant@5: 2"]);
@@ -432,6 +410,26 @@ mod tests {
                 "{found:?}"
             );
         }
+    }
+
+    /// A length is the sum of its geometry and its wear, and G91 adds to what the operator has entered.
+    #[test]
+    fn an_offset_that_the_program_sets_in_part_is_an_assumption() {
+        let with = |set: &str, expected: &[&str]| {
+            assert_assumptions(&format!("{set}\nG90 G43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100."), 1, expected);
+        };
+        with("G10 L10 P1 R0\nG10 L11 P1 R0", &[]);
+        with("G10 L10 P1 R0", &["#10001=0@5: 1"]);
+        with("#11001=0", &["#10001=0@5: 1"]);
+        with("#11001=0\n#10001=0", &[]);
+        with("G10 L11 P1 R0", &["H1=0@5: 1"]);
+        with("G91 G10 L10 P1 R0\nG10 L11 P1 R0", &["H1=0@6: 1"]);
+        let g55 = |set: &str, expected: &[&str]| {
+            let hole = "G90 G55 G81 X10. Y10. Z-5. R2. F100.";
+            assert_assumptions(&format!("{set} G10 L2 P2 X0 Y0 Z0\n{hole}"), 1, expected);
+        };
+        g55("G90", &[]);
+        g55("G91", &["G55=vacant@5: 1"]);
     }
 
     #[test]

@@ -23,15 +23,16 @@
 #![warn(missing_docs)]
 mod assumptions;
 mod causes;
+mod completion;
 mod error;
+mod marked_events;
 mod outside_text;
 mod second_start;
 mod trace;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use assumptions::HoleDependencies;
+pub use assumptions::Dependencies;
 pub use error::SessionError;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
@@ -41,7 +42,7 @@ use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
-use gcode_inspect::verify::{Answer, Tolerances, Verdict, stop_sentence, verify};
+use gcode_inspect::verify::{Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::remedy;
 use gcode_lang::control::Settings;
@@ -74,6 +75,8 @@ pub struct Request {
     pub part: Option<Surface>,
     /// Limits of the process that the reference specifies.
     pub process_limits: ProcessLimits,
+    /// Each assumption of a verdict on the run is an error.
+    pub denies_assumptions: bool,
     /// Shared progress of the run, through which it can be cancelled.
     pub progress: Option<Arc<Progress>>,
 }
@@ -99,6 +102,7 @@ impl Request {
             variables: Vec::new(),
             part: None,
             process_limits: ProcessLimits::default(),
+            denies_assumptions: false,
             progress: None,
         }
     }
@@ -257,13 +261,16 @@ pub fn grind(
 }
 
 impl GrindingRun {
-    /// Verifies the ground flutes against the nominal ones.
-    pub fn verify(&self) -> FluteVerdict {
+    /// Verifies the ground flutes against the nominal ones, and completes the verdict by the request of the run.
+    pub fn verify(&self, request: &Request) -> FluteVerdict {
         let locate = |span| self.run.locate(span);
         let mut verdict = verify_flutes(&self.nominal, &self.result, &locate);
-        if verdict.verdict == Answer::Fail {
-            verdict.add_likely_causes(causes::text_findings(&self.run, true), &locate);
-        }
+        let assumptions = || {
+            let tracker = FluteTracker::new(&request.machine, self.nominal).ok();
+            let followed = tracker.map(|tracker| assumptions::of_flutes(request, &self.run, tracker));
+            followed.unwrap_or_default().numbered(&self.run)
+        };
+        completion::complete(&mut verdict, request, &self.run, Vec::new(), assumptions);
         verdict
     }
 }
@@ -351,29 +358,21 @@ fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
 }
 
 impl Simulation {
-    /// Verifies the holes against a reference, and adds likely causes to a verdict with findings.
-    pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
-        let locate = |span| self.run.locate(span);
+    /// Verifies the holes against a reference, and completes the verdict by the request of the run.
+    pub fn verify(&self, reference: &Reference, tolerances: Tolerances, request: &Request) -> Verdict {
+        let (machine, locate) = (&request.machine, |span| self.run.locate(span));
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
-        let mut causes: Vec<Diagnostic> = causes::unset_work_offsets(&self.run, machine, "holes").collect();
-        if verdict.has_findings() {
-            causes.extend(causes::text_findings(&self.run, verdict.verdict == Answer::Fail));
-        }
-        verdict.add_likely_causes(causes, &locate);
+        let offsets = causes::unset_work_offsets(&self.run, machine, "holes").collect();
+        let names = verdict.hole_names();
+        let assumptions =
+            || self.dependencies(request).assumptions(&self.run, |hole| names.get(&hole).cloned());
+        completion::complete(&mut verdict, request, &self.run, offsets, assumptions);
         verdict
     }
 
-    /// Adds the assumptions to a verdict on these holes; each is an error if `is_denied`.
-    pub fn add_assumptions(&self, verdict: &mut Verdict, request: &Request, is_denied: bool) {
-        let found = self.dependencies(request);
-        let names = if found.hole_count() == 0 { BTreeMap::new() } else { verdict.hole_names() };
-        let found = found.assumptions(&self.run, |hole| names.get(&hole).cloned());
-        verdict.add_assumptions(found, is_denied, &|span| self.run.locate(span));
-    }
-
     /// Follows the values that the run read and nothing in its program set to the holes, in a second run on the same metal.
-    pub fn dependencies(&self, request: &Request) -> HoleDependencies {
-        assumptions::dependencies(request, &self.run, &self.metal, !self.extracted.holes.is_empty())
+    pub fn dependencies(&self, request: &Request) -> Dependencies {
+        assumptions::of_holes(request, &self.run, &self.metal, !self.extracted.holes.is_empty())
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.
@@ -384,8 +383,8 @@ impl Simulation {
 
 impl Run {
     /// Follows the values that the run read and nothing in its program set to the holes that it makes, in a second run.
-    pub fn dependencies(&self, request: &Request) -> HoleDependencies {
-        assumptions::dependencies(request, self, &Metal::default(), true)
+    pub fn dependencies(&self, request: &Request) -> Dependencies {
+        assumptions::of_holes(request, self, &Metal::default(), true)
     }
 
     /// Returns program and line of a block: `O8101`, 31.

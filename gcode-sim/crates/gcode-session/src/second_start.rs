@@ -1,6 +1,8 @@
 //! Second start of a program, with the offsets that its first run leaves.
+use std::sync::Arc;
+
 use super::{Request, Run, extractor, set_up_control, set_up_control_behind};
-use gcode_control::{Outcome, ResidualKind, ResidualValue};
+use gcode_control::{Limits, Outcome, ResidualKind, ResidualValue};
 use gcode_inspect::findings::SECOND_START;
 use gcode_inspect::holes::{DrilledHole, HoleExtraction};
 use gcode_lang::diag::Diagnostic;
@@ -9,6 +11,9 @@ use gcode_part::Metal;
 
 /// Largest difference between two holes that are the same, mm; of their axes, as a length of unit vectors.
 const SAME: f64 = 1e-4;
+
+/// Largest number of blocks of a second start, as a multiple of those of the first.
+const MAX_BLOCKS_RATIO: u64 = 2;
 
 /// Largest number of offsets in a message.
 const MAX_NAMED: usize = 3;
@@ -29,12 +34,19 @@ pub(super) fn finding(
     }
     let mut control =
         set_up_control_behind(request, run.control.memory().reload(), Some(&run.control)).ok()?;
+    if let Some(progress) = &request.progress {
+        control.set_progress(Arc::clone(progress));
+    }
     let mut extractor = extractor(request, metal.clone());
-    let outcome = control.run_observed(request.limits, &mut NoLibrary, &mut extractor, &mut ());
+    let limits = Limits { blocks: request.limits.blocks.min(MAX_BLOCKS_RATIO * run.control.blocks()) };
+    let outcome = control.run_observed(limits, &mut NoLibrary, &mut extractor, &mut ());
+    if control.is_cancelled() {
+        return None;
+    }
     let again = extractor.finish().holes;
     let difference = match outcome {
         Outcome::Alarm(stop) => format!("it stops with alarm {}", stop.alarm.code()),
-        Outcome::Limit => "it does not end".to_owned(),
+        Outcome::Limit => format!("it has not ended after {} blocks", control.blocks()),
         Outcome::End => {
             let pairs = extracted.holes.iter().zip(&again);
             let aside = pairs.filter(|(one, other)| !is_same(one, other)).count();

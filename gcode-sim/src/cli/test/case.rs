@@ -8,11 +8,12 @@ use super::main_program::{self, MainProgram};
 use crate::cli::conditions::RunConditions;
 use crate::cli::project::Project;
 use crate::cli::{UsageError, input, options};
-use crate::report::test_report::{CaseAnswer, CaseReport, FirstFailure};
+use crate::report::test_report::{CaseAnswer, CaseReport, CaseVerdict, FirstFailure};
 use gcode_control::Limits;
-use gcode_inspect::verify::{self, Tolerances};
+use gcode_inspect::verify::{self, Tolerances, denied_assumptions};
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_part::{Metal, NominalPart};
+use gcode_lang::motion::Backtrace;
+use gcode_part::{Assumption, Metal, NominalPart, Total};
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
 use gcode_session::Run;
 
@@ -33,6 +34,16 @@ pub(super) struct Case {
     pub main: Option<MainProgram>,
 }
 
+/// Terms on which all cases are run.
+#[derive(Clone, Copy)]
+pub(super) struct Terms<'a> {
+    pub libraries: &'a [PathBuf],
+    /// Tolerance for equality, mm or degrees.
+    pub tolerance: f64,
+    /// A case with an assumption fails.
+    pub denies_assumptions: bool,
+}
+
 /// Result of a case.
 pub(super) struct CaseResult {
     pub report: CaseReport,
@@ -42,12 +53,12 @@ pub(super) struct CaseResult {
 
 impl Case {
     /// Runs the case and compares it with its accepted result.
-    pub(super) fn run(&self, libraries: &[PathBuf], tolerance: f64) -> CaseResult {
+    pub(super) fn run(&self, terms: Terms<'_>) -> CaseResult {
         let main = self.lost().map_or_else(|| self.main_program(), Err);
         let unclear = || self.programs.first().cloned().unwrap_or_else(|| self.accepted());
         let file = main.as_ref().map_or_else(|_| unclear(), |main| main.file.clone());
         let file = Some(file.display().to_string());
-        let tried = main.and_then(|program| self.evaluate(&program, libraries, tolerance));
+        let tried = main.and_then(|program| self.evaluate(&program, terms));
         let mut result = tried.unwrap_or_else(|refusal| {
             let (answer, error) = (CaseAnswer::Refused, Some(refusal.to_string()));
             CaseResult { report: CaseReport { answer, error, ..CaseReport::default() }, record: None }
@@ -94,8 +105,7 @@ impl Case {
     fn evaluate(
         &self,
         main: &MainProgram,
-        libraries: &[PathBuf],
-        tolerance: f64,
+        Terms { libraries, tolerance, denies_assumptions }: Terms<'_>,
     ) -> Result<CaseResult, UsageError> {
         // A broken link counts as present, so that reading it reports the error.
         let present = |path: PathBuf| Some(path).filter(|path| path.exists() || path.is_symlink());
@@ -112,6 +122,7 @@ impl Case {
         let project = Project::of(&main.file)?;
         let (conditions, _) = project.complete(&main.file, &conditions);
         let (mut request, mut folders) = options::request(&conditions.of(&main.file))?;
+        request.denies_assumptions = denies_assumptions;
         if let (Some(one), Some(other)) = (own("reference.json"), own("reference.csv")) {
             let both = format!("{} and {}", one.display(), other.display());
             return Err(UsageError::new(format!("{both}: both are references; delete one")));
@@ -130,17 +141,42 @@ impl Case {
         if revision.is_cut_off() {
             return Err(cut_off(&revision));
         }
-        let against = match &nominal {
-            None => None,
+        let run = &revision.simulation.run;
+        let (against, verdict) = match &nominal {
+            None => {
+                let found = revision.simulation.dependencies(&request);
+                let (assumed, total) = (found.numbered(run), Total::Holes(found.count()));
+                let denied = denied_assumptions(if denies_assumptions { &assumed } else { &[] }, total);
+                let against = denied.first().map(|denied| failure(Some(denied), run));
+                (against, CaseVerdict { summary: None, total, assumptions: without_places(assumed) })
+            }
             Some(NominalPart::Holes(reference)) => {
                 let tolerances = Tolerances::of(reference, None);
-                let verdict = revision.simulation.verify(reference, tolerances, &request.machine);
-                fails(verdict.verdict, &verdict.diagnostics, &revision.simulation.run)
+                let verdict = revision.simulation.verify(reference, tolerances, &request);
+                let against = fails(verdict.verdict, &verdict.diagnostics, run);
+                let total = Total::Holes(verdict.holes.len() + verdict.extra.len());
+                (
+                    against,
+                    CaseVerdict {
+                        summary: Some(verdict.conclusion().line()),
+                        total,
+                        assumptions: verdict.assumptions,
+                    },
+                )
             }
             Some(NominalPart::Flutes(flutes)) => {
                 let grinding = gcode_session::grind(&request, &mut folders, flutes)?;
-                let verdict = grinding.verify();
-                fails(verdict.verdict, &verdict.diagnostics, &grinding.run)
+                let verdict = grinding.verify(&request);
+                let against = fails(verdict.verdict, &verdict.diagnostics, &grinding.run);
+                let total = Total::Flutes(verdict.passes);
+                (
+                    against,
+                    CaseVerdict {
+                        summary: Some(verdict.conclusion().line()),
+                        total,
+                        assumptions: verdict.assumptions,
+                    },
+                )
             }
         };
         let mut not_compared = Vec::new();
@@ -168,6 +204,7 @@ impl Case {
             changes,
             not_compared,
             against,
+            verdict: Some(verdict),
             totals: Some(record.totals.clone()),
             ending: Some(record.words().to_owned()),
             ..CaseReport::default()
@@ -191,13 +228,22 @@ fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<F
     if answer != verify::Answer::Fail {
         return None;
     }
-    let first = findings.iter().find(|finding| Severity::Error <= finding.severity);
+    Some(failure(findings.iter().find(|finding| Severity::Error <= finding.severity), run))
+}
+
+/// Returns the assumptions without their blocks.
+fn without_places(assumed: Vec<(Assumption, Backtrace)>) -> Vec<Assumption> {
+    assumed.into_iter().map(|(assumption, _)| assumption).collect()
+}
+
+/// Returns an error as the failure of a case.
+fn failure(first: Option<&Diagnostic>, run: &Run) -> FirstFailure {
     let location = first.and_then(|first| Some(BlockLocation::of(run, first.backtrace.as_ref()?)));
     let (code, message) = match first {
         Some(first) => (first.code(), first.message.clone()),
         None => ("verdict".into(), "verification failed".to_owned()),
     };
-    Some(FirstFailure { code: code.into_owned(), message, location })
+    FirstFailure { code: code.into_owned(), message, location }
 }
 
 /// Returns the files of the programs that the changes and the failure name.

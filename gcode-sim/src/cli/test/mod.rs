@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 
-use self::case::{Case, CaseResult};
+use self::case::{Case, CaseResult, Terms};
+use super::conditions::DenyArguments;
 use super::format::TestFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::junit;
@@ -47,6 +48,9 @@ pub(super) struct Arguments {
     #[arg(long, conflicts_with_all = ["accept", "format", "merge"])]
     watch: bool,
 
+    #[command(flatten)]
+    deny: DenyArguments,
+
     /// Tolerance for equality, mm or degrees
     #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
     tolerance: f64,
@@ -54,6 +58,12 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = TestFormat::Text)]
     format: TestFormat,
+}
+
+impl Arguments {
+    fn terms(&self, tolerance: f64) -> Terms<'_> {
+        Terms { libraries: &self.libraries, tolerance, denies_assumptions: self.deny.denies_assumptions() }
+    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
@@ -92,7 +102,7 @@ fn print(report: &TestReport, format: TestFormat) -> Result<(), UsageError> {
 
 fn run_cases(arguments: &Arguments, tolerance: f64) -> Result<TestReport, UsageError> {
     let (shard, cases) = cases(arguments)?;
-    let mut tried = all(&cases, &arguments.libraries, tolerance);
+    let mut tried = all(&cases, arguments.terms(tolerance));
     let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };
     Ok(TestReport::new(shard, tolerance, tried.into_iter().map(|tried| tried.report).collect(), accepted))
 }
@@ -129,14 +139,14 @@ fn shard(text: &str) -> Result<(usize, usize), UsageError> {
 
 /// Runs the cases on all cores, each of which takes the next case until none is left; the results are in the order
 /// of the cases.
-fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<CaseResult> {
+fn all(cases: &[Case], terms: Terms<'_>) -> Vec<CaseResult> {
     let (next, counted) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let work = || {
         let mut done = Vec::new();
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(case) = cases.get(index) else { return done };
-            done.push((index, case.run(libraries, tolerance)));
+            done.push((index, case.run(terms)));
             counted.fetch_add(1, Ordering::Relaxed);
         }
     };

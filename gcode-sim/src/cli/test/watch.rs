@@ -50,7 +50,7 @@ fn round(arguments: &Arguments, tolerance: f64, changed: Option<&[PathBuf]>) -> 
             cases.retain(of);
         }
     }
-    let tried = all(&cases, &arguments.libraries, tolerance);
+    let tried = all(&cases, arguments.terms(tolerance));
     let report =
         TestReport::new(shard, tolerance, tried.into_iter().map(|tried| tried.report).collect(), Vec::new());
     text.push_str(&report.text());

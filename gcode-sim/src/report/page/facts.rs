@@ -5,6 +5,7 @@ use super::words::{count, duration, shown};
 use super::{Page, ReviewSide, heading};
 use crate::report::figures;
 use gcode_inspect::verify::Answer;
+use gcode_part::Total;
 
 /// Returns the answer in one or two lines.
 pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
@@ -30,8 +31,8 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
                     (conclusion.answer.word()) ", " (shown(conclusion.summary))
                 }
-                @let holes = verdict.holes.len() + verdict.extra.len();
-                @for assumption in &verdict.assumptions { p.note { "Assumes " (shown(&assumption.sentence(holes))) } }
+                @let total = Total::Holes(verdict.holes.len() + verdict.extra.len());
+                @for assumption in &verdict.assumptions { p.note { "Assumes " (shown(&assumption.sentence(total))) } }
                 @for cause in &verdict.likely_causes { p.note { "Likely cause: " (shown(cause)) } }
             } @else {
                 @if record.outcome() != "end" {
@@ -54,7 +55,7 @@ fn assumptions_alone(page: &Page<'_>, side: &ReviewSide<'_>) -> Vec<String> {
     let simulation = &side.observed.revision.simulation;
     let found = simulation.dependencies(side.observed.request);
     let numbered = found.numbered(&simulation.run);
-    numbered.iter().map(|(assumption, _)| assumption.sentence(found.hole_count())).collect()
+    numbered.iter().map(|(assumption, _)| assumption.sentence(Total::Holes(found.count()))).collect()
 }
 
 /// Returns the table of both runs in numbers.

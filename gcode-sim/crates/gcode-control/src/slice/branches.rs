@@ -1,6 +1,7 @@
 //! Conditions and jumps that outside values decide, and how long they do: to the block where both ways meet again.
 //!
 //! A way that ends in an alarm decides nothing: the control stops, and no hole is cut behind it.
+use super::possible_motion::PossibleMotion;
 use super::{Block, Marks, Slice};
 use crate::control::Control;
 use crate::flow::ProgramFlow;
@@ -126,10 +127,21 @@ impl Slice {
             return self.leave(marks);
         }
         let registers = &control.executor.registers;
-        let memory = &mut control.memory;
+        let Some(program_of) = control.memory.get_mut(program) else { return self.leave(marks) };
+        let mut has_ways = target <= here;
+        let mut of_ways = PossibleMotion::of_ways(registers);
         for index in first..end {
-            if let Some((_, op)) = memory.get_mut(program).and_then(|program| program.lower_block(index)) {
-                self.add_possible_effects(registers, op.kind(), marks);
+            let Some((_, op)) = program_of.lower_block(index) else { continue };
+            of_ways = of_ways.behind(registers, op.kind());
+            has_ways |= index != here && matches!(op.kind(), OpKind::Statement(one) if jumps(one));
+        }
+        let mut motion = if has_ways { of_ways } else { PossibleMotion::of(registers) };
+        for index in first..end {
+            let Some((_, op)) = program_of.lower_block(index) else { continue };
+            let before = motion;
+            self.add_possible_effects(registers, op.kind(), marks, &mut motion);
+            if op.skip().is_some() {
+                motion = motion.or(before);
             }
         }
         let same =

@@ -7,6 +7,7 @@ mod branches;
 mod marks;
 mod moves;
 mod possible;
+mod possible_motion;
 mod power_on;
 mod reads;
 mod words;
@@ -22,7 +23,7 @@ use self::branches::Branches;
 use self::marks::{LOCALS, MachineMarks, VariableMarks};
 use self::reads::OffsetEntry;
 use super::control::{Control, Observer};
-use super::data::{SystemAxes, system_index};
+use super::data::{Register, SystemAxes, system_index};
 use super::flow::ProgramFlow;
 use super::registers::Registers;
 use gcode_lang::control::Settings;
@@ -127,10 +128,8 @@ pub struct Slice {
     is_in_cycle: bool,
     /// The current block moves in rapid.
     is_rapid: bool,
-    /// Tool length offsets that the program has set, by their H.
-    set_lengths: BTreeSet<u32>,
-    /// Cutter radii that the program has set, by their D.
-    set_radii: BTreeSet<u32>,
+    /// Tool offsets that the program has set, by [`Register`] and number.
+    set_tools: [BTreeSet<u32>; 4],
     /// Axes of the work offsets that the machine file states or the program has set.
     set_offsets: SystemAxes,
     /// Modal codes of power-on that the run has read: each is one of its group.
@@ -151,8 +150,12 @@ impl Slice {
         stated.work_systems.iter().for_each(|system| set_offsets.add(system_index(*system), u8::MAX));
         for (number, _) in variables {
             match reads::offset_of(*number, settings) {
-                Some(OffsetEntry::Length(tool)) => _ = stated.lengths.remove(&tool),
-                Some(OffsetEntry::Radius(tool)) => _ = stated.radii.remove(&tool),
+                Some(OffsetEntry::Tool(Register::HGeometry | Register::HWear, tool)) => {
+                    stated.lengths.remove(&tool);
+                }
+                Some(OffsetEntry::Tool(Register::DGeometry | Register::DWear, tool)) => {
+                    stated.radii.remove(&tool);
+                }
                 Some(OffsetEntry::Work(system, axes)) => set_offsets.remove(system, axes),
                 None => {}
             }

@@ -1,5 +1,5 @@
 //! Effect of axis words on the marks: moves, canned cycles, zero shifts, G10.
-use super::super::data::system_index;
+use super::super::data::{Register, system_index};
 use super::super::registers::Registers;
 use super::words::{BlockModes, MarkedWord};
 use super::{Block, Marks, OutsideValue, Slice};
@@ -84,7 +84,9 @@ impl Slice {
                 }
                 return;
             }
-            Some(OneShot::DataInput) => return self.follow_data_input(block, list, others | control),
+            Some(OneShot::DataInput) => {
+                return self.follow_data_input(block, list, modes.distance, others | control);
+            }
             Some(OneShot::Dwell | OneShot::DataInputEnd | OneShot::CheckReference) => return,
             Some(
                 OneShot::FromReference
@@ -230,7 +232,14 @@ impl Slice {
     }
 
     /// Follows G10.
-    fn follow_data_input(&mut self, block: &Block<'_>, list: &[MarkedWord], marks: Marks) {
+    fn follow_data_input(
+        &mut self,
+        block: &Block<'_>,
+        list: &[MarkedWord],
+        distance: Distance,
+        marks: Marks,
+    ) {
+        let is_absolute = distance == Distance::Absolute;
         let value = |letter: u8| list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
         let number = value(b'P').map(|number| number as u32);
         match (value(b'L').map(|l| l as u32), number) {
@@ -244,12 +253,18 @@ impl Slice {
                 let axes = &block.registers.data.settings.axes;
                 let named = list.iter().filter(|word| word.value.is_some());
                 let named = named.filter_map(|word| axes.find(word.letter));
-                self.set_offsets.add(system, named.fold(0, |bits, axis| bits | 1 << axis));
+                let axes = named.fold(0, |bits, axis| bits | 1 << axis);
+                // G91 adds to what stood there before; the zero of G54 is the part's whatever it was.
+                if is_absolute || system == system_index(WorkSystem::default()) {
+                    self.set_offsets.add(system, axes);
+                }
             }
             (Some(l @ (1 | 10..=13)), Some(number)) => {
                 self.machine.tool_table |= marks;
-                let set = if matches!(l, 12 | 13) { &mut self.set_radii } else { &mut self.set_lengths };
-                set.insert(number);
+                if is_absolute {
+                    let table = block.registers.data.table(Register::of_data_input(l));
+                    self.set_tools[table as usize].insert(number);
+                }
             }
             (Some(85), Some(number)) => self.write(block.registers, number, marks),
             _ => self.machine.rest |= marks,

@@ -1,10 +1,11 @@
 //! Effects of operations that outside values decide, whether the run executes them or not.
 use super::moves::is_drilling;
+use super::possible_motion::PossibleMotion;
 use super::{Marks, Slice};
 use crate::registers::Registers;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::modes::{ModalGroup, Motion, Plane};
+use gcode_lang::program::modes::{ModalGroup, Plane};
 use gcode_lang::program::{AssignmentTarget, OpKind, Slot, Statement, WordOperand, Words};
 
 impl Slice {
@@ -35,19 +36,40 @@ impl Slice {
         }
     }
 
-    /// Adds the marks of a condition to everything that an operation under it can change.
-    pub(super) fn add_possible_effects(&mut self, registers: &Registers, kind: &OpKind, marks: Marks) {
+    /// Adds the marks of a condition to everything that an operation under it can change; `motion` is in force before it, and
+    /// afterwards behind it.
+    pub(super) fn add_possible_effects(
+        &mut self,
+        registers: &Registers,
+        kind: &OpKind,
+        marks: Marks,
+        motion: &mut PossibleMotion,
+    ) {
         match kind {
             OpKind::Empty | OpKind::Alarm(_) => {}
             OpKind::AssignDirect(assign) => self.variables.add(usize::from(assign.variable), marks),
             OpKind::Statement(statement) => self.add_possible_assignment(registers, statement, marks),
-            OpKind::Words(words) => self.add_possible_words(registers, words, marks),
-            OpKind::If { then, .. } => self.add_possible_effects(registers, then, marks),
+            OpKind::Words(words) => {
+                *motion = motion.behind_words(registers, words);
+                self.add_possible_words(registers, words, marks, *motion);
+            }
+            OpKind::If { then, .. } => {
+                let before = *motion;
+                self.add_possible_effects(registers, then, marks, motion);
+                *motion = motion.or(before);
+            }
         }
     }
 
-    /// Adds the marks of a condition to everything that a block of words under it can change.
-    pub(super) fn add_possible_words(&mut self, registers: &Registers, words: &Words, marks: Marks) {
+    /// Adds the marks of a condition to everything that a block of words under it can change; `motion` is in force in the
+    /// block.
+    pub(super) fn add_possible_words(
+        &mut self,
+        registers: &Registers,
+        words: &Words,
+        marks: Marks,
+        motion: PossibleMotion,
+    ) {
         let settings = &registers.data.settings;
         if words.call().is_some() || !settings.code_calls.is_empty() || words.punched_value().is_some() {
             self.variables.add_to_any(marks);
@@ -56,13 +78,11 @@ impl Slice {
             self.further |= marks;
             return;
         }
-        // A rapid after a rapid cuts nothing, whether the run executes it or not.
-        let modal = &registers.state.modal;
-        let is_rapid = modal.motion == Motion::Rapid
-            && modal.cycle.is_none()
+        // A rapid cuts nothing; another code of the block may make its axis words more than a move.
+        let is_rapid = !motion.cuts()
             && words.list.iter().all(|word| match &word.value {
                 WordOperand::G(_, found) => found.row_for(settings.codes).is_some_and(|row| {
-                    matches!(row.effect, Effect::Motion(Motion::Rapid) | Effect::Distance(_))
+                    matches!(row.effect, Effect::Motion(_) | Effect::Distance(_) | Effect::Cycle(None))
                 }),
                 _ => word.letter != b'G',
             });

@@ -1,7 +1,5 @@
 //! Marks of the values that a block reads: variables, system variables, parameters.
-use std::collections::BTreeSet;
-
-use super::super::data::{ControlData, system_index};
+use super::super::data::{ControlData, Register, system_index};
 use super::super::evaluation::RoundingTarget;
 use super::super::functions::variable_number;
 use super::super::variables::VariableClass;
@@ -19,8 +17,8 @@ const FIRST_ADDITIONAL: usize = 7;
 
 /// Entry of an offset table.
 pub(super) enum OffsetEntry {
-    Length(u32),
-    Radius(u32),
+    /// Table and number of a tool offset.
+    Tool(Register, u32),
     /// System and axis, as a bit; 0 of an axis that no control has.
     Work(usize, u8),
 }
@@ -33,18 +31,19 @@ pub(super) fn offset_of(number: u32, settings: &Settings) -> Option<OffsetEntry>
         let (row, axis) = ((number - first) / POSITIONS, (number - first) % POSITIONS);
         OffsetEntry::Work(system + row as usize, bit(axis))
     };
+    let wear = is_wear(number, settings);
+    let length = |tool| OffsetEntry::Tool(if wear { Register::HWear } else { Register::HGeometry }, tool);
+    let radius = |tool| OffsetEntry::Tool(if wear { Register::DWear } else { Register::DGeometry }, tool);
     Some(match number {
-        2001..=2400 => OffsetEntry::Length((number - 2001) % 200 + 1),
-        2401..=2800 if is_haas || settings.has_diameter_variables => {
-            OffsetEntry::Radius((number - 2401) % 200 + 1)
-        }
+        2001..=2400 => length((number - 2001) % 200 + 1),
+        2401..=2800 if is_haas || settings.has_diameter_variables => radius((number - 2401) % 200 + 1),
         2500..=2806 => OffsetEntry::Work((number % 100) as usize, bit(number / 100 - 25)),
         5201..=5220 if is_haas => return None,
         5201..=5340 => work(5201, 0),
         7001..=7960 => work(7001, FIRST_ADDITIONAL),
         10_001..=13_999 if is_haas => return None,
-        10_001..=11_999 => OffsetEntry::Length(number % 1000),
-        12_001..=13_999 => OffsetEntry::Radius(number % 1000),
+        10_001..=11_999 => length(number % 1000),
+        12_001..=13_999 => radius(number % 1000),
         14_001..=20_000 => work(14_001, FIRST_ADDITIONAL),
         _ => return None,
     })
@@ -196,17 +195,46 @@ impl Slice {
         }
     }
 
-    /// Returns true if the machine file states the tool length H or a block has set it.
-    pub(super) fn is_length_set(&self, number: u32) -> bool {
-        self.stated.lengths.contains(&number) || self.set_lengths.contains(&number)
+    /// Returns the marks of a tool length, by its H: an outside value unless the machine file states it or blocks have set both
+    /// its geometry and its wear.
+    pub(super) fn length_marks(&mut self, block: &Block<'_>, number: u32) -> Marks {
+        let offsets = &block.registers.data.offsets;
+        let [geometry, wear] = [Register::HGeometry, Register::HWear];
+        if number == 0 || self.stated.lengths.contains(&number) {
+            Marks::NONE
+        } else if !self.is_tool_set(&block.registers.data, geometry, number) {
+            let value = offsets.length(number).ok();
+            self.outside(OutsideValue::ToolLength(number), value, block.flow, block.op)
+        } else if !self.is_tool_set(&block.registers.data, wear, number) {
+            self.outside_variable(block, if is_haas(block) { 2200 } else { 10_000 } + number)
+        } else {
+            Marks::NONE
+        }
     }
 
-    /// Returns true if the machine file states the cutter radius D or a block has set it.
-    pub(super) fn is_radius_set(&self, number: u32, settings: &Settings) -> bool {
-        match settings.offset_memory {
-            OffsetMemory::A | OffsetMemory::B => self.is_length_set(number),
-            OffsetMemory::C => self.stated.radii.contains(&number) || self.set_radii.contains(&number),
+    /// Returns the marks of a cutter radius, by its D, as of a length; memories A and B have one table for both.
+    pub(super) fn radius_marks(&mut self, block: &Block<'_>, number: u32) -> Marks {
+        let data = &block.registers.data;
+        let [geometry, wear] = [Register::DGeometry, Register::DWear];
+        let stated = match data.settings.offset_memory {
+            OffsetMemory::A | OffsetMemory::B => &self.stated.lengths,
+            OffsetMemory::C => &self.stated.radii,
+        };
+        if number == 0 || stated.contains(&number) {
+            Marks::NONE
+        } else if !self.is_tool_set(data, geometry, number) {
+            let value = data.offset_radius(number);
+            self.outside(OutsideValue::CutterRadius(number), value, block.flow, block.op)
+        } else if !self.is_tool_set(data, wear, number) {
+            self.outside_variable(block, if is_haas(block) { 2600 } else { 12_000 } + number)
+        } else {
+            Marks::NONE
         }
+    }
+
+    /// Returns true if a block has set an entry of a table of tool offsets.
+    pub(super) fn is_tool_set(&self, data: &ControlData, register: Register, number: u32) -> bool {
+        self.set_tools[data.table(register) as usize].contains(&number)
     }
 
     /// Returns the axes, as bits, whose offset in a work coordinate system is an outside value. G54 is the part's zero unless
@@ -220,14 +248,15 @@ impl Slice {
     /// Returns true if the machine file states an offset or a block has set it, by its variable.
     fn is_offset_set(&self, data: &ControlData, number: u32) -> bool {
         let settings = &data.settings;
-        let is_stated =
-            |tools: &BTreeSet<u32>, tool: u32| tools.contains(&tool) && !is_wear(number, settings);
         match offset_of(number, settings) {
-            Some(OffsetEntry::Length(tool)) => {
-                self.set_lengths.contains(&tool) || is_stated(&self.stated.lengths, tool)
-            }
-            Some(OffsetEntry::Radius(tool)) => {
-                self.set_radii.contains(&tool) || is_stated(&self.stated.radii, tool)
+            Some(OffsetEntry::Tool(register, tool)) => {
+                let stated = &self.stated;
+                let is_stated = match register {
+                    Register::HGeometry => stated.lengths.contains(&tool),
+                    Register::DGeometry => stated.radii.contains(&tool),
+                    Register::HWear | Register::DWear => false,
+                };
+                is_stated || self.is_tool_set(data, register, tool)
             }
             Some(OffsetEntry::Work(system, axis)) => self.set_offsets.axes(system) & axis != 0,
             None => false,
@@ -253,8 +282,9 @@ impl Slice {
                 self.variables.set_system(number, marks);
                 self.add_to_tables(number, marks);
                 match offset_of(number, &registers.data.settings) {
-                    Some(OffsetEntry::Length(tool)) => _ = self.set_lengths.insert(tool),
-                    Some(OffsetEntry::Radius(tool)) => _ = self.set_radii.insert(tool),
+                    Some(OffsetEntry::Tool(register, tool)) => {
+                        self.set_tools[registers.data.table(register) as usize].insert(tool);
+                    }
                     Some(OffsetEntry::Work(system, axis)) => self.set_offsets.add(system, axis),
                     None => {}
                 }

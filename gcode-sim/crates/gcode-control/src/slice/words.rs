@@ -1,5 +1,7 @@
 //! Effect of a block of words on the marks: codes, moves, cycles, offsets, calls.
+use super::super::data::Register;
 use super::super::words::{computed_row, count};
+use super::possible_motion::PossibleMotion;
 use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
 use gcode_lang::program::g_codes::{self, Effect, GCodeRow, OneShot};
@@ -51,7 +53,8 @@ impl Slice {
             let switch = (*switch).max(1);
             let value = Some(f64::from(u8::from(data.is_skip_on(switch))));
             guard = self.outside(OutsideValue::BlockSkip(switch), value, block.flow, block.op);
-            self.add_possible_words(block.registers, words, guard);
+            let motion = PossibleMotion::of(block.registers).behind_words(block.registers, words);
+            self.add_possible_words(block.registers, words, guard, motion);
         }
         if block.registers.state.transform.is_identity() {
             self.machine.transform = Marks::NONE;
@@ -101,7 +104,11 @@ impl Slice {
             WordOperand::Literal(_) | WordOperand::Number(_) | WordOperand::G(..) => {}
         }
         if let Some(axis) = word.axis.and_then(|place| words.axis(place)) {
-            marks |= self.operand_marks(block, axis);
+            // Another value is another axis.
+            let axis_marks = self.operand_marks(block, axis);
+            self.machine.axes.iter_mut().for_each(|axis| *axis |= axis_marks);
+            self.further |= axis_marks;
+            marks |= axis_marks;
         }
         let evaluate = |registers: &Registers| registers.evaluate_word(words, word).ok().flatten();
         let value = block.registers.without_side_effects(evaluate).map(|raw| raw.value());
@@ -256,12 +263,8 @@ impl Slice {
             _ if registers.state.modal.length != modes.length
                 || list.iter().any(|word| word.letter == b'H') =>
             {
-                let mut marks = self.machine.code(b'H') | self.machine.tool_table | control;
-                if h != 0 && !self.is_length_set(h) {
-                    let value = registers.data.offsets.length(h).ok();
-                    marks |= self.outside(OutsideValue::ToolLength(h), value, block.flow, block.op);
-                }
-                self.machine.length = marks;
+                let marks = self.machine.code(b'H') | self.machine.tool_table | control;
+                self.machine.length = marks | self.length_marks(block, h);
             }
             _ => {}
         }
@@ -273,12 +276,9 @@ impl Slice {
             CutterSide::Off if !mills_circle => self.machine.radius = control,
             _ if begins || mills_circle => {
                 let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
-                if d != 0 && !self.is_radius_set(d, &registers.data.settings) {
-                    let value = registers.data.offset_radius(d);
-                    marks |= self.outside(OutsideValue::CutterRadius(d), value, block.flow, block.op);
-                }
+                marks |= self.radius_marks(block, d);
                 let settings = &registers.data.settings;
-                if d != 0 && settings.assumes_radius_offsets() && self.set_radii.contains(&d) {
+                if d != 0 && settings.assumes_radius_offsets() && self.is_tool_set(&registers.data, Register::DGeometry, d) {
                     marks |= self.outside(OutsideValue::DiameterOffsets, Some(0.0), block.flow, block.op);
                 }
                 self.machine.radius = marks;
@@ -296,16 +296,7 @@ impl Slice {
         let word = list.iter().find(|word| word.letter == letter).and_then(|word| word.value);
         let number = word.map_or(modal, |value| value as u32);
         let marks = self.machine.code(letter) | self.machine.tool_table;
-        let is_set =
-            if is_h { self.is_length_set(number) } else { self.is_radius_set(number, &data.settings) };
-        if number == 0 || is_set {
-            return marks;
-        }
-        let (source, value) = match is_h {
-            true => (OutsideValue::ToolLength(number), data.offsets.length(number).ok()),
-            false => (OutsideValue::CutterRadius(number), data.offset_radius(number)),
-        };
-        marks | self.outside(source, value, block.flow, block.op)
+        marks | if is_h { self.length_marks(block, number) } else { self.radius_marks(block, number) }
     }
 
     fn follow_call(&mut self, block: &Block<'_>, words: &Words, call: &CallOp) {

@@ -67,7 +67,7 @@ pub struct GrindingPass {
     /// Path of the contact.
     pub trace: Trace,
     /// Block of its start.
-    pub(crate) backtrace: Backtrace,
+    pub backtrace: Backtrace,
     /// Number of moves.
     pub(crate) moves: usize,
     /// Least and largest angle of the swivelled wheel; `None` if no axis swivels it.

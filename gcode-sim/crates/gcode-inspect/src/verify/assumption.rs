@@ -2,12 +2,12 @@
 use crate::findings::ASSUMPTION;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
-use gcode_part::Assumption;
+use gcode_part::{Assumption, Total};
 
-/// Returns an error for each assumption with its block; `holes` is the number of all holes of the result.
-pub fn denied_assumptions(assumptions: &[(Assumption, Backtrace)], holes: usize) -> Vec<Diagnostic> {
+/// Returns an error for each assumption with its block; `total` is the number of all holes or flutes of the result.
+pub fn denied_assumptions(assumptions: &[(Assumption, Backtrace)], total: Total) -> Vec<Diagnostic> {
     let error = |(assumption, backtrace): &(Assumption, Backtrace)| {
-        let message = format!("{}: an assumption, and --deny forbids it", assumption.sentence(holes));
+        let message = format!("{}: an assumption, and --deny forbids it", assumption.sentence(total));
         Diagnostic::new(&ASSUMPTION, message)
             .with_backtrace(backtrace.clone())
             .help("set it in the program before it is read, or state it in the machine file: tool lengths, work offsets")

@@ -3,10 +3,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::hole_finding::{HoleFinding, Subject};
+use super::verdict_finding::Finding;
 use crate::findings::{HOLE_MISSING, HOLE_TWICE};
 use gcode_lang::alarm::kinds::LIMIT;
-use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::source::Span;
+use gcode_part::Assumption;
 
 /// The result of the checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -74,6 +76,73 @@ impl Conclusion<'_> {
     }
 }
 
+/// Words of a verdict's one line, in their order.
+#[derive(Clone, Debug, Default)]
+pub struct SummaryWords {
+    /// Alarm or limit that ended the run.
+    pub(super) stop: Option<String>,
+    /// Errors that the comparison doesn't see: a missing end, denied assumptions.
+    pub(super) added_errors: Vec<String>,
+    /// Titles of the errors that no number counts.
+    pub(super) errors: Option<String>,
+    /// Numbers of holes or flutes.
+    pub(super) counts: String,
+    /// Names of what the verdict does not cover.
+    pub(super) gaps: Vec<String>,
+}
+
+/// Largest number of assumptions in a summary.
+const MAX_ASSUMED: usize = 3;
+
+impl SummaryWords {
+    /// Returns the reasons for an answer in one line. A pass is followed by all that its reader has to know: the kinds of the
+    /// warnings, the assumptions, and what is not checked.
+    pub(super) fn line(&self, answer: Answer, findings: &[Finding], assumptions: &[Assumption]) -> String {
+        let Self { stop, added_errors, errors, counts, gaps } = self;
+        let mut words: Vec<String> = stop.iter().chain(added_errors).chain(errors).cloned().collect();
+        words.push(counts.clone());
+        if answer == Answer::Pass {
+            words.extend(warnings(findings));
+            words.extend(assumed(assumptions));
+        }
+        words.extend((!gaps.is_empty()).then(|| format!("not checked: {}", gaps.join(", "))));
+        words.join("; ")
+    }
+}
+
+/// Returns `warnings: hole-twice (3 times), second-start`.
+fn warnings(findings: &[Finding]) -> Option<String> {
+    let warnings = findings.iter().filter(|finding| finding.severity == Severity::Warning.name());
+    let codes = counted(warnings.map(|finding| finding.code.as_ref()));
+    (!codes.is_empty()).then(|| format!("warnings: {}", codes.join(", ")))
+}
+
+/// Returns `assumes #510, G55, H3 and 2 more`.
+fn assumed(assumptions: &[Assumption]) -> Option<String> {
+    let first: Vec<&str> = assumptions.iter().take(MAX_ASSUMED).map(|one| one.what.as_str()).collect();
+    let more = match assumptions.len() - first.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!first.is_empty()).then(|| format!("assumes {}{more}", first.join(", ")))
+}
+
+/// Returns each word once, in the order of their first places, with its number if that is not 1: `hole-twice (3 times)`.
+fn counted<'w>(words: impl Iterator<Item = &'w str>) -> Vec<String> {
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    for word in words {
+        match counts.iter_mut().find(|(known, _)| *known == word) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((word, 1)),
+        }
+    }
+    let shown = |(word, count): (&str, usize)| match count {
+        1 => word.to_owned(),
+        _ => format!("{word} ({count} times)"),
+    };
+    counts.into_iter().map(shown).collect()
+}
+
 /// Returns the sentence on an alarm or a limit that ended the run; `None` if it reached its end.
 pub fn stop_sentence<'f>(
     mut findings: impl Iterator<Item = &'f Diagnostic>,
@@ -95,22 +164,13 @@ const MAX_KINDS: usize = 3;
 
 /// Returns the titles of the errors that no number of holes in the summary counts, with the number of each.
 pub(super) fn uncounted_errors(findings: &[HoleFinding]) -> Option<String> {
-    let mut kinds: Vec<(&FindingKind, usize)> = Vec::new();
-    let is_counted = |one: &HoleFinding| match one.subject {
+    let is_counted = |one: &&HoleFinding| match one.subject {
         Subject::Nominal(_) | Subject::Extra(_) => true,
         Subject::Whole | Subject::Motion => [&HOLE_MISSING, &HOLE_TWICE].contains(&one.finding.kind),
     };
-    for one in findings.iter().filter(|one| one.finding.severity == Severity::Error && !is_counted(one)) {
-        match kinds.iter_mut().find(|(kind, _)| *kind == one.finding.kind) {
-            Some((_, number)) => *number += 1,
-            None => kinds.push((one.finding.kind, 1)),
-        }
-    }
-    let word = |(kind, number): &(&FindingKind, usize)| match number {
-        1 => kind.title.to_owned(),
-        _ => format!("{} ({number} times)", kind.title),
-    };
-    let mut words: Vec<String> = kinds.iter().take(MAX_KINDS).map(word).collect();
+    let errors = findings.iter().filter(|one| one.finding.severity == Severity::Error);
+    let kinds = counted(errors.filter(|one| !is_counted(one)).map(|one| one.finding.kind.title));
+    let mut words: Vec<String> = kinds.iter().take(MAX_KINDS).cloned().collect();
     match kinds.len().saturating_sub(MAX_KINDS) {
         0 => {}
         1 => words.push("1 more kind of error".to_owned()),

@@ -2,6 +2,7 @@
 mod assumption;
 mod causes;
 mod checks;
+mod completion;
 mod conclusion;
 mod displacement;
 pub mod flutes;
@@ -17,13 +18,16 @@ mod rows;
 #[cfg(test)]
 mod tests;
 mod verdict;
+mod verdict_finding;
 
 pub use assumption::{denied_assumptions, denied_words};
-pub use conclusion::{Answer, Conclusion, Ending, stop_sentence};
+pub use completion::{AnyVerdict, VerdictParts};
+pub use conclusion::{Answer, Conclusion, Ending, SummaryWords, stop_sentence};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
 pub use position::Deviation;
-pub use verdict::{ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
+pub use verdict::{ExtraHole, HoleGeometry, HoleVerdict, Verdict};
+pub use verdict_finding::{Finding, PartPoint};
 
 use std::collections::BTreeMap;
 
@@ -126,12 +130,9 @@ pub fn verify(
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
     let not_checked = not_checked::list(&inspection, locate);
-    let gaps = not_checked::gaps(&not_checked);
-    if !gaps.is_empty() {
-        verdict.summary.push_str("; not checked: ");
-        verdict.summary.push_str(&gaps.join(", "));
-    }
+    verdict.words.gaps = not_checked::gaps(&not_checked);
     verdict.not_checked = not_checked.iter().map(NotChecked::sentence).collect();
+    verdict.parts().update_summary();
     verdict
 }
 

@@ -41,11 +41,11 @@ impl NotChecked {
 }
 
 /// Returns the names of the gaps for the first line of a verdict, each once.
-pub(super) fn gaps(all: &[NotChecked]) -> Vec<&str> {
-    let mut gaps: Vec<&str> = Vec::new();
+pub(super) fn gaps(all: &[NotChecked]) -> Vec<String> {
+    let mut gaps: Vec<String> = Vec::new();
     for one in all.iter().filter(|one| one.is_gap) {
-        if !gaps.contains(&one.what.as_str()) {
-            gaps.push(&one.what);
+        if !gaps.contains(&one.what) {
+            gaps.push(one.what.clone());
         }
     }
     gaps

@@ -1,20 +1,22 @@
 //! The verdict on a program: every hole with its deviations, missing and extra holes, and the findings.
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::assumption::{denied_assumptions, denied_words};
-use super::conclusion::{Answer, Conclusion, Ending, hole_counts, stop_sentence, uncounted_errors};
+use super::completion::{AnyVerdict, VerdictParts};
+use super::conclusion::{
+    Answer, Conclusion, Ending, SummaryWords, hole_counts, stop_sentence, uncounted_errors,
+};
 use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
+use super::verdict_finding::{Finding, finding_of, limit_per_kind, origin};
 use super::{Comparison, HoleNeighbours, HolePair, Neighbours};
 use crate::holes::DrilledHole;
-use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
-use gcode_lang::motion::{Backtrace, CallChain};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::CallChain;
 use gcode_lang::source::Span;
-use gcode_part::{Assumption, Hole, Origin};
+use gcode_part::{Assumption, Hole, Origin, Total};
 
 /// The result of `verify --format json`. Nothing is rounded.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -54,6 +56,9 @@ pub struct Verdict {
     pub not_checked: Vec<String>,
     /// Values that the run read and nothing in the program set, and the holes that each can touch.
     pub assumptions: Vec<Assumption>,
+    /// The words of the summary.
+    #[serde(skip)]
+    pub words: SummaryWords,
     /// Indices of the spring passes among the drilled holes, with the ids of their nominal holes.
     #[serde(skip)]
     pub repeated: Vec<(usize, String)>,
@@ -133,48 +138,6 @@ pub struct ExtraHole {
     pub drilled_index: usize,
 }
 
-/// A finding as data.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Finding {
-    /// Row of the code.
-    #[serde(skip)]
-    pub kind: &'static FindingKind,
-    /// The code, as in `explain`.
-    pub code: Cow<'static, str>,
-    /// One of note, warning, error and alarm.
-    pub severity: &'static str,
-    /// The fault in one sentence.
-    pub message: String,
-    /// The remedy.
-    pub help: Option<String>,
-    /// Further facts.
-    pub notes: Vec<String>,
-    /// The finding is about motion, not about the resulting holes.
-    pub from_motion: bool,
-    /// The id of the nominal hole.
-    pub hole: Option<String>,
-    /// The block of the finding.
-    pub from: Option<Origin>,
-    /// For a finding on flutes: positions on the part, the worst first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub sites: Vec<PartPoint>,
-}
-
-/// A position on the part, mm.
-#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-pub struct PartPoint {
-    /// Counted from 1; null without a pass: a missing flute, a rapid between two of them.
-    pub pass: Option<usize>,
-    /// Coordinates x, y, z.
-    pub at: [f64; 3],
-}
-
-impl From<&Site> for PartPoint {
-    fn from(site: &Site) -> Self {
-        Self { pass: site.pass.map(|pass| pass + 1), at: site.point }
-    }
-}
-
 /// Makes the verdict of the findings; those about motion come last.
 pub(super) fn verdict(
     comparison: &Comparison<'_>,
@@ -201,6 +164,12 @@ pub(super) fn verdict(
     let counts =
         hole_counts(good, comparison.missing.len(), comparison.extra.len(), comparison.nominal.len());
     let all = || findings.iter().map(|one| &one.finding);
+    let words = SummaryWords {
+        stop: stop_sentence(all(), locate),
+        errors: uncounted_errors(&findings),
+        counts,
+        ..SummaryWords::default()
+    };
     let worst = (0..holes.len())
         .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
     Verdict {
@@ -209,11 +178,8 @@ pub(super) fn verdict(
         depth_tolerance: comparison.tolerances.depth,
         verdict: Answer::to(all()),
         outcome: Ending::of(all()),
-        summary: [stop_sentence(all(), locate), uncounted_errors(&findings), Some(counts)]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join("; "),
+        summary: String::new(),
+        words,
         likely_causes: Vec::new(),
         worst: worst.map(|index| holes[index].position_deviation),
         worst_from: worst.map(|index| worst_from(&holes[index], &rounding.axis_shares(index))),
@@ -293,44 +259,10 @@ fn hole_verdicts(
     pairs.map(verdict).collect()
 }
 
-/// Returns a finding as data, about the nominal hole of this id.
-pub(super) fn finding_of(
-    finding: &Diagnostic,
-    hole: Option<&str>,
-    from_motion: bool,
-    locate: &dyn Fn(Span) -> (String, u32),
-) -> Finding {
-    Finding {
-        kind: finding.kind,
-        code: finding.code(),
-        severity: finding.severity.name(),
-        message: finding.message.clone(),
-        help: finding.help.clone(),
-        notes: finding.notes.clone(),
-        from_motion,
-        hole: hole.map(str::to_owned),
-        from: finding.backtrace.as_ref().map(|backtrace| origin(backtrace.block, None, locate)),
-        sites: finding.sites.iter().map(Into::into).collect(),
-    }
-}
-
 impl Verdict {
     /// Returns the value from which every output states the verdict.
     pub fn conclusion(&self) -> Conclusion<'_> {
         Conclusion { answer: self.verdict, ending: self.outcome, summary: &self.summary }
-    }
-
-    /// Returns true if there is a finding above a note.
-    pub fn has_findings(&self) -> bool {
-        self.diagnostics.iter().any(|finding| Severity::Warning <= finding.severity)
-    }
-
-    /// Inserts findings about the program's text before those that they may explain; the verdict stays.
-    pub fn add_likely_causes(&mut self, causes: Vec<Diagnostic>, locate: &dyn Fn(Span) -> (String, u32)) {
-        if self.verdict == Answer::Fail {
-            self.likely_causes = cause_sentences(&causes, locate);
-        }
-        insert_causes(&mut self.findings, &mut self.diagnostics, causes, locate);
     }
 
     /// Returns the names of the drilled holes by their index: ids, and `extra 1` for those without a nominal hole.
@@ -344,29 +276,6 @@ impl Verdict {
         matched.chain(extra).chain(self.repeated.iter().cloned()).collect()
     }
 
-    /// Adds the assumptions; each is an error if they are denied.
-    pub fn add_assumptions(
-        &mut self,
-        assumptions: Vec<(Assumption, Backtrace)>,
-        is_denied: bool,
-        locate: &dyn Fn(Span) -> (String, u32),
-    ) {
-        let drilled = self.holes.len() + self.extra.len();
-        if is_denied && !assumptions.is_empty() {
-            let denied = denied_assumptions(&assumptions, drilled);
-            self.findings.extend(denied.iter().map(|finding| finding_of(finding, None, true, locate)));
-            self.diagnostics.extend(limit_per_kind(denied.into_iter()));
-            self.verdict = Answer::Fail;
-            let denied = denied_words(assumptions.len());
-            // The end of the run comes first.
-            self.summary = match self.outcome {
-                Ending::End => format!("{denied}; {}", self.summary),
-                Ending::Alarm | Ending::Limit => format!("{}; {denied}", self.summary),
-            };
-        }
-        self.assumptions.extend(assumptions.into_iter().map(|(assumption, _)| assumption));
-    }
-
     /// Adds the neighbours of each hole, by drilled hole, and their summary.
     pub(super) fn set_neighbours(&mut self, (around, summary): (Vec<Option<HoleNeighbours>>, Neighbours)) {
         for hole in &mut self.holes {
@@ -376,50 +285,19 @@ impl Verdict {
     }
 }
 
-/// Returns the messages of likely causes with their places: `X25 … is 0.025 mm (O0001 line 5)`.
-pub(super) fn cause_sentences(causes: &[Diagnostic], locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
-    let sentence = |cause: &Diagnostic| match &cause.backtrace {
-        Some(place) => {
-            let (program, line) = locate(place.block);
-            format!("{} ({program} line {line})", cause.message)
-        }
-        None => cause.message.clone(),
-    };
-    causes.iter().map(sentence).collect()
-}
-
-/// Inserts likely causes before the findings that they may explain, behind the alarms.
-pub(super) fn insert_causes(
-    findings: &mut Vec<Finding>,
-    diagnostics: &mut Vec<Diagnostic>,
-    causes: Vec<Diagnostic>,
-    locate: &dyn Fn(Span) -> (String, u32),
-) {
-    findings.splice(0..0, causes.iter().map(|cause| finding_of(cause, None, true, locate)));
-    let alarms = diagnostics.iter().take_while(|finding| finding.severity == Severity::Alarm).count();
-    diagnostics.splice(alarms..alarms, limit_per_kind(causes.into_iter()));
-}
-
-/// Keeps the first findings of each kind, the last of them with a note on the number left out. Alarms come first: what
-/// stopped the run explains the rest.
-pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
-    const MAX_SHOWN: usize = 8;
-    let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
-    let mut shown: Vec<Diagnostic> = Vec::new();
-    for finding in findings {
-        let (count, last) = kinds.entry(finding.kind.code).or_insert((0, 0));
-        *count += 1;
-        if *count <= MAX_SHOWN {
-            *last = shown.len();
-            shown.push(finding);
+impl AnyVerdict for Verdict {
+    fn parts(&mut self) -> VerdictParts<'_> {
+        VerdictParts {
+            total: Total::Holes(self.holes.len() + self.extra.len()),
+            answer: &mut self.verdict,
+            summary: &mut self.summary,
+            words: &mut self.words,
+            likely_causes: &mut self.likely_causes,
+            findings: &mut self.findings,
+            diagnostics: &mut self.diagnostics,
+            assumptions: &mut self.assumptions,
         }
     }
-    for (count, last) in kinds.into_values().filter(|(count, _)| MAX_SHOWN < *count) {
-        let note = format!("and {} more of this kind; --format json lists them all", count - MAX_SHOWN);
-        shown[last].notes.push(note);
-    }
-    shown.sort_by_key(|finding| finding.severity != Severity::Alarm);
-    shown
 }
 
 /// Describes the worst deviation: the end of the hole, the distance, and the share of rounding.
@@ -443,9 +321,4 @@ fn worst_from(hole: &HoleVerdict, shares: &[(String, f64)]) -> String {
 fn calls(calls: &CallChain, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<Origin> {
     let chain = std::iter::successors(calls.as_deref(), |call| call.outer_calls.as_deref());
     chain.map(|call| origin(call.calling_block, None, locate)).collect()
-}
-
-fn origin(block: Span, tool: Option<u32>, locate: &dyn Fn(Span) -> (String, u32)) -> Origin {
-    let (program, line) = locate(block);
-    Origin { program, line, tool }
 }

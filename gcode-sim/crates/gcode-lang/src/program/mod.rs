@@ -59,7 +59,7 @@ pub struct Program {
     /// Sequence numbers with their blocks, sorted; computed at the first jump.
     numbers: OnceLock<Vec<(u32, u32)>>,
     loops: Loops,
-    /// True if `%` or another program follows the last block.
+    /// True if `%` or another program follows the last block, or has to: the text has a `%` before.
     pub is_closed: bool,
 }
 

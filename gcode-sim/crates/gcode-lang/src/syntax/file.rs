@@ -20,7 +20,7 @@ pub(crate) struct ProgramParts<C, B> {
     pub context: C,
     /// Blocks in order.
     pub blocks: Vec<B>,
-    /// True if `%` or another program follows, false if the text ends.
+    /// True if `%` or another program follows, or has to: the text has a `%` before. False if a text without `%` ends.
     pub is_closed: bool,
 }
 
@@ -29,7 +29,7 @@ pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
     let mut programs = Programs::<(), Block>::default();
     for item in FileItems::new(source, bytes) {
         match item {
-            FileItem::Section => programs.close(),
+            FileItem::Section => programs.begin_section(),
             FileItem::Program { name, span } => programs.begin(name, span),
             FileItem::Block(block) => {
                 let (span, is_unreadable) = (block.span, is_unreadable_block(&block));
@@ -48,13 +48,15 @@ pub(super) struct Programs<C, B> {
     list: Vec<(ProgramParts<C, B>, bool)>,
     /// True if the next block belongs to the last program.
     is_open: bool,
+    /// True if the text has a `%`: its last program ends at another one, or is cut off.
+    has_section: bool,
     /// Folder of the next program.
     folder: Option<Folder>,
 }
 
 impl<C, B> Default for Programs<C, B> {
     fn default() -> Self {
-        Self { list: Vec::new(), is_open: false, folder: None }
+        Self { list: Vec::new(), is_open: false, has_section: false, folder: None }
     }
 }
 
@@ -68,8 +70,14 @@ impl<C: Default, B> Programs<C, B> {
         self.is_open = true;
     }
 
+    /// Ends the last program at a `%`.
+    fn begin_section(&mut self) {
+        self.close();
+        self.has_section = true;
+    }
+
     /// Ends the last program because another item follows.
-    pub(super) fn close(&mut self) {
+    fn close(&mut self) {
         if let Some((program, _)) = self.list.last_mut() {
             program.is_closed = true;
         }
@@ -91,7 +99,10 @@ impl<C: Default, B> Programs<C, B> {
 
     /// Returns all programs. A program without readable content is leader text and is dropped unless it is
     /// the only one.
-    pub(super) fn finish(self) -> Vec<ProgramParts<C, B>> {
+    pub(super) fn finish(mut self) -> Vec<ProgramParts<C, B>> {
+        if self.has_section {
+            self.close();
+        }
         let is_only_program = self.list.len() == 1;
         self.list
             .into_iter()
@@ -137,7 +148,7 @@ pub(crate) fn outline<C: Default, B>(
         match items.next_item() {
             Some(FileItem::Section) => {
                 is_program_known = false;
-                programs.close();
+                programs.begin_section();
             }
             Some(FileItem::Program { name, span }) => {
                 is_program_known = true;

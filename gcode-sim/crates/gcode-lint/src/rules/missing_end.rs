@@ -5,7 +5,7 @@ pub(super) static RULE: Rule =
     Rule::new("missing-end", Severity::Error, "a program that ends without M02, M30 or M99", find);
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    // A main program that is the last text of a file may end there.
+    // A main program that is the last text of a file without `%` may end there.
     if unit.role == Role::Main && !unit.program.is_closed || !unit.reaches_end {
         return Vec::new();
     }
@@ -26,6 +26,7 @@ mod tests {
     #[test]
     fn a_program_needs_its_end() {
         assert_eq!(lines(&RULE, "O1\nG0 X1.\n%\n"), [2]);
+        assert_eq!(lines(&RULE, "%\nO1\nG0 X1.\n"), [3], "cut off before its end and its %");
         assert_eq!(lines(&RULE, "O1\nM98 P2\nM30\nO2\nG0 X1.\n"), [5], "a subprogram has to return");
         assert_eq!(lines(&RULE, "O1\nM30\nN9 G0 X1.\n%\n"), NOWHERE, "its last block is not reached");
         assert_eq!(lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 9\nM30\nN9 G0 X1.\n%\n"), [4]);
@@ -40,6 +41,7 @@ mod tests {
         for text in [
             "O1\nG0 X1.\nM02\n%\n",
             "O1\nG0 X1.\n",
+            "%\nO1\nG0 X1.\nM30\n",
             "O1\nN1 G0 X1.\nGOTO 1\n%\n",
             "O1\nG0 X1.\nM99\n%\n",
             "O1\nIF[#500 EQ 1]GOTO 9\nM30\nN9 #3000=1(NO)\n%\n",

@@ -10,13 +10,14 @@ use crate::findings::{
     WHEEL_SPEED,
 };
 use crate::flutes::{GrindingResult, Window};
-use crate::verify::conclusion::{Answer, Conclusion, Ending, stop_sentence};
-use crate::verify::verdict::{Finding, cause_sentences, finding_of, insert_causes, limit_per_kind};
+use crate::verify::completion::{AnyVerdict, VerdictParts};
+use crate::verify::conclusion::{Answer, Conclusion, Ending, SummaryWords, stop_sentence};
+use crate::verify::verdict_finding::{Finding, finding_of, limit_per_kind};
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
-use gcode_part::Flutes;
 use gcode_part::job::FluteLaw;
+use gcode_part::{Assumption, Flutes, Total};
 
 /// The result of `verify --format json`. Lengths in mm, angles in degrees; nothing is rounded.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -80,6 +81,11 @@ pub struct FluteVerdict {
     pub findings: Vec<Finding>,
     /// Sentences on what the verdict does not cover.
     pub not_checked: Vec<String>,
+    /// Values that the run read and nothing in the program set, and the passes that each can touch, counted from 1.
+    pub assumptions: Vec<Assumption>,
+    /// The words of the summary.
+    #[serde(skip)]
+    pub words: SummaryWords,
     /// Helix angle along the flute with the largest error.
     #[serde(skip)]
     pub helix_course: Vec<HelixSample>,
@@ -135,13 +141,20 @@ impl FluteVerdict {
     pub fn conclusion(&self) -> Conclusion<'_> {
         Conclusion { answer: self.verdict, ending: self.outcome, summary: &self.summary }
     }
+}
 
-    /// Inserts findings about the program's text before those that they may explain; the verdict stays.
-    pub fn add_likely_causes(&mut self, causes: Vec<Diagnostic>, locate: &dyn Fn(Span) -> (String, u32)) {
-        if self.verdict == Answer::Fail {
-            self.likely_causes = cause_sentences(&causes, locate);
+impl AnyVerdict for FluteVerdict {
+    fn parts(&mut self) -> VerdictParts<'_> {
+        VerdictParts {
+            total: Total::Flutes(self.passes),
+            answer: &mut self.verdict,
+            summary: &mut self.summary,
+            words: &mut self.words,
+            likely_causes: &mut self.likely_causes,
+            findings: &mut self.findings,
+            diagnostics: &mut self.diagnostics,
+            assumptions: &mut self.assumptions,
         }
-        insert_causes(&mut self.findings, &mut self.diagnostics, causes, locate);
     }
 }
 
@@ -229,18 +242,20 @@ pub(super) fn verdict(
     let samples = actual.passes.iter().flat_map(|pass| &pass.trace.samples);
     let flutes = inspection.spacing.flutes.len();
     let counts = flute_counts(flutes, nominal.count as usize, &findings);
-    let summary = [stop_sentence(findings.iter(), locate), Some(counts)].into_iter().flatten();
+    let words =
+        SummaryWords { stop: stop_sentence(findings.iter(), locate), counts, ..SummaryWords::default() };
     let gauge = nominal.gauge;
     let worst_pass = worst.map_or(0, |worst| worst.pass);
     let along: Vec<HelixSample> = actual.passes.get(worst_pass).map_or(Vec::new(), |pass| {
         let angles = |window: Window<'_>| HelixSample { polar: window.middle.polar, helix: window.helix };
         pass.trace.windows(gauge).map(angles).collect()
     });
-    FluteVerdict {
+    let mut verdict = FluteVerdict {
         basis: "predicted by simulation, not measured",
         verdict: Answer::to(findings.iter()),
         outcome: Ending::of(findings.iter()),
-        summary: summary.collect::<Vec<_>>().join("; "),
+        summary: String::new(),
+        words,
         likely_causes: Vec::new(),
         law: nominal.law.name(),
         flutes,
@@ -269,8 +284,11 @@ pub(super) fn verdict(
         helix_course: along,
         course_pass: worst_pass + 1,
         min_nearest: 2.0 * nominal.chord_error,
+        assumptions: Vec::new(),
         diagnostics: limit_per_kind(findings.into_iter()),
-    }
+    };
+    verdict.parts().update_summary();
+    verdict
 }
 
 /// Returns sentences on what the verdict does not cover.

@@ -1,0 +1,101 @@
+//! Findings of a verdict as data.
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity, Site};
+use gcode_lang::source::Span;
+use gcode_part::Origin;
+
+/// A finding as data.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Finding {
+    /// Row of the code.
+    #[serde(skip)]
+    pub kind: &'static FindingKind,
+    /// The code, as in `explain`.
+    pub code: Cow<'static, str>,
+    /// One of note, warning, error and alarm.
+    pub severity: &'static str,
+    /// The fault in one sentence.
+    pub message: String,
+    /// The remedy.
+    pub help: Option<String>,
+    /// Further facts.
+    pub notes: Vec<String>,
+    /// The finding is about motion, not about the resulting holes.
+    pub from_motion: bool,
+    /// The id of the nominal hole.
+    pub hole: Option<String>,
+    /// The block of the finding.
+    pub from: Option<Origin>,
+    /// For a finding on flutes: positions on the part, the worst first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sites: Vec<PartPoint>,
+}
+
+/// A position on the part, mm.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct PartPoint {
+    /// Counted from 1; null without a pass: a missing flute, a rapid between two of them.
+    pub pass: Option<usize>,
+    /// Coordinates x, y, z.
+    pub at: [f64; 3],
+}
+
+impl From<&Site> for PartPoint {
+    fn from(site: &Site) -> Self {
+        Self { pass: site.pass.map(|pass| pass + 1), at: site.point }
+    }
+}
+
+/// Returns a finding as data, about the nominal hole of this id.
+pub(super) fn finding_of(
+    finding: &Diagnostic,
+    hole: Option<&str>,
+    from_motion: bool,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Finding {
+    Finding {
+        kind: finding.kind,
+        code: finding.code(),
+        severity: finding.severity.name(),
+        message: finding.message.clone(),
+        help: finding.help.clone(),
+        notes: finding.notes.clone(),
+        from_motion,
+        hole: hole.map(str::to_owned),
+        from: finding.backtrace.as_ref().map(|backtrace| origin(backtrace.block, None, locate)),
+        sites: finding.sites.iter().map(Into::into).collect(),
+    }
+}
+
+/// Keeps the first findings of each kind, the last of them with a note on the number left out. Alarms come first: what
+/// stopped the run explains the rest.
+pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
+    const MAX_SHOWN: usize = 8;
+    let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    let mut shown: Vec<Diagnostic> = Vec::new();
+    for finding in findings {
+        let (count, last) = kinds.entry(finding.kind.code).or_insert((0, 0));
+        *count += 1;
+        if *count <= MAX_SHOWN {
+            *last = shown.len();
+            shown.push(finding);
+        }
+    }
+    for (count, last) in kinds.into_values().filter(|(count, _)| MAX_SHOWN < *count) {
+        let note = format!("and {} more of this kind; --format json lists them all", count - MAX_SHOWN);
+        shown[last].notes.push(note);
+    }
+    shown.sort_by_key(|finding| finding.severity != Severity::Alarm);
+    shown
+}
+
+/// Returns the place of a block.
+pub(super) fn origin(block: Span, tool: Option<u32>, locate: &dyn Fn(Span) -> (String, u32)) -> Origin {
+    let (program, line) = locate(block);
+    Origin { program, line, tool }
+}

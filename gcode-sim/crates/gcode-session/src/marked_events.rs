@@ -1,0 +1,87 @@
+//! Events of a run marked with the stroke they belong to, and the outside values on which each stroke depends.
+use std::cell::Cell;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use gcode_control::slice::Marks;
+use gcode_lang::motion::{
+    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
+};
+use gcode_lang::source::{SourceId, Span};
+
+/// Source of the calls that mark the backtraces of events: no text has it.
+const MARKER: SourceId = SourceId(u32::MAX);
+
+/// Cosine of the largest angle between two moves along one line.
+const MIN_COSINE: f64 = 1.0 - 1e-9;
+
+/// Sink that marks each event with the stroke it belongs to, and records the outside values on which a stroke depends.
+///
+/// A stroke is a series of feeds, with the rapids along the line of the move before. The mark is an innermost call that no
+/// program has, so that the passes of the extraction carry it.
+pub(super) struct MarkedEvents<S> {
+    pub(super) sink: S,
+    motion: Rc<Cell<Marks>>,
+    pub(super) strokes: Vec<Marks>,
+    position: Position,
+    /// Direction of the last move, and whether it was a rapid.
+    last: Option<(Position, bool)>,
+    /// The stroke has fed: rapids before a feed decide no hole but by their end, from which it feeds.
+    has_fed: bool,
+}
+
+impl<S> MarkedEvents<S> {
+    /// Hands the events on to a sink; `motion` are the values on which the next move depends.
+    pub(super) fn new(sink: S, motion: Rc<Cell<Marks>>) -> Self {
+        let (strokes, position) = (Vec::new(), Position::default());
+        Self { sink, motion, strokes, position, last: None, has_fed: false }
+    }
+}
+
+impl<S: EventSink> EventSink for MarkedEvents<S> {
+    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
+        self.sink.skip_signal(feed)
+    }
+
+    fn event(&mut self, event: &Event<'_>) {
+        let Some(to) = event.kind.end() else { return self.sink.event(event) };
+        let is_rapid = matches!(event.kind, EventKind::Rapid { .. });
+        let from = std::mem::replace(&mut self.position, *to);
+        let mut direction = Position::default();
+        (0..MAX_AXES).for_each(|axis| direction[axis] = to[axis] - from[axis]);
+        let length = (0..MAX_AXES).map(|axis| direction[axis] * direction[axis]).sum::<f64>().sqrt();
+        if length > 0.0 {
+            (0..MAX_AXES).for_each(|axis| direction[axis] /= length);
+            let is_along = |last: &Position| {
+                let cosine: f64 = (0..MAX_AXES).map(|axis| last[axis] * direction[axis]).sum();
+                cosine.abs() >= MIN_COSINE
+            };
+            let continues =
+                self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
+            if !continues {
+                self.strokes.push(Marks::NONE);
+                self.has_fed = false;
+            }
+            self.last = Some((direction, is_rapid));
+        } else if self.strokes.is_empty() {
+            self.strokes.push(Marks::NONE);
+        }
+        let stroke = self.strokes.len() - 1;
+        self.has_fed |= !is_rapid;
+        if self.has_fed {
+            self.strokes[stroke] |= self.motion.get();
+        }
+        let place = Span { source: MARKER, start: stroke as u32, end: stroke as u32 };
+        let calls = Some(Arc::new(Call { calling_block: place, outer_calls: event.calls.clone() }));
+        self.sink.event(&Event { calls: &calls, ..*event });
+    }
+}
+
+/// Returns the outside values on which the passes at these places depend.
+pub(super) fn marks_of<'p>(places: impl IntoIterator<Item = &'p Backtrace>, strokes: &[Marks]) -> Marks {
+    let stroke = |place: &Backtrace| {
+        let call = place.calls.as_ref().filter(|call| call.calling_block.source == MARKER)?;
+        strokes.get(call.calling_block.start as usize).copied()
+    };
+    places.into_iter().filter_map(stroke).collect()
+}
