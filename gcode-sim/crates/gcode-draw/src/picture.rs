@@ -1,6 +1,6 @@
 //! Pictures: a scene or a chart with a title block and a legend, as a view builds them.
 use super::chart::Chart;
-use super::scene::{HoleStatus, Pen, Scene};
+use super::scene::{HoleStatus, Pen, Scene, Sign, Style};
 
 /// One picture of a part or program, which [`lay_out`](crate::lay_out) places on a sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,18 +43,39 @@ impl LegendItem {
 }
 
 /// The sample at the left of a legend line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sample {
     Status(HoleStatus),
     /// Replaces `Status` for holes that the sheet draws to scale, without a symbol.
     Plain(HoleStatus),
     Pen(Pen),
+    /// A text alone.
+    Nothing,
+    /// A line whose look differs from its pen's.
+    Line(Pen, Style),
+    Sign(Sign),
+    /// Symbol of a zero point.
+    Zero,
+    /// Scale of shades between two values, the text above it.
+    Shades(f64, f64),
+    /// Symbol of ISO 5456-2 for the arrangement of the views.
+    Projection(Projection),
     /// Direction of a hole axis; omitted if no axis is drawn.
     Direction,
     /// Deviation in its zone; the sheet adds the magnification, or omits the line if none is drawn.
     Deviation,
     /// Line to the actual position of a hole; omitted if none is drawn.
     Displacement,
+}
+
+/// Arrangement of several views on a sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Projection {
+    /// A view lies on the side that it shows: the top above the front, the right on its right.
+    #[default]
+    Third,
+    /// A view lies on the side opposite to the one it shows: the top below the front.
+    First,
 }
 
 /// Symbols that the laid-out drawing really contains, for the legend.

@@ -108,7 +108,7 @@ pub fn top_view(view: &TopView) -> Picture {
     let part = Scene {
         axes: unit.map(|(name, direction)| Axis { name: name.to_owned(), direction }).into(),
         strokes: view.path.clone(),
-        marks: near.into_iter().filter_map(|hole| mark(hole, view)).collect(),
+        marks: near.into_iter().filter_map(|hole| hole_mark(hole, view)).collect(),
         zone: view.tolerance,
     };
     let mut scene = part.seen_from(view.side);
@@ -130,7 +130,7 @@ pub fn top_view(view: &TopView) -> Picture {
     let what = format!("Top view, seen from {}", view.side.name());
     let position = view.tolerance.filter(|_| view.purpose == PicturePurpose::Verdict);
     let legend = legend(view, &scene);
-    Picture { title: view.title(what, position, hidden), scene, legend, chart: None }
+    Picture { title: view.title(what, position, hidden), scene, legend, ..Picture::default() }
 }
 
 /// Removes the numbers and dials that would hide the holes of a dense pattern.
@@ -152,7 +152,8 @@ fn faces_reader(hole: &DrawnHole, view: &TopView) -> bool {
     view.cylinder.is_none() || !hole.shown().is_some_and(away)
 }
 
-fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
+/// Returns the mark of a hole on the part.
+pub(super) fn hole_mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
     let shown = hole.shown()?;
     let actual = hole.actual.as_ref().filter(|_| hole.nominal.is_some());
     Some(Mark {
