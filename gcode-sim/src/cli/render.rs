@@ -13,7 +13,7 @@ use gcode_draw::{Arrangement, ColorBy, FluteView, Picture, Projection, Size, Sta
 use gcode_inspect::machine::Machine;
 use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_inspect::verify::{Answer, Tolerances, denied_words};
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_part::{Assumption, NominalPart, Reference, Stock};
 use gcode_session::{Request, Run, Simulation};
 
@@ -127,7 +127,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             return Err(UsageError::new("--deny is for holes, and the reference is a burr"));
         }
         Some(NominalPart::Flutes(_)) if arguments.color_by.is_some() || arguments.projection.is_some() => {
-            return Err(UsageError::new("--color-by and --projection are for tool paths, and the reference is a burr"));
+            return Err(UsageError::new(
+                "--color-by and --projection are for tool paths, and the reference is a burr",
+            ));
         }
         Some(NominalPart::Flutes(mut flutes)) => {
             flutes.surface_tolerance = tolerance.unwrap_or(flutes.surface_tolerance);
@@ -208,7 +210,7 @@ fn of_path(
     };
     let simulation = progress::of_run(request, simulate)?;
     let path = recorder.finish();
-    let (holes, verdict, status, findings) = match reference {
+    let (mut holes, verdict, status, findings) = match reference {
         Some(reference) => {
             let tolerances = Tolerances::of(reference, tolerance);
             let mut verdict = simulation.verify(reference, tolerances, &machine);
@@ -229,9 +231,20 @@ fn of_path(
             (holes, (!faults.is_empty()).then(|| (Answer::Fail, faults.join("; "))), None, findings)
         }
     };
+    // Warnings are about holes, which only a reference says are meant.
+    let warnings = reference.and_then(|_| tool_path::finding_line(&findings, Severity::Warning, "warning"));
+    let errors = match reference {
+        Some(_) => tool_path::finding_line(&findings, Severity::Error, "error"),
+        None => tool_path::finding_line(&simulation.extracted.findings, Severity::Error, "error"),
+    };
+    holes.lines.extend(errors.into_iter().chain(warnings));
     let stock = reference.and_then(|reference| reference.stock.clone()).or(stock);
     let picture = hole_picture(arguments, views, holes, path, &simulation, &machine, stock)?;
-    let names = if views.is_empty() { vec![View::Top.name()] } else { views.iter().map(|view| view.name()).collect() };
+    let names = if views.is_empty() {
+        vec![View::Top.name()]
+    } else {
+        views.iter().map(|view| view.name()).collect()
+    };
     Ok(Drawn { picture, view: names.join(","), verdict, status, findings, run: simulation.run })
 }
 
@@ -257,7 +270,8 @@ fn hole_picture(
         }
         _ => {}
     }
-    let is_asked = arguments.color_by.is_some() || arguments.projection.is_some() || !matches!(views, [] | [View::Top]);
+    let is_asked =
+        arguments.color_by.is_some() || arguments.projection.is_some() || !matches!(views, [] | [View::Top]);
     // A run that stops is drawn without a path too: its alarm is in the title block.
     let is_empty = !tool_path::is_drawable(&path, &holes);
     if is_empty && simulation.run.stop_finding().is_none() {
@@ -268,7 +282,7 @@ fn hole_picture(
     }
     let top = match holes.outline.is_some() || holes.cylinder.is_some() {
         true => holes.side,
-        false => tool_path::top_side(&path, &simulation.hole_list().holes, holes.side),
+        false => tool_path::top_side(&path, &simulation.hole_list().holes, machine, holes.side),
     };
     holes.side = top;
     let standard: Vec<StandardView> = views.iter().filter_map(|view| view.standard()).collect();

@@ -6,6 +6,7 @@ use super::top::side_along_holes;
 use gcode_draw::{DrawnTool, PathPlace, PathRun, PathView, RunKind, Side, Sign, TopView};
 use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool};
 use gcode_inspect::tool_path::{PathKind, ToolPath};
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Position;
 use gcode_lang::source::{SourceId, Span};
 use gcode_part::{Hole, Stock};
@@ -25,15 +26,22 @@ pub(crate) fn shows_more(path: &ToolPath, simulation: &Simulation) -> bool {
     !path.moves.is_empty() && (holes.is_empty() || path.has_feed_off_holes(is_of_hole))
 }
 
-/// Returns the side from which the part is cut: that of the tool in most feeds, of most holes, or of the spindle.
-pub(crate) fn top_side(path: &ToolPath, found: &[Hole], spindle: Side) -> Side {
+/// Returns the side from which the part is cut: that of the tool in most feeds, of most holes, or of the spindle. A tool of
+/// unknown direction that makes no hole is along z, as in G17.
+pub(crate) fn top_side(path: &ToolPath, found: &[Hole], machine: &Machine, spindle: Side) -> Side {
     let along = |(axis, is_positive)| Side::along(axis, is_positive);
     let known = path.tool_axis().map(along);
-    known.or_else(|| side_along_holes(found)).or_else(|| path.supposed_axis().map(along)).unwrap_or(spindle)
+    let usual = if machine.head.kind == HeadKind::Free && found.is_empty() { Side::Z } else { spindle };
+    known.or_else(|| side_along_holes(found)).or_else(|| path.supposed_axis().map(along)).unwrap_or(usual)
 }
 
 /// Builds the contents of the picture. The points of the path move into it.
-pub(crate) fn of_path(path: ToolPath, simulation: &Simulation, machine: &Machine, stock: Option<Stock>) -> PathView {
+pub(crate) fn of_path(
+    path: ToolPath,
+    simulation: &Simulation,
+    machine: &Machine,
+    stock: Option<Stock>,
+) -> PathView {
     let run = &simulation.run;
     let mut names: BTreeMap<Option<u32>, usize> = BTreeMap::new();
     let mut programs: BTreeMap<String, usize> = BTreeMap::new();
@@ -73,7 +81,7 @@ pub(crate) fn of_path(path: ToolPath, simulation: &Simulation, machine: &Machine
 /// Returns name and diameter of a tool.
 fn tool(number: Option<u32>, machine: &Machine) -> DrawnTool {
     let Some(number) = number else {
-        return DrawnTool { name: "before any tool change".to_owned(), diameter: None };
+        return DrawnTool { name: "feed before a tool change".to_owned(), diameter: None };
     };
     let known = machine.tools.iter().find(|tool| tool.number == number).copied();
     let Tool { kind, diameter, .. } = known.unwrap_or_default();
@@ -119,7 +127,7 @@ fn notes(path: &ToolPath) -> Vec<String> {
     let texts = path.stops.iter().filter(|stop| !stop.text.is_empty());
     notes.extend(texts.take(MAX_STOP_TEXTS).map(|stop| format!("stop {}: {}", stop.kind.name(), stop.text)));
     if 0 < path.unplaced_feeds {
-        let feeds = count(path.unplaced_feeds as usize, "feed");
+        let feeds = count(path.unplaced_feeds, "feed");
         notes.push(format!("{feeds} from or to an unknown position not drawn"));
     }
     if 0 < path.omitted_moves {
@@ -127,6 +135,17 @@ fn notes(path: &ToolPath) -> Vec<String> {
         notes.push(format!("the first {drawn} of {} moves are drawn", drawn as u64 + path.omitted_moves));
     }
     notes
+}
+
+/// Returns the number of findings of a severity and the first of them as a line of the title block.
+pub(crate) fn finding_line<'a>(
+    findings: impl IntoIterator<Item = &'a Diagnostic>,
+    severity: Severity,
+    what: &str,
+) -> Option<String> {
+    let mut of_severity = findings.into_iter().filter(|finding| finding.severity == severity);
+    let first = of_severity.next()?;
+    Some(format!("{}: {}", count(of_severity.count() + 1, what), first.message))
 }
 
 /// Returns true if there is something to draw: a move or a hole.

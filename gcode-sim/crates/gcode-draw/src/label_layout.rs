@@ -1,8 +1,8 @@
 //! Labels of holes and lines: as many lines of each label as fit, and notes on omitted ones.
 use super::font::{ASCENT, DESCENT};
 use super::ink::{DrawCommand, Px, Rect, px};
-use super::lines::{SIGN, ZERO};
 use super::labels::{LabelArea, LabelPlacement, LeaderRule, Symbol};
+use super::lines::{SIGN, ZERO};
 use super::marks::DrawnMark;
 use super::measure::{Frame, LABEL_LIMIT};
 use super::obstacle::Obstacle;

@@ -89,7 +89,9 @@ pub use layout::lay_out;
 pub use picture::{Picture, Projection};
 pub use plot::{Bar, Plot, PlotBody};
 pub use raster::{paint, png};
-pub use scene::{Align, Axis, HoleStatus, Mark, Pen, Point, Scene, Shape, Sign, Stroke, Style, Tint, ZoneDeviation, arc};
+pub use scene::{
+    Align, Axis, HoleStatus, Mark, Pen, Point, Scene, Shape, Sign, Stroke, Style, Tint, ZoneDeviation, arc,
+};
 pub use sheet::Sheet;
 pub use side::Side;
 pub use size::Size;

@@ -56,7 +56,9 @@ pub(super) fn shade(value: f64) -> Rgb {
     let at = value.clamp(0.0, 1.0) * (SHADES.len() - 1) as f64;
     let index = (at as usize).min(SHADES.len() - 2);
     let (Rgb(r, g, b), Rgb(r2, g2, b2)) = (SHADES[index], SHADES[index + 1]);
-    let mixed = |from: u8, to: u8| (f64::from(from) + (f64::from(to) - f64::from(from)) * (at - index as f64)).round() as u8;
+    let mixed = |from: u8, to: u8| {
+        (f64::from(from) + (f64::from(to) - f64::from(from)) * (at - index as f64)).round() as u8
+    };
     Rgb(mixed(r, r2), mixed(g, g2), mixed(b, b2))
 }
 

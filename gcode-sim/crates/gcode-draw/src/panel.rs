@@ -1,10 +1,10 @@
 //! Title block, legend and notes beside the drawing.
 use super::font::{ASCENT, Font};
 use super::ink::{DrawCommand, Ink, Px, Rect, Rgb, px};
+use super::lines::{SIGN, ZERO};
 use super::marks::displacement_commands;
 use super::measure::{Frame, plain};
 use super::palette;
-use super::lines::{SIGN, ZERO};
 use super::picture::{LegendItem, LegendUse, Picture, Sample};
 use super::scene::{HoleStatus, Pen};
 use super::symbol;
@@ -304,7 +304,9 @@ fn sample_commands(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
         Sample::Plain(status) => symbol::hole(status, middle, 0.4 * text, [0.0, 1.0], 1.0),
         Sample::Pen(pen) => vec![DrawCommand::line(left, right, palette::pen(pen, text))],
         Sample::Line(pen, style) => {
-            vec![DrawCommand::line(left, right, palette::ink(pen, Some(style), text, text))]
+            let ink = palette::ink(pen, Some(style), text, text);
+            let inset = if style.width.is_some() { ink.width / 2.0 } else { 0.0 };
+            vec![DrawCommand::line(px(left.x + inset, left.y), px(right.x - inset, right.y), ink)]
         }
         Sample::Sign(sign) => symbol::sign(sign, middle, SIGN * text),
         Sample::Zero => symbol::zero(middle, 0.8 * ZERO * text, palette::pen(Pen::Edge, text)),

@@ -97,7 +97,8 @@ impl Side {
     /// Projects (x, y, z) of the part to the sheet: right and up.
     pub(super) fn project(self, at: [f64; 3]) -> Point {
         // The sum begins with 0: negative zeros would show in compared and printed values.
-        [self.right, self.up].map(|direction| at.iter().zip(direction).fold(0.0, |sum, (mm, part)| sum + mm * part))
+        [self.right, self.up]
+            .map(|direction| at.iter().zip(direction).fold(0.0, |sum, (mm, part)| sum + mm * part))
     }
 
     /// Returns the vector to the reader: the square of the directions' length is its own.
@@ -206,7 +207,9 @@ mod tests {
     /// Right × up points to the reader: nothing is mirrored.
     #[test]
     fn every_side_is_right_handed() {
-        for side in [Side::X, Side::MINUS_X, Side::Y, Side::Z, Side::Z.front(), Side::Y.front(), Side::Y.from_right()] {
+        for side in
+            [Side::X, Side::MINUS_X, Side::Y, Side::Z, Side::Z.front(), Side::Y.front(), Side::Y.from_right()]
+        {
             let part = [Vector3::x(), Vector3::y(), Vector3::z()];
             let lies = |at: Point| {
                 part.into_iter().find_map(|axis| {

@@ -130,7 +130,10 @@ pub(super) fn sign(of: Sign, at: Px, radius: f64) -> Vec<DrawCommand> {
             let strokes = [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]];
             let halo = Ink::solid(3.0 * width, palette::PAPER);
             let cross = Ink::solid(1.6 * width, palette::VERMILION);
-            [halo, cross].into_iter().flat_map(|ink| strokes.map(|ends| path(at, radius, &ends, ink))).collect()
+            [halo, cross]
+                .into_iter()
+                .flat_map(|ink| strokes.map(|ends| path(at, radius, &ends, ink)))
+                .collect()
         }
     }
 }
@@ -142,7 +145,8 @@ pub(super) fn projection(of: Projection, at: Px, text: f64) -> Vec<DrawCommand> 
         Projection::Third => (-0.45 * text, 0.5 * text),
         Projection::First => (0.45 * text, -0.5 * text),
     };
-    let ring = |radius: f64| DrawCommand::Ring { centre: px(at.x + circles, at.y), radius: radius * text, ink };
+    let ring =
+        |radius: f64| DrawCommand::Ring { centre: px(at.x + circles, at.y), radius: radius * text, ink };
     // The small end points to the circles in the third angle, which show what is nearest to them.
     let ends = [[-0.35, -0.2], [0.35, -0.4], [0.35, 0.4], [-0.35, 0.2]];
     let side = points(px(at.x + cone, at.y), text, &ends);

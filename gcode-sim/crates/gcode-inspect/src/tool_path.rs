@@ -107,35 +107,6 @@ impl ToolPath {
         most(&self.supposed_axes).map(|axis| (axis, true))
     }
 
-    /// Counts the axis of the part along which the tool is in a move, whose points are the last ones from `first` on.
-    fn count_axis(
-        &mut self,
-        kind: PathKind,
-        arc: Option<&PlanarArc>,
-        axis: Option<Unit<Vector3<f64>>>,
-        first: usize,
-    ) {
-        if let Some(axis) = axis {
-            if kind == PathKind::Feed
-                && let Some(along) = axis_of(&axis)
-            {
-                *self.tool_axes.entry(along).or_default() += 1;
-            }
-            return;
-        }
-        let normal = match (arc, &self.points[first..]) {
-            (Some(arc), _) => (0..3).find(|axis| !moves(arc, *axis)),
-            (None, [from, .., to]) if kind == PathKind::Rapid => {
-                let way = Unit::try_new(Point3::from(*to) - Point3::from(*from), 1e-9);
-                way.and_then(|way| axis_of(&way)).map(|(axis, _)| axis)
-            }
-            (None, _) => None,
-        };
-        if let Some(axis) = normal {
-            *self.supposed_axes.entry(axis).or_default() += 1;
-        }
-    }
-
     /// Returns true if a feed makes none of the holes of which `is_of_hole` knows the blocks by source and offset, nor
     /// returns along the line of one that does.
     pub fn has_feed_off_holes(&self, is_of_hole: impl Fn(Span) -> bool) -> bool {
@@ -232,11 +203,13 @@ impl<'m> PathRecorder<'m> {
     fn motion(&mut self, event: &Event<'_>, kind: PathKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = std::mem::replace(&mut self.at, *to);
         let (was, is) = self.positions.advance(self.machine);
-        let moved = (0..MAX_AXES).filter(|axis| from[*axis] != to[*axis] || arc.is_some_and(|arc| moves(arc, *axis)));
+        let moved =
+            (0..MAX_AXES).filter(|axis| from[*axis] != to[*axis] || arc.is_some_and(|arc| moves(arc, *axis)));
         let moved = moved.fold(0, |axes, axis| axes | 1u8 << axis) & self.machine.used_axes();
         if moved == 0 {
             return;
         }
+        self.suppose_axis(kind, arc, moved);
         if was.union(is).all() & moved != 0 {
             self.path.unplaced_feeds += u64::from(kind == PathKind::Feed);
             return;
@@ -257,7 +230,11 @@ impl<'m> PathRecorder<'m> {
             axis = pose.axis;
         });
         path.end = path.points.last().copied();
-        path.count_axis(kind, arc, axis, first);
+        if kind == PathKind::Feed
+            && let Some(along) = axis.as_ref().and_then(axis_of)
+        {
+            *path.tool_axes.entry(along).or_default() += 1;
+        }
         let is_same_program = match (&self.calls, event.calls) {
             (None, None) => true,
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
@@ -290,7 +267,22 @@ impl<'m> PathRecorder<'m> {
                 moves: moves..moves + 1,
             });
         }
-        path.moves.push(PathMove { last_point: (path.points.len() - 1) as u32, block_start: event.block.start });
+        path.moves
+            .push(PathMove { last_point: (path.points.len() - 1) as u32, block_start: event.block.start });
+    }
+
+    /// Counts the axis across an arc, or along a rapid of one axis, if the direction of the tool is unknown.
+    fn suppose_axis(&mut self, kind: PathKind, arc: Option<&PlanarArc>, moved: u8) {
+        let axis = match arc {
+            Some(arc) => (0..3).find(|axis| !moves(arc, *axis)),
+            None if kind == PathKind::Rapid => (0..3).find(|axis| moved == 1 << axis),
+            None => None,
+        };
+        if let Some(axis) = axis
+            && self.machine.head.direction(&self.at, &self.setup).is_none()
+        {
+            *self.path.supposed_axes.entry(axis).or_default() += 1;
+        }
     }
 }
 
@@ -356,11 +348,16 @@ mod tests {
 
     #[test]
     fn successive_moves_of_one_kind_and_tool_are_a_stretch() {
-        let script = EventScript::new().then("tool 1; rapid X10; rapid Z2; feed Z-1; feed X20; tool 2; feed X30");
+        let script =
+            EventScript::new().then("tool 1; rapid X10; rapid Z2; feed Z-1; feed X20; tool 2; feed X30");
         let path = path(&upright(), &script);
-        let stretches: Vec<_> =
-            path.stretches.iter().map(|of| (of.kind, of.tool, path.points[of.points.clone()].len())).collect();
-        let expected = [(PathKind::Rapid, Some(1), 3), (PathKind::Feed, Some(1), 3), (PathKind::Feed, Some(2), 2)];
+        let stretches: Vec<_> = path
+            .stretches
+            .iter()
+            .map(|of| (of.kind, of.tool, path.points[of.points.clone()].len()))
+            .collect();
+        let expected =
+            [(PathKind::Rapid, Some(1), 3), (PathKind::Feed, Some(1), 3), (PathKind::Feed, Some(2), 2)];
         assert_eq!(stretches, expected);
         assert_eq!((path.moves.len(), path.end), (5, Some([30.0, 0.0, -1.0])));
         assert_eq!(path.points.last(), Some(&[30.0, 0.0, -1.0]));
@@ -373,13 +370,16 @@ mod tests {
     fn an_arc_has_points_within_a_part_of_its_radius() {
         let to = Position([0.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let arc = PlanarArc { plane: (0, 1), centre: (0.0, 0.0), sweep: Deg(90.0) };
-        let script = EventScript::new().then("rapid X10").with(EventKind::Arc { to, arc, rate: MmPerMin(10.0) });
+        let script =
+            EventScript::new().then("rapid X10").with(EventKind::Arc { to, arc, rate: MmPerMin(10.0) });
         let path = path(&upright(), &script);
         let points = &path.points[path.stretches[1].points.clone()];
         assert!(25 < points.len() && points.len() < 80, "{}", points.len());
         for pair in points.windows(2) {
             let middle = nalgebra::center(&Point3::from(pair[0]), &Point3::from(pair[1]));
-            assert!(9.995 <= middle.coords.norm() && (Point3::from(pair[0]).coords.norm() - 10.0).abs() < 1e-9);
+            assert!(
+                9.995 <= middle.coords.norm() && (Point3::from(pair[0]).coords.norm() - 10.0).abs() < 1e-9
+            );
         }
     }
 
@@ -405,7 +405,9 @@ mod tests {
     /// Events 5, 6 and 7 are the feed into the hole, the feed out of it, and a feed across.
     #[test]
     fn the_return_along_a_hole_belongs_to_it() {
-        let script = |more: &str| EventScript::new().then(&format!("tool 1; rapid X5; rapid Z2; feed Z-9; feed Z2{more}"));
+        let script = |more: &str| {
+            EventScript::new().then(&format!("tool 1; rapid X5; rapid Z2; feed Z-9; feed Z2{more}"))
+        };
         let is_of_hole = |block: Span| block.start == 5;
         assert!(!path(&upright(), &script("")).has_feed_off_holes(is_of_hole));
         assert!(path(&upright(), &script("; feed X6")).has_feed_off_holes(is_of_hole));

@@ -37,7 +37,7 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     let mut scene = Scene { zone: view.tolerance, ..Scene::default() };
     let feed_points = path.runs.iter().filter(|run| run.kind == RunKind::Feed).map(|run| run.points.len());
     let is_swept_drawn = feed_points.sum::<usize>() <= MAX_SWEPT_POINTS;
-    if !is_swept_drawn {
+    if !is_swept_drawn && path.tools.iter().any(|tool| tool.diameter.is_some()) {
         notes.push("swept width not drawn: too many moves".to_owned());
     }
     let (mut is_cut, mut labelled) = (false, vec![false; view.holes.len()]);
@@ -72,10 +72,15 @@ fn title_of(arrangement: &Arrangement) -> String {
     match arrangement.views[..] {
         [view] => {
             let side = view.side(arrangement.top).name();
-            format!("{} view, seen from {}{side}", view.name(), if view == StandardView::Isometric { "the " } else { "" })
+            format!(
+                "{} view, seen from {}{side}",
+                view.name(),
+                if view == StandardView::Isometric { "the " } else { "" }
+            )
         }
         _ => {
-            let names: Vec<String> = arrangement.views.iter().map(|view| view.name().to_lowercase()).collect();
+            let names: Vec<String> =
+                arrangement.views.iter().map(|view| view.name().to_lowercase()).collect();
             let top = arrangement.top.name();
             format!("Views: {}; top seen from {top}", names.join(", "))
         }
@@ -122,7 +127,8 @@ fn places(path: &PathView, view: &PlacedView, extent: f64, is_named: bool) -> Ve
         let seen = view.side.project(*at);
         let at = [seen[0].clamp(low[0], high[0]), seen[1].clamp(low[1], high[1])];
         let label = if at == seen { label.clone() } else { format!("{label} (outside)") };
-        let near = |group: &&mut Group| libm::hypot(group.at[0] - at[0], group.at[1] - at[1]) < SAME_PLACE * extent;
+        let near =
+            |group: &&mut Group| libm::hypot(group.at[0] - at[0], group.at[1] - at[1]) < SAME_PLACE * extent;
         match groups.iter_mut().find(near) {
             Some(group) => {
                 if group.sign < *sign {
@@ -176,11 +182,16 @@ fn legend(
     let mut items = view.status_legend(&scene.marks);
     if let Some(scale) = drawer.shades {
         items.push(match (arrangement.color_by, scale.is_flat()) {
-            (ColorBy::Feed, false) => LegendItem::new(Sample::Shades(scale.low, scale.high), "feed rate, mm/min"),
-            (ColorBy::Feed, true) => LegendItem::new(Sample::Nothing, format!("all feeds: F{}", plain(scale.low))),
-            (_, false) => {
-                LegendItem::new(Sample::Shades(scale.low, scale.high), format!("{height_name} of the feeds, mm"))
+            (ColorBy::Feed, false) => {
+                LegendItem::new(Sample::Shades(scale.low, scale.high), "feed rate, mm/min")
             }
+            (ColorBy::Feed, true) => {
+                LegendItem::new(Sample::Nothing, format!("all feeds: F{}", plain(scale.low)))
+            }
+            (_, false) => LegendItem::new(
+                Sample::Shades(scale.low, scale.high),
+                format!("{height_name} of the feeds, mm"),
+            ),
             (_, true) => {
                 LegendItem::new(Sample::Nothing, format!("all feeds: {height_name} {} mm", number(scale.low)))
             }
@@ -201,8 +212,12 @@ fn legend(
         items.extend(more(used.len(), "program"));
     }
     let has_pen = |pen: Pen| scene.strokes.iter().any(|stroke| stroke.pen == pen);
-    let has_tint = |tint: Tint| scene.strokes.iter().any(|stroke| stroke.style.is_some_and(|style| style.tint == Some(tint)));
-    let has_sign = |of: Sign| scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Sign { sign, .. } if sign == of));
+    let has_tint = |tint: Tint| {
+        scene.strokes.iter().any(|stroke| stroke.style.is_some_and(|style| style.tint == Some(tint)))
+    };
+    let has_sign = |of: Sign| {
+        scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Sign { sign, .. } if sign == of))
+    };
     let pale = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(0.6) };
     let others = [
         (has_pen(Pen::Rapid), Sample::Pen(Pen::Rapid), "rapid"),
@@ -258,4 +273,109 @@ fn more(count: usize, what: &str) -> Option<LegendItem> {
 /// Formats a number with a true minus sign.
 fn number(value: f64) -> String {
     plain(value).replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::path_view::{DrawnTool, PathRun};
+    use super::*;
+    use crate::side::Side;
+
+    /// A slot of 10 mm along x at z −2 from (0, 0) to (100, 40), reached by a rapid from z 300.
+    fn slot() -> PathView {
+        let run = |kind, points| PathRun { kind, tool: 0, program: 0, feed: 100.0, points };
+        PathView {
+            points: vec![
+                [0.0, 0.0, 300.0],
+                [0.0, 0.0, -2.0],
+                [0.0, 0.0, -2.0],
+                [100.0, 0.0, -2.0],
+                [100.0, 40.0, -2.0],
+            ],
+            runs: vec![run(RunKind::Rapid, 0..2), run(RunKind::Feed, 2..5)],
+            tools: vec![DrawnTool { name: "T1 end mill Φ10".to_owned(), diameter: Some(10.0) }],
+            places: vec![PathPlace { sign: Sign::Start, at: [0.0, 0.0, 300.0], label: "start".to_owned() }],
+            ..PathView::default()
+        }
+    }
+
+    fn picture(path: &PathView, views: &[StandardView], projection: Projection) -> Picture {
+        let arrangement =
+            Arrangement { top: Side::Z, views: views.into(), projection, color_by: ColorBy::Depth };
+        path_picture(&TopView::default(), path, &arrangement)
+    }
+
+    /// Returns the drawn feeds, without the swept widths.
+    fn feeds(picture: &Picture) -> Vec<&Vec<Point>> {
+        let is_feed = |stroke: &&Stroke| {
+            stroke.pen == Pen::Feed && stroke.style.is_some_and(|style| style.width.is_none())
+        };
+        let strokes = picture.scene.strokes.iter().filter(is_feed);
+        strokes
+            .filter_map(|stroke| if let Shape::Line(points) = &stroke.shape { Some(points) } else { None })
+            .collect()
+    }
+
+    #[test]
+    fn the_top_view_has_the_swept_width_and_the_front_view_has_not() {
+        let widths = |view| {
+            let picture = picture(&slot(), &[view], Projection::Third);
+            picture.scene.strokes.iter().filter_map(|stroke| stroke.style?.width).collect::<Vec<_>>()
+        };
+        assert_eq!((widths(StandardView::Top), widths(StandardView::Front)), (vec![10.0], vec![]));
+    }
+
+    /// In the third angle the top is above the front, in the first below; both have the same abscissa.
+    #[test]
+    fn views_are_aligned_as_on_a_drawing() {
+        for (projection, is_above) in [(Projection::Third, true), (Projection::First, false)] {
+            let picture = picture(&slot(), &[StandardView::Top, StandardView::Front], projection);
+            let [top, front] = feeds(&picture)[..] else { panic!("two feeds") };
+            assert!((top[0][0] - front[0][0]).abs() < 1e-9 && (top[1][0] - top[0][0] - 100.0).abs() < 1e-9);
+            assert_eq!(front[0][1] < top[0][1], is_above, "{projection:?}");
+        }
+    }
+
+    /// The right view is beside the front view, at the same ordinate, and has y to the right.
+    #[test]
+    fn the_right_view_is_beside_the_front_view() {
+        let picture = picture(&slot(), &[StandardView::Front, StandardView::Right], Projection::Third);
+        let [front, right] = feeds(&picture)[..] else { panic!("two feeds") };
+        assert!((front[0][1] - right[0][1]).abs() < 1e-9 && front[1][0] < right[0][0]);
+        assert!((right[right.len() - 1][0] - right[0][0] - 40.0).abs() < 1e-9, "{right:?}");
+    }
+
+    /// The feeds with the radius of the cutter reach from −5 to 105, so that 8 % of 110 mm are added on every side: in the
+    /// front view the rapid is cut at −2 + 8.8.
+    #[test]
+    fn a_rapid_is_cut_at_the_frame() {
+        let picture = picture(&slot(), &[StandardView::Front], Projection::Third);
+        let rapid = picture.scene.strokes.iter().find(|stroke| stroke.pen == Pen::Rapid).unwrap();
+        let Shape::Line(points) = &rapid.shape else { panic!("a line") };
+        assert!((points[0][1] - points[1][1] - 8.8).abs() < 1e-9, "{points:?}");
+        assert!(picture.title.lines.contains(&"rapids beyond the frame are cut off".to_owned()));
+        let named = picture.scene.strokes.iter().filter_map(|stroke| stroke.caption.as_deref());
+        assert!(named.into_iter().any(|caption| caption == "start (outside)"));
+    }
+
+    /// From z 0 to −8 in four steps of 2 mm: five shades, the deepest the darkest.
+    #[test]
+    fn deeper_is_darker() {
+        let mut path = slot();
+        path.points = (0..5)
+            .flat_map(|n| {
+                [[10.0 * f64::from(n), 0.0], [10.0 * f64::from(n), 30.0]]
+                    .map(|[x, y]| [x, y, -2.0 * f64::from(n)])
+            })
+            .collect();
+        path.runs = (0..5).map(|n| PathRun { points: 2 * n..2 * n + 2, ..path.runs[1].clone() }).collect();
+        let picture = picture(&path, &[StandardView::Top], Projection::Third);
+        let shades = picture.scene.strokes.iter().filter_map(|stroke| match stroke.style?.tint? {
+            Tint::Shade(shade) => Some(shade),
+            Tint::Class(_) | Tint::Pale => None,
+        });
+        let shades: Vec<f64> = shades.collect();
+        assert!(shades.len() == 5 && shades.windows(2).all(|pair| pair[1] < pair[0]), "{shades:?}");
+        assert_eq!((shades[0], shades[4]), (1.0, 0.0));
+    }
 }

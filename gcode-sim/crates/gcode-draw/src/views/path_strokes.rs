@@ -99,7 +99,8 @@ impl PathDrawer<'_> {
             let width = self.path.tools.get(run.tool)?.diameter?;
             let points = self.sparse(view, run);
             let style = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(width) };
-            (1 < points.len()).then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
+            (1 < points.len())
+                .then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
         });
         swept.collect()
     }
@@ -143,7 +144,14 @@ impl PathDrawer<'_> {
     }
 
     /// Draws a feed in pieces of one shade each. A steep segment is divided.
-    fn shaded(&self, view: &PlacedView, run: &PathRun, scale: ShadeScale, style: Style, to: &mut Vec<Stroke>) {
+    fn shaded(
+        &self,
+        view: &PlacedView,
+        run: &PathRun,
+        scale: ShadeScale,
+        style: Style,
+        to: &mut Vec<Stroke>,
+    ) {
         let depth = |point: [f64; 3]| point[self.height.0] * self.height.1;
         let least = RESOLUTION * self.extent;
         let styled = |level: f64| Some(Style { tint: Some(scale.tint(level)), ..style });
@@ -157,7 +165,8 @@ impl PathDrawer<'_> {
             if !is_last && libm::hypot(now[0] - before[0], now[1] - before[1]) < least {
                 continue;
             }
-            let pieces = ((scale.level(now_depth) - scale.level(before_depth)).abs() / 4.0).ceil().clamp(1.0, 16.0);
+            let pieces =
+                ((scale.level(now_depth) - scale.level(before_depth)).abs() / 4.0).ceil().clamp(1.0, 16.0);
             let at = |share: f64| {
                 [before[0] + (now[0] - before[0]) * share, before[1] + (now[1] - before[1]) * share]
             };
@@ -183,7 +192,8 @@ impl PathDrawer<'_> {
         let mut sparse: Vec<Point> = Vec::new();
         for (index, point) in points.iter().enumerate() {
             let now = view.side.project(*point);
-            let is_far = sparse.last().is_none_or(|last| least <= libm::hypot(now[0] - last[0], now[1] - last[1]));
+            let is_far =
+                sparse.last().is_none_or(|last| least <= libm::hypot(now[0] - last[0], now[1] - last[1]));
             if is_far || index + 1 == points.len() {
                 sparse.push(now);
             }
@@ -193,10 +203,17 @@ impl PathDrawer<'_> {
 }
 
 /// Ends a polyline at its last point, with which the next one begins; one without extent is not drawn.
-fn flush(strokes: &mut Vec<Stroke>, line: &mut Vec<Point>, view: &PlacedView, pen: Pen, style: Option<Style>) {
+fn flush(
+    strokes: &mut Vec<Stroke>,
+    line: &mut Vec<Point>,
+    view: &PlacedView,
+    pen: Pen,
+    style: Option<Style>,
+) {
     let points = std::mem::take(line);
     line.extend(points.last().copied());
-    let is_point = points.iter().all(|point| libm::hypot(point[0] - points[0][0], point[1] - points[0][1]) < 1e-6);
+    let is_point =
+        points.iter().all(|point| libm::hypot(point[0] - points[0][0], point[1] - points[0][1]) < 1e-6);
     if !is_point {
         strokes.push(Stroke { style, ..Stroke::new(pen, moved(view, points)) });
     }
@@ -237,9 +254,13 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
     };
     match stock {
         Stock::Box { min, max, .. } => {
-            let corner = |ends: usize| [0, 1, 2].map(|axis| if ends >> axis & 1 == 1 { max[axis] } else { min[axis] });
+            let corner =
+                |ends: usize| [0, 1, 2].map(|axis| if ends >> axis & 1 == 1 { max[axis] } else { min[axis] });
             let edges = (0..8).flat_map(|from| (0..3).map(move |axis| (from, from | 1 << axis)));
-            edges.filter(|(from, to)| from != to).map(|(from, to)| edge(&[corner(from), corner(to)])).collect()
+            edges
+                .filter(|(from, to)| from != to)
+                .map(|(from, to)| edge(&[corner(from), corner(to)]))
+                .collect()
         }
         Stock::Cylinder { axis, diameter, from, to, .. } => {
             let (along, radius) = (axis_index(*axis), diameter / 2.0);

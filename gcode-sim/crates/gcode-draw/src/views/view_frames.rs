@@ -41,7 +41,9 @@ impl ViewBox {
             all.add([bottom(0), bottom(1), bottom(2)], radius);
         }
         match &path.stock {
-            Some(Stock::Box { min, max, .. }) => [*min, *max].into_iter().for_each(|corner| all.add(corner, 0.0)),
+            Some(Stock::Box { min, max, .. }) => {
+                [*min, *max].into_iter().for_each(|corner| all.add(corner, 0.0))
+            }
             Some(Stock::Cylinder { axis, diameter, from, to, .. }) => {
                 let (along, radius) = (axis_index(*axis), diameter / 2.0);
                 for (end, side) in [(*from, -radius), (*to, radius)] {
@@ -66,7 +68,9 @@ impl ViewBox {
 
     /// Adds a point, and the circle about it across the line of sight.
     fn add(&mut self, point: [f64; 3], radius: f64) {
-        for ((axis, mm), reach) in self.top.coordinates(point).into_iter().enumerate().zip([radius, radius, 0.0]) {
+        for ((axis, mm), reach) in
+            self.top.coordinates(point).into_iter().enumerate().zip([radius, radius, 0.0])
+        {
             self.low[axis] = self.low[axis].min(mm - reach);
             self.high[axis] = self.high[axis].max(mm + reach);
         }
@@ -94,7 +98,8 @@ impl ViewBox {
     /// Returns the corners of the box on the sheet that enclose it.
     fn extent(&self, side: Side) -> [Point; 2] {
         let ends = [false, true];
-        let corners = ends.into_iter().flat_map(|a| ends.into_iter().flat_map(move |b| ends.map(|c| [a, b, c])));
+        let corners =
+            ends.into_iter().flat_map(|a| ends.into_iter().flat_map(move |b| ends.map(|c| [a, b, c])));
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for [right, up] in corners.map(|ends| side.project(self.corner(ends))) {
             low = [low[0].min(right), low[1].min(up)];
@@ -224,7 +229,7 @@ impl Frames {
         if self.views.len() == 1 {
             return strokes;
         }
-        let at = view.moved([(left + right) / 2.0, top + 1.5 * TICK * self.extent]);
+        let at = view.moved([(left + right) / 2.0, top + 2.5 * TICK * self.extent]);
         let name = Shape::Text { at, align: Align::Centre, text: view.kind.name().to_owned() };
         strokes.push(Stroke::new(Pen::Scale, name));
         strokes
