@@ -86,14 +86,14 @@ pub use chart::{Chart, ChartMarker, Curve, Graph};
 pub use compare::{Difference, compare};
 pub use ink::Rect;
 pub use layout::lay_out;
-pub use picture::{Picture, Projection};
+pub use picture::Picture;
 pub use plot::{Bar, Plot, PlotBody};
 pub use raster::{paint, png};
 pub use scene::{
     Align, Axis, HoleStatus, Mark, Pen, Point, Scene, Shape, Sign, Stroke, Style, Tint, ZoneDeviation, arc,
 };
 pub use sheet::Sheet;
-pub use side::Side;
+pub use side::{Projection, Side};
 pub use size::Size;
 pub use svg::svg;
 pub use views::development::development;

@@ -1,6 +1,7 @@
 //! Pictures: a scene or a chart with a title block and a legend, as a view builds them.
 use super::chart::Chart;
 use super::scene::{HoleStatus, Pen, Scene, Sign, Style};
+use super::side::Projection;
 
 /// One picture of a part or program, which [`lay_out`](crate::lay_out) places on a sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -66,16 +67,6 @@ pub(super) enum Sample {
     Deviation,
     /// Line to the actual position of a hole; omitted if none is drawn.
     Displacement,
-}
-
-/// Arrangement of several views on a sheet.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Projection {
-    /// A view lies on the side that it shows: the top above the front, the right on its right.
-    #[default]
-    Third,
-    /// A view lies on the side opposite to the one it shows: the top below the front.
-    First,
 }
 
 /// Symbols that the laid-out drawing really contains, for the legend.

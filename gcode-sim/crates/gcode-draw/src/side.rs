@@ -12,6 +12,16 @@ pub struct Side {
     up: [f64; 3],
 }
 
+/// Arrangement of several views on a sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Projection {
+    /// A view lies on the side that it shows: the top above the front, the right on its right.
+    #[default]
+    Third,
+    /// A view lies on the side opposite to the one it shows: the top below the front.
+    First,
+}
+
 impl Default for Side {
     fn default() -> Self {
         Self::Y
@@ -160,7 +170,7 @@ impl Scene<3> {
 
 impl<const D: usize> Shape<D> {
     /// Maps every point of the shape.
-    fn map<const E: usize>(&self, to: impl Fn([f64; D]) -> [f64; E]) -> Shape<E> {
+    pub(crate) fn map<const E: usize>(&self, to: impl Fn([f64; D]) -> [f64; E]) -> Shape<E> {
         match self {
             Self::Line(points) => Shape::Line(points.iter().map(|point| to(*point)).collect()),
             Self::Circle { centre, radius } => Shape::Circle { centre: to(*centre), radius: *radius },

@@ -1,8 +1,8 @@
 //! Symbols as paths: status symbols that are distinct without colour, arrows, the position symbol.
 use super::ink::{DrawCommand, Ink, Px, Rgb, px};
 use super::palette;
-use super::picture::Projection;
 use super::scene::{HoleStatus, Sign};
+use super::side::Projection;
 use gcode_lang::units::Deg;
 
 /// Draws the symbol of a status, `radius` pixels large. Each differs from the others in outline and mark: ✓

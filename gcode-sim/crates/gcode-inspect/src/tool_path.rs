@@ -18,6 +18,9 @@ const ARC_TOLERANCE: f64 = 5e-4;
 /// Largest number of recorded points; later moves are counted alone.
 pub const MAX_POINTS: usize = 4_000_000;
 
+/// Largest number of feeds to a hole before the one that makes it.
+const MAX_APPROACH_FEEDS: usize = 8;
+
 /// Cosine of the largest angle between a direction and the axis of the part that it counts for: 8°.
 const MIN_COSINE: f64 = 0.99;
 
@@ -107,37 +110,47 @@ impl ToolPath {
         most(&self.supposed_axes).map(|axis| (axis, true))
     }
 
-    /// Returns true if a feed makes none of the holes of which `is_of_hole` knows the blocks by source and offset, nor
-    /// returns along the line of one that does.
+    /// Returns true if a feed makes none of the holes of which `is_of_hole` knows the blocks by source and offset, and is
+    /// not on the line of the feed into a hole before or after it.
     pub fn has_feed_off_holes(&self, is_of_hole: impl Fn(Span) -> bool) -> bool {
-        self.stretches.iter().filter(|stretch| stretch.kind == PathKind::Feed).any(|stretch| {
+        let mut line: Option<[Point3<f64>; 2]> = None;
+        let mut pending: Vec<&[[f64; 3]]> = Vec::new();
+        for stretch in self.stretches.iter().filter(|stretch| stretch.kind == PathKind::Feed) {
             let mut first = stretch.points.start;
-            let mut line: Option<[Point3<f64>; 2]> = None;
-            self.moves[stretch.moves.clone()].iter().any(|of_move| {
+            for of_move in &self.moves[stretch.moves.clone()] {
                 let last = of_move.last_point as usize;
                 let points = &self.points[first..=last];
                 first = last;
-                let block = Span { start: of_move.block_start, ..stretch.block };
-                if is_of_hole(block) {
-                    line = Some([Point3::from(points[0]), Point3::from(points[points.len() - 1])]);
-                    return false;
+                if is_of_hole(Span { start: of_move.block_start, ..stretch.block }) {
+                    let of_hole = [Point3::from(points[0]), Point3::from(points[points.len() - 1])];
+                    if !pending.drain(..).all(|points| are_on_line(points, &of_hole)) {
+                        return true;
+                    }
+                    line = Some(of_hole);
+                } else if !line.is_some_and(|line| are_on_line(points, &line)) {
+                    pending.push(points);
+                    if MAX_APPROACH_FEEDS < pending.len() {
+                        return true;
+                    }
                 }
-                !line.is_some_and(|line| points.iter().all(|point| is_on_line(&Point3::from(*point), &line)))
-            })
-        })
+            }
+        }
+        !pending.is_empty()
     }
+}
+
+/// Returns true if all points are less than 0.01 mm off the line through two others.
+fn are_on_line(points: &[[f64; 3]], [from, to]: &[Point3<f64>; 2]) -> bool {
+    let along = (to - from).try_normalize(1e-9).unwrap_or_else(Vector3::zeros);
+    points.iter().all(|point| {
+        let off = Point3::from(*point) - from;
+        (off - along * off.dot(&along)).norm() < CHORD_TOLERANCE
+    })
 }
 
 /// Returns the key with the largest count, the last of equal ones.
 fn most<K: Copy + Ord>(counts: &BTreeMap<K, u64>) -> Option<K> {
     counts.iter().max_by_key(|(_, count)| **count).map(|(key, _)| *key)
-}
-
-/// Returns true if a point is less than 0.01 mm off the line through two others.
-fn is_on_line(point: &Point3<f64>, [from, to]: &[Point3<f64>; 2]) -> bool {
-    let along = (to - from).try_normalize(1e-9).unwrap_or_else(Vector3::zeros);
-    let off = point - from;
-    (off - along * off.dot(&along)).norm() < CHORD_TOLERANCE
 }
 
 /// Calls `each` with poses of the tool on the part along a motion, from start to end; of a grinder with the points of the
@@ -402,11 +415,11 @@ mod tests {
         assert_eq!((path.tool_axis(), path.supposed_axis()), (None, Some((2, true))));
     }
 
-    /// Events 5, 6 and 7 are the feed into the hole, the feed out of it, and a feed across.
+    /// Events 4, 5 and 6 are the feed to the hole, the feed into it, and the feed out of it; event 7 is a feed across.
     #[test]
-    fn the_return_along_a_hole_belongs_to_it() {
+    fn feeds_along_a_hole_belong_to_it() {
         let script = |more: &str| {
-            EventScript::new().then(&format!("tool 1; rapid X5; rapid Z2; feed Z-9; feed Z2{more}"))
+            EventScript::new().then(&format!("tool 1; rapid X5; feed Z1; feed Z-9; feed Z2{more}"))
         };
         let is_of_hole = |block: Span| block.start == 5;
         assert!(!path(&upright(), &script("")).has_feed_off_holes(is_of_hole));

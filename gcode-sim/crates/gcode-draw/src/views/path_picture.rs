@@ -4,8 +4,9 @@ use super::path_view::{Arrangement, ColorBy, PathPlace, PathView, RunKind, Stand
 use super::top::{TopView, hole_mark};
 use super::view_frames::{Frames, PlacedView, ViewBox};
 use crate::measure::plain;
-use crate::picture::{LegendItem, Picture, Projection, Sample};
+use crate::picture::{LegendItem, Picture, Sample};
 use crate::scene::{Mark, Pen, Point, Scene, Shape, Sign, Stroke, Style, Tint};
+use crate::side::Projection;
 use nalgebra::Vector3;
 
 /// Largest number of tools or programs in the legend.
@@ -44,6 +45,10 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     for (index, placed) in frames.views.iter().enumerate() {
         if placed.kind == StandardView::Top && is_swept_drawn {
             scene.strokes.extend(drawer.swept(placed));
+        }
+        if placed.kind == StandardView::Top {
+            let outlines = view.outlines().map(|shape| shape.map(|point| placed.moved(point)));
+            scene.strokes.extend(outlines.map(|shape| Stroke::new(Pen::Outline, shape)));
         }
         scene.strokes.extend(path.stock.iter().flat_map(|stock| stock_outline(stock, placed)));
         scene.strokes.extend(frames.strokes(placed));
@@ -148,15 +153,18 @@ fn places(path: &PathView, view: &PlacedView, extent: f64, is_named: bool) -> Ve
     groups.into_iter().map(stroke).collect()
 }
 
-/// Returns the marks of the holes that face the reader; each has its label in the first view that shows it.
+/// Returns the marks of the holes: all in the top view, in others those that face the reader. Each has its label in the first view that shows it.
 fn marks(view: &TopView, placed: &PlacedView, labelled: &mut [bool]) -> Vec<Mark> {
     let towards = placed.side.towards();
     let mut marks = Vec::new();
     for (index, hole) in view.holes.iter().enumerate() {
         let Some(shown) = hole.shown() else { continue };
         let facing = Vector3::from(shown.axis).dot(&towards).abs();
-        if placed.kind == StandardView::Isometric || facing < FACING {
-            continue;
+        match placed.kind {
+            StandardView::Top => {}
+            StandardView::Isometric => continue,
+            StandardView::Front | StandardView::Right if facing < FACING => continue,
+            StandardView::Front | StandardView::Right => {}
         }
         let Some(mark) = hole_mark(hole, view) else { continue };
         let mut mark = mark.seen_from(placed.side);
@@ -219,11 +227,12 @@ fn legend(
         scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Sign { sign, .. } if sign == of))
     };
     let pale = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(0.6) };
+    let outline = if path.stock.is_some() { "stock" } else { "part outline" };
     let others = [
         (has_pen(Pen::Rapid), Sample::Pen(Pen::Rapid), "rapid"),
         (has_pen(Pen::Probe), Sample::Pen(Pen::Probe), "probing move"),
         (has_tint(Tint::Pale), Sample::Line(Pen::Feed, pale), "swept by the cutter"),
-        (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), "stock"),
+        (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), outline),
         (!path.zeros.is_empty(), Sample::Zero, "work zero"),
         (has_sign(Sign::Start), Sample::Sign(Sign::Start), "start"),
         (has_sign(Sign::End), Sample::Sign(Sign::End), "end"),

@@ -1,9 +1,8 @@
 //! Contents of a picture of a tool path.
 use std::ops::Range;
 
-use crate::picture::Projection;
 use crate::scene::Sign;
-use crate::side::Side;
+use crate::side::{Projection, Side};
 use gcode_part::Stock;
 
 /// The path of a program on the part; everything but points and runs may be unknown.

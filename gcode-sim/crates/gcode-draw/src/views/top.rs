@@ -118,11 +118,7 @@ pub fn top_view(view: &TopView) -> Picture {
     if view.side == Side::Y {
         scene.strokes.extend(circles(&view.holes));
     }
-    let outline = view.outline.map(|radius| Shape::Circle { centre: [0.0, 0.0], radius });
-    let sides = view.cylinder.into_iter().flat_map(|Cylinder { outer, length, .. }| {
-        [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
-    });
-    scene.strokes.extend(outline.into_iter().chain(sides).map(|shape| Stroke::new(Pen::Outline, shape)));
+    scene.strokes.extend(view.outlines().map(|shape| Stroke::new(Pen::Outline, shape)));
     let hidden = (!far.is_empty()).then(|| match far.len() {
         1 => "1 hole on the far side not drawn".to_owned(),
         count => format!("{count} holes on the far side not drawn"),
@@ -168,6 +164,15 @@ pub(super) fn hole_mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
 }
 
 impl TopView {
+    /// Returns the outline of the part as it is seen.
+    pub(super) fn outlines(&self) -> impl Iterator<Item = Shape> {
+        let outline = self.outline.map(|radius| Shape::Circle { centre: [0.0, 0.0], radius });
+        let sides = self.cylinder.into_iter().flat_map(|Cylinder { outer, length, .. }| {
+            [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
+        });
+        outline.into_iter().chain(sides)
+    }
+
     /// Builds the title block; `more` is its last line.
     pub(super) fn title(&self, view: String, position: Option<f64>, more: Option<String>) -> Title {
         Title {

@@ -1,9 +1,8 @@
 //! Frames of the views of a tool path: the box that they show, its place on the sheet, and scales with part coordinates.
 use super::path_view::{Arrangement, PathView, RunKind, StandardView};
 use super::top::{DrawnHole, TopView};
-use crate::picture::Projection;
 use crate::scene::{Align, Pen, Point, Shape, Stroke};
-use crate::side::Side;
+use crate::side::{Projection, Side};
 use crate::ticks::Ticks;
 use gcode_part::{Stock, StockAxis};
 
@@ -54,7 +53,11 @@ impl ViewBox {
             }
             Some(Stock::Surface { .. }) | None => {}
         }
-        if all.high[0] < all.low[0] {
+        for [right, up] in view.outlines().flat_map(|shape| shape.points()) {
+            (all.low[0], all.high[0]) = (all.low[0].min(right), all.high[0].max(right));
+            (all.low[1], all.high[1]) = (all.low[1].min(up), all.high[1].max(up));
+        }
+        if all.high[2] < all.low[2] {
             path.points.iter().for_each(|point| all.add(*point, 0.0));
         }
         let reach = ZERO_REACH * all.largest();
