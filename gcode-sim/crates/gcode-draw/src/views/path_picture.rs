@@ -226,6 +226,7 @@ fn legend(
     let has_sign = |of: Sign| {
         scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Sign { sign, .. } if sign == of))
     };
+    let has_zero = scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Zero(_)));
     let pale = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(0.6) };
     let outline = if path.stock.is_some() { "stock" } else { "part outline" };
     let others = [
@@ -233,7 +234,7 @@ fn legend(
         (has_pen(Pen::Probe), Sample::Pen(Pen::Probe), "probing move"),
         (has_tint(Tint::Pale), Sample::Line(Pen::Feed, pale), "swept by the cutter"),
         (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), outline),
-        (!path.zeros.is_empty(), Sample::Zero, "work zero"),
+        (has_zero, Sample::Zero, "work zero"),
         (has_sign(Sign::Start), Sample::Sign(Sign::Start), "start"),
         (has_sign(Sign::End), Sample::Sign(Sign::End), "end"),
         (has_sign(Sign::Stop), Sample::Sign(Sign::Stop), "stop"),
