@@ -9,7 +9,8 @@ use super::record::Record;
 use super::steps::{Step, StepKind};
 use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};
-use gcode_lang::motion::{MAX_AXES, PlanarArc, Position, StopKind};
+use gcode_inspect::tool_path::for_each_drawn_pose;
+use gcode_lang::motion::{PlanarArc, Position, StopKind};
 
 /// Largest deviation of a curved path from its chords, mm.
 const CHORD: f64 = 0.05;
@@ -104,19 +105,9 @@ fn move_points(
     to: &Position,
     arc: Option<&PlanarArc>,
 ) -> Vec<Point3<f64>> {
-    let travel = AxisMotion { from, to, arc };
-    let Some(wheel) = &machine.wheel else {
-        let mut points = Vec::new();
-        machine.for_each_pose(&travel, setup, CHORD, |pose| points.push(pose.tip));
-        return points;
-    };
-    let rotary = (0..MAX_AXES).filter(|axis| machine.axes.is_rotary(*axis));
-    let turned: f64 = rotary.map(|axis| (to[axis] - from[axis]).abs()).sum();
-    let sweep = arc.map_or(0.0, |arc| arc.sweep.0.abs());
-    // A chord of 3° is 1.4 µm off a circle of 4 mm, a burr's.
-    let chords = ((turned + sweep) / 3.0).ceil().clamp(1.0, 1000.0) as u32;
-    let at = |part: u32| travel.position(f64::from(part) / f64::from(chords));
-    (0..=chords).map(|part| machine.contact(wheel, &at(part))).collect()
+    let mut points = Vec::new();
+    for_each_drawn_pose(machine, setup, &AxisMotion { from, to, arc }, CHORD, |pose| points.push(pose.tip));
+    points
 }
 
 #[cfg(test)]

@@ -278,7 +278,10 @@ impl Slice {
                 let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
                 marks |= self.radius_marks(block, d);
                 let settings = &registers.data.settings;
-                if d != 0 && settings.assumes_radius_offsets() && self.is_tool_set(&registers.data, Register::DGeometry, d) {
+                if d != 0
+                    && settings.assumes_radius_offsets()
+                    && self.is_tool_set(&registers.data, Register::DGeometry, d)
+                {
                     marks |= self.outside(OutsideValue::DiameterOffsets, Some(0.0), block.flow, block.op);
                 }
                 self.machine.radius = marks;
