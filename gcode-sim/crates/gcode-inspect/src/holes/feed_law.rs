@@ -64,6 +64,11 @@ impl HoleExtractor<'_> {
         self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
     }
 
+    /// Returns the tool with a flat end.
+    fn flat_tool(&self) -> ToolPart {
+        ToolPart::flutes(0.0, f64::INFINITY, self.tool_radius().unwrap_or(0.0))
+    }
+
     /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be.
     pub(super) fn may_be_shifted(&self) -> bool {
         let kind = self.setup.tool.and_then(|number| self.machine.find_tool(number)?.kind);
@@ -197,10 +202,7 @@ impl HoleExtractor<'_> {
         }
         let is_plunge = is_along(axis, &(travel[1] - travel[0]));
         // Round the holes of a list the strokes along them are judged as holes.
-        if is_plunge
-            && (self.surface.is_none()
-                || self.metal.is_allowed(travel, axis, self.tool_radius().unwrap_or(0.0)))
-        {
+        if is_plunge && (self.surface.is_none() || self.metal.is_allowed(travel, axis, &self.flat_tool())) {
             return None;
         }
         match self.metal.gouge(travel, FeedPart::Tip) {
@@ -222,8 +224,7 @@ impl HoleExtractor<'_> {
     fn side_gouge(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
         self.pose.axis?;
         self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
-            let base = travel.map(|tip| tip + axis.into_inner() * part.from);
-            if !self.may_cut(part, travel, axis) || self.metal.is_allowed(&base, axis, part.radius()) {
+            if !self.may_cut(part, travel, axis) || self.metal.is_allowed(travel, axis, part) {
                 return None;
             }
             let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };

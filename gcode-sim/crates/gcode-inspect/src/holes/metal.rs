@@ -10,13 +10,13 @@ use crate::machine::{TOUCH_DEPTH, ToolPart};
 use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NearestPoint, PARALLEL_COSINE, Step, Surface, Taper};
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
-const MAX_OFFSET: f64 = 0.5;
+pub(super) const MAX_OFFSET: f64 = 0.5;
 
 /// Rounding of a point on a hole's wall, mm.
 const ROUNDING: f64 = 1e-6;
 
 /// Excess of a tool's side over a nominal hole that other checks judge, mm.
-const SIDE_SLACK: f64 = 0.1;
+pub(super) const SIDE_SLACK: f64 = 0.1;
 
 /// Height above a hole up to which the metal goes with it, mm.
 pub(super) const MAX_HEIGHT: f64 = 50.0;
@@ -38,7 +38,7 @@ pub(super) struct KnownMetal {
     /// Nominal holes with the metal round them; `None` without a reference.
     pub holes: Option<Arc<EntryPlanes>>,
     /// Pockets that feeds may mill.
-    pockets: Vec<Surface>,
+    pub pockets: Vec<Surface>,
     pub removed: RemovedMetal,
 }
 
@@ -234,57 +234,6 @@ impl KnownMetal {
         }
         self.removed.uncover(travel, true, &mut shares);
         self.deepest(travel, &shares)
-    }
-
-    /// Returns true if a cylinder about the tool's axis stays in one nominal hole, or in one pocket, while its lower end
-    /// moves between two points.
-    pub(super) fn is_allowed(&self, tips: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>, radius: f64) -> bool {
-        let height =
-            self.removed.height_of_metal(&tips[0], axis).max(self.removed.height_of_metal(&tips[1], axis));
-        let is_in_box = self.pockets.iter().any(|pocket| {
-            let Surface::Block { min, max } = pocket else { return false };
-            let across = axis.map(|part| radius * (1.0 - part * part).max(0.0).sqrt() - TOUCH_DEPTH);
-            let up = axis.into_inner() * height;
-            let (low, high) = (tips[0].inf(&tips[1]) - across, tips[0].sup(&tips[1]) + across);
-            (0..3).all(|i| {
-                let (low, high) = (low[i] + up[i].min(0.0), high[i] + up[i].max(0.0));
-                min[i] <= low && high <= max[i] + if up[i] > 0.0 { TOUCH_DEPTH } else { 0.0 }
-            })
-        });
-        is_in_box || self.hole_around(tips, axis, radius).is_some()
-    }
-
-    /// Returns the nominal hole on whose axis the tip makes a stroke.
-    pub(super) fn hole_of_stroke(
-        &self,
-        tips: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-    ) -> Option<&Collar> {
-        self.hole_around(tips, axis, 0.0)
-            .filter(|hole| tips.iter().all(|tip| hole.from_axis(tip) <= MAX_OFFSET))
-    }
-
-    /// Returns the nominal hole in which a cylinder about the tool's axis stays while its lower end moves between two points.
-    fn hole_around(
-        &self,
-        tips: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-        radius: f64,
-    ) -> Option<&Collar> {
-        let mut found = None;
-        self.around(tips, &mut |collar| {
-            let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
-            let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
-            let is_in_step = |step: &Step| {
-                let width = step.radius(deepest) + SIDE_SLACK - radius;
-                let room = if collar.has_diameter { width } else { radius };
-                aside <= room && deepest <= step.max_depth + TOUCH_DEPTH
-            };
-            if collar.is_parallel(axis) && collar.steps.iter().any(is_in_step) {
-                found = Some(collar);
-            }
-        });
-        found
     }
 
     /// Returns the tip that is fed through a nominal hole and deeper than any tool has to break through, with its depth

@@ -27,6 +27,7 @@ mod profile;
 mod rapid_paths;
 mod rapids;
 mod removed_metal;
+mod room;
 mod shares;
 pub(crate) mod spindle;
 mod strokes;
