@@ -8,7 +8,6 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Nearly the limit of the moves that `diff` compares.
 const LINES: u32 = 990_000;
 
 /// Time between two readings of a command's peak memory.
@@ -35,27 +34,52 @@ fn main() {
     {
         println!("{name}, {LINES} blocks, {} MB of text:", text.len() / 1_000_000);
         write("old.nc", &text);
-        write("new.nc", &text.replacen("X50.", "X50.1", 1));
+        write("point.nc", &text.replacen("X50.", "X50.1", 1));
+        write("feed.nc", &text.replacen("F500.", "F600.", 1));
+        write("block.nc", &text.replacen("F500.\n", "F500.\nX7. Y7.\n", 1));
         for command in [
             "check old.nc",
             "holes old.nc --machine m.toml",
             "verify old.nc --reference r.csv --machine m.toml",
-            "diff old.nc new.nc --machine m.toml",
+            "diff old.nc point.nc --machine m.toml",
+            "diff old.nc feed.nc --machine m.toml",
+            "diff old.nc block.nc --machine m.toml",
         ] {
-            let (time, peak) = measure(folder.path(), command);
-            let word = command.split(' ').next().unwrap_or_default();
-            println!("  {word:8} {:8.3} s  {peak:6} MB", time.as_secs_f64());
+            measured(folder.path(), command, text.len());
         }
     }
+    let [old, new] = [500, 600].map(|feed| surface(|index| format!(" F{}.", feed + index % 7 * 50)));
+    write("old.nc", &old);
+    write("new.nc", &new);
+    println!("lines with a feed in each:");
+    measured(folder.path(), "diff old.nc new.nc --machine m.toml", old.len());
+}
+
+/// Prints time and peak memory of a command on texts of this length.
+fn measured(folder: &Path, command: &str, length: usize) {
+    let (time, peak) = measure(folder, command);
+    let words: Vec<&str> =
+        command.split(' ').filter(|word| !word.ends_with("toml") && !word.starts_with("--")).collect();
+    let ratio = peak as f64 * 1e6 / length as f64;
+    println!(
+        "  {:20} {:8.3} s  {peak:6} MB  {ratio:4.1} times the text",
+        words.join(" "),
+        time.as_secs_f64()
+    );
 }
 
 /// Returns a surface of lines 0.1 mm apart.
 fn lines() -> String {
+    surface(|_| String::new())
+}
+
+/// Returns the same surface with words behind each line.
+fn surface(words: impl Fn(u32) -> String) -> String {
     program((0..LINES).map(|index| {
         let (row, column) = (index / 1000, index % 1000);
         let x = 0.1 * f64::from(if row % 2 == 0 { column } else { 999 - column });
         let y = 0.1 * f64::from(row);
-        format!("X{x:.3} Y{y:.3} Z{:.3}", -1.0 - 0.5 * (0.3 * x).sin() * (0.2 * y).cos())
+        format!("X{x:.3} Y{y:.3} Z{:.3}{}", -1.0 - 0.5 * (0.3 * x).sin() * (0.2 * y).cos(), words(index))
     }))
 }
 

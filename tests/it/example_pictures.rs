@@ -32,6 +32,11 @@ const PICTURES: &[(&str, &str, &str)] = &[
         "gcode-sim render O8100.nc --reference job.toml --machine machine.toml -o {}",
     ),
     (
+        "pocket",
+        "O0050.png",
+        "gcode-sim render O0050.nc --machine machine.toml --view top,front,right,iso --size 1200x900 -o {}",
+    ),
+    (
         "published-honeycomb",
         "O2013.png",
         "gcode-sim verify O2013.nc --reference job.toml --machine machine.toml --picture {}",

@@ -87,14 +87,6 @@ fn run(machine: &Machine, program: &str) -> Ran {
     run_on(program.as_bytes(), settings, 1000)
 }
 
-/// The set-up with the length offset along the tool, as it is in the machine position of a tool that has turned.
-fn length_along(machine: &Machine, setup: &Setup, at: &Position) -> Setup {
-    let axis = machine.head.direction(at, setup).unwrap();
-    let mut offset = Position::default();
-    (0..3).for_each(|k| offset[k] = axis[k] * setup.offset[2]);
-    Setup { offset, ..*setup }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
@@ -162,7 +154,7 @@ proptest! {
         arrangement in arrangement(),
         from in prop::array::uniform3(-100.0..100.0_f64),
         to in prop::array::uniform3(-100.0..100.0_f64),
-        angles in prop::array::uniform4(-120.0..120.0_f64),
+        angles in prop::array::uniform4(-179.0..179.0_f64),
         length in 10.0..250.0_f64,
     ) {
         let machine = arrangement.machine();
@@ -196,14 +188,84 @@ proptest! {
         for (kind, at) in ran.recorder.moves() {
             if let (Some(from), 'F') = (last, kind) {
                 let chord = AxisMotion { from: &from, to: at, arc: None };
-                let middle = machine.forward(&chord.position(0.5), &length_along(&machine, &setup, &chord.position(0.5)));
+                let middle = machine.forward(&chord.position(0.5), &setup);
                 prop_assert!(aside(middle.tip) < 0.001, "{}\n{program}", aside(middle.tip));
-                let tip = machine.forward(at, &length_along(&machine, &setup, at)).tip;
+                let tip = machine.forward(at, &setup).tip;
                 prop_assert!(aside(tip) < 1e-6, "{}\n{program}", aside(tip));
             }
             last = Some(*at);
         }
         let at = last.unwrap();
-        prop_assert!((machine.forward(&at, &length_along(&machine, &setup, &at)).tip - end).norm() < 1e-6);
+        prop_assert!((machine.forward(&at, &setup).tip - end).norm() < 1e-6);
+    }
+
+    #[test]
+    fn the_tip_stays_on_the_part_while_the_axes_turn_to_a_plane(
+        arrangement in arrangement(),
+        (i, j, k) in (-180.0..180.0_f64, 5.0..85.0_f64, -180.0..180.0_f64),
+        point in prop::array::uniform3(-100.0..100.0_f64),
+        length in 10.0..250.0_f64,
+    ) {
+        let machine = arrangement.machine();
+        let zero = arrangement.rotary_zero(&machine);
+        let [x, y, z] = point;
+        let program = format!(
+            "O1\n#5224={:.3}\n#5226={:.3}\n#11001={length:.3}\nG90 G21\nG43 H1 G00 X{x:.3} Y{y:.3} Z{z:.3}\n\
+             G68.2 X0 Y0 Z0 I{i:.3} J{j:.3} K{k:.3}\nG53.6\nM30\n",
+            zero[3], zero[5]
+        );
+        let ran = run(&machine, &program);
+        if matches!(ran.outcome, Outcome::Alarm(_)) {
+            return Ok(());
+        }
+        let mut offset = Position::default();
+        offset[2] = (length * 1000.0).round() / 1000.0;
+        let setup = Setup { offset, ..Setup::default() };
+        let moves: Vec<_> = ran.recorder.moves().map(|(_, at)| *at).collect();
+        let tip = machine.forward(&moves[0], &setup).tip;
+        for pair in moves.windows(2) {
+            let chord = AxisMotion { from: &pair[0], to: &pair[1], arc: None };
+            let middle = machine.forward(&chord.position(0.5), &setup).tip;
+            prop_assert!((middle - tip).norm() < 0.001, "{}\n{program}", (middle - tip).norm());
+            let end = machine.forward(&pair[1], &setup).tip;
+            prop_assert!((end - tip).norm() < 1e-6, "{}\n{program}", (end - tip).norm());
+        }
+    }
+
+    #[test]
+    fn a_plane_from_the_tool_has_the_tool_as_its_z(
+        arrangement in arrangement(),
+        angles in prop::array::uniform2(-170.0..170.0_f64),
+        plane in prop::array::uniform3(-100.0..100.0_f64),
+        point in prop::array::uniform3(-100.0..100.0_f64),
+        turn in -180.0..180.0_f64,
+        length in 10.0..250.0_f64,
+    ) {
+        let machine = arrangement.machine();
+        let zero = arrangement.rotary_zero(&machine);
+        let written = |value: f64| (value * 1000.0).round() / 1000.0;
+        let origin = machine.part_frame(&zero) * Point3::origin() + Vector3::z() * arrangement.pivot;
+        let work = origin.coords.map(written);
+        let ([px, py, pz], [x, y, z], [a, c]) = (plane.map(written), point.map(written), angles);
+        let program = format!(
+            "O1\n#5221={:.3}\n#5222={:.3}\n#5223={:.3}\n#5224={:.3}\n#5226={:.3}\n#11001={length:.3}\nG90 G21\n\
+             G00 A{a:.3} C{c:.3}\nG68.3 X{px:.3} Y{py:.3} Z{pz:.3} R{turn:.3}\nG43 H1 G00 X0 Y0 Z0\nX{x:.3} Y{y:.3} Z{z:.3}\nM30\n",
+            work.x, work.y, work.z, zero[3], zero[5]
+        );
+        let ran = run(&machine, &program);
+        prop_assert!(matches!(ran.outcome, Outcome::End), "{:?}\n{program}", ran.outcome);
+        let mut offsets = ran.recorder.0.iter().filter_map(|(_, kind, _)| match kind {
+            EventKind::ToolLength { offset, .. } => Some(*offset),
+            _ => None,
+        });
+        let setup = Setup { offset: offsets.next_back().unwrap(), ..Setup::default() };
+        let moves: Vec<_> = ran.recorder.moves().map(|(_, at)| *at).collect();
+        let [at_origin, at_point] = [moves[moves.len() - 2], moves[moves.len() - 1]].map(|at| machine.forward(&at, &setup));
+        let placed = Point3::from(Vector3::new(px, py, pz) + work) - Vector3::z() * arrangement.pivot;
+        let goal = machine.part_frame(&zero).inverse_transform_point(&placed);
+        prop_assert!((at_origin.tip - goal).norm() < 1e-6, "{} is not {goal}\n{program}", at_origin.tip);
+        let way = at_point.tip - at_origin.tip;
+        prop_assert!((way.norm() - Vector3::new(x, y, z).norm()).abs() < 1e-6);
+        prop_assert!((way.dot(&at_point.axis.unwrap()) - z).abs() < 1e-6, "{program}");
     }
 }

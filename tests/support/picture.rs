@@ -1,5 +1,6 @@
 //! Draws the view that a `case.toml` describes and compares it with `expected.png`; each channel may differ by one step.
 //!
+//! With a key `render`, the picture is what `gcode-sim render` draws with these arguments in the folder.
 //! With a `job.toml` the view is of its burr, ground by `case.nc` or by its own program; with an `old.nc`, of the holes of
 //! `new.nc` over those of `old.nc`. `says.snap` has the picture's texts. With an `other.toml` the picture is the comparison
 //! of both. A picture that differs is left in `target/pictures/`, with its differences.
@@ -15,6 +16,7 @@ use serde::Deserialize;
 use tiny_skia::{IntRect, Pixmap};
 
 use crate::changes::revision;
+use crate::programs::run_line;
 use crate::{Case, burr_picture, root};
 
 /// Largest size of an expected picture.
@@ -59,6 +61,15 @@ struct ChangedPicture {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+struct RenderedPicture {
+    size: String,
+    crop: [u32; 4],
+    /// Arguments of `gcode-sim render` besides size and output.
+    render: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct HoleCase {
     id: String,
     at: [f64; 3],
@@ -94,6 +105,9 @@ fn six() -> f64 {
 
 pub(crate) fn run(case: &Case) {
     let text = case.text("case.toml");
+    if let Ok(form) = toml::from_str::<RenderedPicture>(&text) {
+        return assert_picture(case, &cropped(&rendered(case, &form), form.crop));
+    }
     let (picture, size, crop) = if let Some(job) = case.optional("job.toml") {
         let form: BurrPicture = toml::from_str(&text).unwrap();
         (burr_picture::picture(&job, case.optional("case.nc"), &form.view), form.size, form.crop)
@@ -114,6 +128,21 @@ pub(crate) fn run(case: &Case) {
     let difference = compare(&bytes, &png(&paint(&lay_out(other, size))).unwrap(), 1).unwrap();
     case.snapshot("says", &describe(&difference));
     assert_picture(case, &cropped(&difference.png().unwrap(), crop));
+}
+
+/// Returns the picture of a program; `says.snap` has what the command prints.
+fn rendered(case: &Case, form: &RenderedPicture) -> Vec<u8> {
+    let place = tempfile::tempdir().unwrap();
+    let picture = place.path().join("case.png");
+    let RenderedPicture { size, render, .. } = form;
+    let done =
+        run_line(&format!("gcode-sim render {render} --size {size} -o {}", picture.display()), &case.dir);
+    let printed =
+        |bytes: &[u8]| String::from_utf8_lossy(bytes).replace(&picture.display().to_string(), "case.png");
+    let says =
+        format!("{}{}exit {}", printed(&done.stdout), printed(&done.stderr), done.status.code().unwrap());
+    case.snapshot("says", &says);
+    std::fs::read(&picture).unwrap()
 }
 
 /// Returns the holes of a new revision over those of the old one, on the default machine.

@@ -72,10 +72,12 @@ Examples:
   gcode-sim verify O8100.nc --reference job.toml --page review.html")]
     Verify(verify::Arguments),
 
-    /// Draw a program's holes on the part as a PNG
+    /// Draw a program's tool path and holes on the part
     #[command(after_help = "\
 Examples:
-  gcode-sim render O8100.nc -o top.png
+  gcode-sim render O1234.nc -o top.png
+  gcode-sim render O1234.nc --machine machine.toml --view top,front,iso -o views.png
+  gcode-sim render O1234.nc --view iso --color-by tool -o iso.png
   gcode-sim render O8100.nc --reference job.toml -o top.png --size 1600x1200")]
     Render(render::Arguments),
 

@@ -109,7 +109,7 @@ pub(super) struct RunConditions {
     pub(super) part: Option<PathBuf>,
 
     /// End the run at the main program's N-th M99
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) cycles: Option<u32>,
 }
 

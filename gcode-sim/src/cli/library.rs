@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::{UsageError, input};
+use super::{UsageError, input, output};
 use gcode_lang::program::Library;
 use gcode_lang::source::{Bytes, SourceId};
 use gcode_lang::syntax::{self, FileItem, ast::ProgramName};
@@ -16,6 +16,8 @@ pub struct Folders {
     programs: Option<Vec<(ProgramName, PathBuf)>>,
     /// Folders and files that could not be read, with the reasons.
     unread: BTreeSet<String>,
+    /// Printed notes.
+    noted: BTreeSet<String>,
 }
 
 impl Folders {
@@ -27,7 +29,7 @@ impl Folders {
         }
         let own = input::folder_of(program).to_owned();
         let folders = std::iter::once(own).chain(folders.iter().cloned()).collect();
-        Ok(Self { folders, programs: None, unread: BTreeSet::new() })
+        Ok(Self { folders, programs: None, unread: BTreeSet::new(), noted: BTreeSet::new() })
     }
 
     /// Returns the first file, in the order of folders and names, that satisfies `is_chosen`.
@@ -80,8 +82,15 @@ impl Folders {
             }
             self.programs = Some(found);
         }
-        let mut programs = self.programs.iter().flatten();
-        programs.find(|(name, _)| name == program).map(|(_, path)| path.clone())
+        let holders = self.programs.iter().flatten().filter(|(name, _)| name == program);
+        let holders: Vec<&PathBuf> = holders.map(|(_, path)| path).collect();
+        let first = (*holders.first()?).clone();
+        if let Some(note) = ambiguity(program, &holders)
+            && self.noted.insert(note.clone())
+        {
+            output::print_message(&format!("note: {note}\n"));
+        }
+        Some(first)
     }
 }
 
@@ -116,6 +125,14 @@ impl Library for Folders {
         let all: Vec<_> = self.unread.iter().map(String::as_str).collect();
         (!all.is_empty()).then(|| all.join("; "))
     }
+}
+
+/// Returns a note if the folder of the first file has further files with the same program.
+fn ambiguity(program: &ProgramName, holders: &[&PathBuf]) -> Option<String> {
+    let (first, rest) = holders.split_first()?;
+    let other = rest.iter().find(|other| **other != *first && other.parent() == first.parent())?;
+    let (label, first, other) = (program.label(), first.display(), other.display());
+    Some(format!("{label} is in {first} and in {other}: the first is called; a control has one of them"))
 }
 
 /// Returns true if the first line of a text is `%`, a folder line or the head of a program, `O1234(PLATE)`: other texts have the
@@ -162,6 +179,21 @@ mod tests {
         {
             assert_eq!(numbered(Path::new(name)), number, "{name}");
         }
+    }
+
+    #[test]
+    fn a_program_in_two_files_of_a_folder_is_noted() {
+        let note = |paths: &[&str]| {
+            let paths: Vec<PathBuf> = paths.iter().map(PathBuf::from).collect();
+            ambiguity(&ProgramName::Number(5), &paths.iter().collect::<Vec<_>>())
+        };
+        assert_eq!(
+            note(&["lib/a.nc", "lib/b.nc"]).unwrap(),
+            "O0005 is in lib/a.nc and in lib/b.nc: the first is called; a control has one of them"
+        );
+        assert_eq!(note(&["lib/a.nc", "lib/a.nc"]), None, "a dump has folders of its own");
+        assert_eq!(note(&["lib/a.nc", "other/b.nc"]), None, "the order of the folders decides");
+        assert_eq!(note(&[]), None);
     }
 
     #[test]

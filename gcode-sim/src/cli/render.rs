@@ -1,18 +1,21 @@
-//! `gcode-sim render`: draws the holes on the part, or a burr's flutes.
+//! `gcode-sim render`: draws the tool path and the holes on the part, or a burr's flutes.
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
+use super::library::Folders;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::pictures::RenderReport;
-use crate::report::{flute_view, top};
-use gcode_draw::{FluteView, Picture, Size, TopView};
+use crate::report::{flute_view, tool_path, top};
+use gcode_draw::{Arrangement, ColorBy, FluteView, Picture, Projection, Size, StandardView, TopView};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_inspect::verify::{Answer, Tolerances, denied_words};
-use gcode_lang::diag::Diagnostic;
-use gcode_part::{Assumption, NominalPart, Total};
-use gcode_session::{Request, Run};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_part::{Assumption, NominalPart, Reference, Stock, Total};
+use gcode_session::{Request, Run, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -34,9 +37,17 @@ pub(super) struct Arguments {
     #[command(flatten)]
     deny: DenyArguments,
 
-    /// The view [default: top, or side for a burr]
-    #[arg(long, value_enum)]
-    view: Option<View>,
+    /// The view, or several of top, front, right and iso, separated by commas [default: top, or side for a burr]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW")]
+    view: Vec<View>,
+
+    /// Arrangement of several views [default: third]
+    #[arg(long, value_enum, value_name = "ANGLE")]
+    projection: Option<ProjectionAngle>,
+
+    /// Meaning of the colours of the feeds [default: depth]
+    #[arg(long, value_enum, value_name = "WHAT")]
+    color_by: Option<ColorMeaning>,
 
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x1200")]
@@ -49,8 +60,14 @@ pub(super) struct Arguments {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum View {
-    /// Along the axis of revolution, or along a fixed spindle
+    /// Along the tool in most feeds: a plate from above, a part of revolution along its axis
     Top,
+    /// From the front, below the top view
+    Front,
+    /// From the right
+    Right,
+    /// From the front, the right and above
+    Iso,
     /// A cylinder unrolled, with its seam; needs --reference with a cylinder job
     Development,
     /// A burr from the side
@@ -61,7 +78,45 @@ enum View {
     Helix,
 }
 
+impl View {
+    fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// Returns the view of a part by its top; `None` for one that stands alone.
+    fn standard(self) -> Option<StandardView> {
+        match self {
+            Self::Top => Some(StandardView::Top),
+            Self::Front => Some(StandardView::Front),
+            Self::Right => Some(StandardView::Right),
+            Self::Iso => Some(StandardView::Isometric),
+            Self::Development | Self::Side | Self::Tip | Self::Helix => None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ProjectionAngle {
+    /// The top view above the front view, the right view on its right
+    Third,
+    /// The top view below the front view, the right view on its left
+    First,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ColorMeaning {
+    /// The coordinate along the line of sight of the top view, deeper is darker
+    Depth,
+    /// The tool
+    Tool,
+    /// The feed rate
+    Feed,
+    /// The program or macro that commands the move
+    Program,
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let views = views(&arguments.view)?;
     let (program, _) = arguments.program.completed()?;
     let (mut request, mut folders) =
         options::checked_request(&program, arguments.reference.as_deref(), Some(&arguments.output), None)?;
@@ -69,16 +124,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
     let drawn = match nominal {
+        Some(NominalPart::Flutes(_)) if arguments.color_by.is_some() || arguments.projection.is_some() => {
+            return Err(UsageError::new(
+                "--color-by and --projection are for tool paths, and the reference is a burr",
+            ));
+        }
         Some(NominalPart::Flutes(mut flutes)) => {
             flutes.surface_tolerance = tolerance.unwrap_or(flutes.surface_tolerance);
             let grind = |request: &Request| gcode_session::grind(request, &mut folders, &flutes);
             let grinding = progress::of_run(&mut request, grind)?;
             let verdict = grinding.verify(&request);
-            let view = arguments.view.unwrap_or(View::Side);
+            let view = views.first().copied().unwrap_or(View::Side);
             let picture = flute_picture(view, &flute_view::of(&name(&request), &grinding, &verdict))?;
             Drawn {
                 picture,
-                view,
+                view: view.name(),
                 verdict: Some((verdict.verdict, verdict.summary.clone())),
                 status: Some(verdict.conclusion().into()),
                 findings: verdict.diagnostics,
@@ -87,62 +147,40 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         }
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
-            let stock = request.machine.stock.clone();
-            let metal = reference.as_ref().map(|r| r.metal(stock.as_ref())).unwrap_or_default();
-            request.process_limits = reference.as_ref().map(|r| r.process_limits.clone()).unwrap_or_default();
-            let simulate = |request: &Request| gcode_session::simulate(request, &mut folders, metal.clone());
-            let simulation = progress::of_run(&mut request, simulate)?;
-            let view = arguments.view.unwrap_or(View::Top);
-            match &reference {
-                Some(reference) => {
-                    let tolerances = Tolerances::of(reference, tolerance);
-                    let verdict = simulation.verify(reference, tolerances, &request);
-                    let drawn =
-                        top::of_verdict(&name(&request), &simulation, reference, &verdict, &request.machine);
-                    Drawn {
-                        picture: hole_picture(view, &drawn)?,
-                        view,
-                        verdict: Some((verdict.verdict, verdict.summary.clone())),
-                        status: Some(verdict.conclusion().into()),
-                        findings: verdict.diagnostics,
-                        run: simulation.run,
-                    }
-                }
-                None => {
-                    let found = simulation.dependencies(&request);
-                    let assumed = found.numbered(&simulation.run);
-                    let denied = arguments.deny.errors(&assumed, Total::Holes(found.count()));
-                    let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();
-                    let drawn = top::of_holes(&name(&request), &simulation, &request.machine, &assumed);
-                    let denial = (!denied.is_empty()).then(|| denied_words(denied.len()));
-                    let faults: Vec<String> =
-                        simulation.run.stop_sentence().into_iter().chain(denial).collect();
-                    let findings: Vec<Diagnostic> = simulation.run.findings().chain(denied).collect();
-                    Drawn {
-                        picture: hole_picture(view, &drawn)?,
-                        view,
-                        verdict: (!faults.is_empty()).then(|| (Answer::Fail, faults.join("; "))),
-                        status: None,
-                        findings,
-                        run: simulation.run,
-                    }
-                }
-            }
+            of_path(arguments, &views, &mut request, &mut folders, reference.as_ref(), tolerance)?
         }
     };
     write(&drawn.picture, &arguments.size, &arguments.output)?;
-    let view = drawn.view.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
     let (verdict, summary) = drawn.verdict.unzip();
-    let report = RenderReport { picture: arguments.output.display().to_string(), view, verdict, summary };
+    let picture = arguments.output.display().to_string();
+    let report = RenderReport { picture, view: drawn.view, verdict, summary };
     output::report(&report, RenderReport::text, arguments.format)?;
     let of_findings = super::findings(&drawn.findings, &drawn.run);
     Ok(drawn.status.unwrap_or(of_findings))
 }
 
+/// Returns the views without repetitions; a view of a burr or a development stands alone.
+fn views(all: &[View]) -> Result<Vec<View>, UsageError> {
+    let mut views: Vec<View> = Vec::new();
+    for view in all {
+        if !views.contains(view) {
+            views.push(*view);
+        }
+    }
+    match views.iter().find(|view| view.standard().is_none()) {
+        Some(alone) if 1 < views.len() => Err(UsageError::new(format!(
+            "--view {} stands alone: only top, front, right and iso share a sheet",
+            alone.name()
+        ))),
+        _ => Ok(views),
+    }
+}
+
 /// A picture with the verdict that it shows.
 struct Drawn {
     picture: Picture,
-    view: View,
+    /// Names of the views, separated by commas.
+    view: String,
     /// Answer and summary; without a reference only of a run that fails.
     verdict: Option<(Answer, String)>,
     /// Exit status of the verdict; that of the findings without one.
@@ -151,18 +189,116 @@ struct Drawn {
     run: Run,
 }
 
-fn hole_picture(view: View, drawn: &TopView) -> Result<Picture, UsageError> {
-    let message = match view {
-        View::Top => return Ok(gcode_draw::top_view(drawn)),
-        View::Development => match gcode_draw::development(drawn) {
-            Some(picture) => return Ok(picture),
-            None => "--view development unrolls a cylinder: give its job with --reference",
-        },
-        View::Side | View::Tip | View::Helix => {
-            "the views side, tip and helix show a burr: give a burr job with --reference JOB.toml"
+/// Runs a program and draws its path and its holes.
+fn of_path(
+    arguments: &Arguments,
+    views: &[View],
+    request: &mut Request,
+    folders: &mut Folders,
+    reference: Option<&Reference>,
+    tolerance: Option<f64>,
+) -> Result<Drawn, UsageError> {
+    let stock = request.machine.stock.clone();
+    let metal = reference.map(|r| r.metal(stock.as_ref())).unwrap_or_default();
+    request.process_limits = reference.map(|r| r.process_limits.clone()).unwrap_or_default();
+    let machine = request.machine.clone();
+    let mut recorder = PathRecorder::new(&machine);
+    let simulate = |request: &Request| {
+        gcode_session::simulate_observed(request, folders, metal.clone(), &mut recorder, &mut ())
+    };
+    let simulation = progress::of_run(request, simulate)?;
+    let path = recorder.finish();
+    let (mut holes, verdict, status, findings) = match reference {
+        Some(reference) => {
+            let tolerances = Tolerances::of(reference, tolerance);
+            let verdict = simulation.verify(reference, tolerances, request);
+            let holes = top::of_verdict(&name(request), &simulation, reference, &verdict, &machine);
+            let status = Some(verdict.conclusion().into());
+            (holes, Some((verdict.verdict, verdict.summary.clone())), status, verdict.diagnostics)
+        }
+        None => {
+            let found = simulation.dependencies(request);
+            let assumed = found.numbered(&simulation.run);
+            let denied = arguments.deny.errors(&assumed, Total::Holes(found.count()));
+            let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();
+            let holes = top::of_holes(&name(request), &simulation, &machine, &assumed);
+            let denial = (!denied.is_empty()).then(|| denied_words(denied.len()));
+            let faults: Vec<String> = simulation.run.stop_sentence().into_iter().chain(denial).collect();
+            let findings = simulation.run.findings().chain(denied).collect();
+            (holes, (!faults.is_empty()).then(|| (Answer::Fail, faults.join("; "))), None, findings)
         }
     };
-    Err(UsageError::new(message))
+    // Warnings are about holes, which only a reference says are meant.
+    let warnings = reference.and_then(|_| tool_path::finding_line(&findings, Severity::Warning, "warning"));
+    let errors = match reference {
+        Some(_) => tool_path::finding_line(&findings, Severity::Error, "error"),
+        None => tool_path::finding_line(&simulation.extracted.findings, Severity::Error, "error"),
+    };
+    holes.lines.extend(errors.into_iter().chain(warnings));
+    let stock = reference.and_then(|reference| reference.stock.clone()).or(stock);
+    let picture = hole_picture(arguments, views, holes, path, &simulation, &machine, stock)?;
+    let names = if views.is_empty() {
+        vec![View::Top.name()]
+    } else {
+        views.iter().map(|view| view.name()).collect()
+    };
+    Ok(Drawn { picture, view: names.join(","), verdict, status, findings, run: simulation.run })
+}
+
+/// Builds the picture of a path with its holes, of the holes alone where the path shows no more, or of a development.
+fn hole_picture(
+    arguments: &Arguments,
+    views: &[View],
+    mut holes: TopView,
+    path: ToolPath,
+    simulation: &Simulation,
+    machine: &Machine,
+    stock: Option<Stock>,
+) -> Result<Picture, UsageError> {
+    match views {
+        [View::Development] => {
+            let missing = "--view development unrolls a cylinder: give its job with --reference";
+            return gcode_draw::development(&holes).ok_or_else(|| UsageError::new(missing));
+        }
+        [View::Side | View::Tip | View::Helix] => {
+            return Err(UsageError::new(
+                "the views side, tip and helix show a burr: give a burr job with --reference JOB.toml",
+            ));
+        }
+        _ => {}
+    }
+    let is_asked =
+        arguments.color_by.is_some() || arguments.projection.is_some() || !matches!(views, [] | [View::Top]);
+    // A run that stops is drawn without a path too: its alarm is in the title block.
+    let is_empty = !tool_path::is_drawable(&path, &holes);
+    if is_empty && simulation.run.stop_finding().is_none() {
+        return Err(UsageError::new("nothing to draw: the program makes no move between known positions"));
+    }
+    if is_empty || !is_asked && !tool_path::shows_more(&path, simulation) {
+        return Ok(gcode_draw::top_view(&holes));
+    }
+    let top = match holes.outline.is_some() || holes.cylinder.is_some() {
+        true => holes.side,
+        false => tool_path::top_side(&path, &simulation.hole_list().holes, machine, holes.side),
+    };
+    holes.side = top;
+    let standard: Vec<StandardView> = views.iter().filter_map(|view| view.standard()).collect();
+    let arrangement = Arrangement {
+        top,
+        views: if standard.is_empty() { vec![StandardView::Top] } else { standard },
+        projection: match arguments.projection {
+            Some(ProjectionAngle::First) => Projection::First,
+            Some(ProjectionAngle::Third) | None => Projection::Third,
+        },
+        color_by: match arguments.color_by {
+            Some(ColorMeaning::Tool) => ColorBy::Tool,
+            Some(ColorMeaning::Feed) => ColorBy::Feed,
+            Some(ColorMeaning::Program) => ColorBy::Program,
+            Some(ColorMeaning::Depth) | None => ColorBy::Depth,
+        },
+    };
+    let path = tool_path::of_path(path, simulation, machine, stock);
+    Ok(gcode_draw::path_picture(&holes, &path, &arrangement))
 }
 
 fn flute_picture(view: View, drawn: &FluteView) -> Result<Picture, UsageError> {
@@ -170,7 +306,7 @@ fn flute_picture(view: View, drawn: &FluteView) -> Result<Picture, UsageError> {
         View::Side => Ok(gcode_draw::side_view(drawn)),
         View::Tip => Ok(gcode_draw::tip_view(drawn)),
         View::Helix => Ok(gcode_draw::helix_graph(drawn)),
-        View::Top | View::Development => {
+        View::Top | View::Front | View::Right | View::Iso | View::Development => {
             Err(UsageError::new("this view shows holes; a burr has the views side, tip and helix"))
         }
     }

@@ -19,5 +19,6 @@ pub(crate) mod run;
 pub(crate) mod sarif;
 pub(crate) mod settings;
 pub(crate) mod test_report;
+pub(crate) mod tool_path;
 pub mod top;
 pub mod verdict_table;

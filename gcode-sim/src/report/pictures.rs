@@ -10,7 +10,7 @@ use gcode_inspect::verify::Answer;
 pub(crate) struct RenderReport {
     /// The picture's file.
     pub(crate) picture: String,
-    /// Name of the view.
+    /// Names of the views, separated by commas.
     pub(crate) view: String,
     /// The answer of the verdict; without a reference `fail` for a run that fails, else null.
     pub(crate) verdict: Option<Answer>,

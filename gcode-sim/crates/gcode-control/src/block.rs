@@ -337,6 +337,12 @@ impl Control {
                 locate(self.resolve_call(call, library), at)?;
             }
             BlockFlow::Return { number, target } => *target = locate(self.find_return(*number), span)?,
+            BlockFlow::Jump { number, target } => {
+                let frame = &self.executor.flow.frame;
+                let found = self.memory.get(frame.program).find_number(*number, frame.next);
+                let missing = Alarm::SequenceNumberNotFound { number: *number };
+                *target = locate(found.ok_or(missing), span)?;
+            }
             BlockFlow::Next if self.plan.commands_axes => {
                 locate(self.executor.check_call_after_move(), span)?;
             }
@@ -362,6 +368,12 @@ impl Control {
                 if !self.executor.registers.block_effects.is_run_ended() {
                     self.loop_detector.record_jump(&mut self.executor);
                 }
+            }
+            BlockFlow::Jump { number, target } => {
+                let program = self.memory.get(self.executor.flow.frame.program);
+                self.executor.note_ambiguous_jump(program, number, target);
+                self.executor.flow.frame.jump(target);
+                self.loop_detector.record_jump(&mut self.executor);
             }
             BlockFlow::CancelModal => self.executor.cancel_modal(),
             BlockFlow::End => {

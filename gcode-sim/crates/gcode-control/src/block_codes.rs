@@ -14,12 +14,17 @@ use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
-use gcode_lang::program::modes::{CutterSide, Distance, Polar, Rotation, Scaling, StrokeCheck};
+use gcode_lang::program::modes::{
+    CutterSide, Distance, DynamicOffset, Polar, Rotation, Scaling, StrokeCheck,
+};
 use gcode_lang::units::Rpm;
 
 /// Variable of output 0 of a Haas, and the number of the last output.
 const FIRST_OUTPUT: u32 = 12_000;
 const LAST_OUTPUT: u32 = 255;
+
+/// Variable of input 0 of a Haas.
+const FIRST_INPUT: u32 = 11_000;
 
 fn is_skip(effect: Effect) -> bool {
     effect == Effect::OneShot(OneShot::Skip)
@@ -50,6 +55,12 @@ impl Planner<'_> {
         self.check_modes(&before, state)?;
         let length_before = state.length_offset;
         self.update_coordinates(&before, state);
+        let starts_dynamic = state.modal.dynamic != before.dynamic
+            && match state.modal.dynamic {
+                DynamicOffset::Off => false,
+                DynamicOffset::On => self.data.settings.kinematics.is_none(),
+                DynamicOffset::Fixture | DynamicOffset::SettingError => true,
+            };
         if state.modal.cycle.is_some() && !is_cycle_active {
             self.begin_cycle(state)?;
         }
@@ -59,6 +70,9 @@ impl Planner<'_> {
             && state.modal.cycle.is_none()
             && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
         self.push_turned_length(plan, length_before);
+        if starts_dynamic {
+            self.lose_position(plan, plan.state.modal.dynamic.code(), false);
+        }
         Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
     }
 
@@ -84,6 +98,12 @@ impl Planner<'_> {
                 return Err(self.not_simulated(format!("G{} ({})", spelled(row.code), row.description)));
             }
             uses.add(state.modal.apply(row.effect));
+            if let Effect::UnstatedOffset(offset) = row.effect {
+                state.modal.dynamic = match self.words.count(b'P')?.unwrap_or(1) {
+                    0 => DynamicOffset::Off,
+                    _ => offset,
+                };
+            }
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
                 state.is_tapping_rigid = false;
@@ -158,14 +178,16 @@ impl Planner<'_> {
             state.end_alignment();
             (state.transform.tilt, state.transform.plane_entry) = (None, None);
         }
-        if state.transform.scaling.is_none() && state.transform.rotation.is_none() {
+        let is_centred = state.transform.scaling.is_some() || state.transform.rotation.is_some();
+        if !is_centred && !state.is_turned() && modal.dynamic == DynamicOffset::Off {
             state.transform.unknown_centre = 0;
         }
         if modal.polar == Polar::On && before.polar == Polar::Off {
             state.polar = PolarPoint::default();
         }
-        if modal.work != before.work {
+        if modal.work != before.work || modal.dynamic != before.dynamic {
             state.end_before_transform = None;
+            self.realign(state);
             self.data.recompute_position(state);
         } else if state.transform != self.registers.state.transform {
             self.data.apply_transform_change(state);
@@ -333,6 +355,8 @@ impl Planner<'_> {
                     let value = Value::Number(f64::from(u8::from(is_on)));
                     plan.writes.push(TableWrite::Variable { number: FIRST_OUTPUT + number, value });
                 }
+                MCodeEffect::JumpByInput => self.plan_jump_by_input(plan)?,
+                MCodeEffect::OperatorInput => self.plan_operator_input(plan)?,
                 MCodeEffect::SkipAlarm(_) if self.words.has_non_motion_code(is_skip) => {}
                 MCodeEffect::InterruptOn => {
                     self.words.mark_read(Letters::of(b"P"));
@@ -349,6 +373,30 @@ impl Planner<'_> {
         if self.words.has(b'S') && plan.state.spindle != SpindleDirection::Off && !changes_spindle() {
             self.set_spindle(plan, plan.state.spindle, Rpm(plan.state.modal_words.s));
         }
+        Ok(())
+    }
+
+    /// M96 P Q of a Haas.
+    fn plan_jump_by_input(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let missing = |letter| Alarm::MissingWord { code: "M96", letter }.located_at(self.block);
+        let number = self.words.count(b'P')?.ok_or_else(|| missing('P'))?;
+        let input = self.words.count(b'Q')?.ok_or_else(|| missing('Q'))?;
+        if input > LAST_OUTPUT {
+            return Err(self.not_simulated("M96 without Q0 to Q255"));
+        }
+        if self.registers.machine_value(FIRST_INPUT + input, None) == 0.0 {
+            plan.flow = BlockFlow::Jump { number, target: 0 };
+        }
+        Ok(())
+    }
+
+    /// M109 P of a Haas: the code of the key that the operator presses, as stated for the variable.
+    fn plan_operator_input(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let number = self.words.count(b'P')?;
+        let allowed = number.filter(|number| matches!(number, 500..=599 | 10_500..=10_599));
+        let number = allowed.ok_or_else(|| self.not_simulated("M109 without P500 to P599"))?;
+        let value = Value::Number(self.registers.machine_value(number, None));
+        plan.writes.push(TableWrite::Variable { number, value });
         Ok(())
     }
 

@@ -213,17 +213,18 @@ impl Executor {
 impl Control {
     /// Returns the operation that M99 P jumps to, before anything of its block has happened; `None` without a jump.
     pub(super) fn find_return(&self, number: Option<u32>) -> Result<Option<OpIndex>, Alarm> {
-        let Some(number) = number.filter(|_| !self.is_last_cycle()) else { return Ok(None) };
+        let Some(number) = number.filter(|_| !self.is_last_cycle(true)) else { return Ok(None) };
         let program = self.memory.get(self.return_frame().program);
         let found = program.find_number(number, 0);
         found.map(Some).ok_or(Alarm::SequenceNumberNotFound { number })
     }
 
-    /// Returns true if M99 of the main program ends the run.
-    fn is_last_cycle(&self) -> bool {
+    /// Returns true if M99 of the main program ends the run; without a number of cycles, one that jumps nowhere.
+    fn is_last_cycle(&self, jumps: bool) -> bool {
         let Executor { registers, flow, .. } = &self.executor;
         let cycles = registers.data.settings.main_program_cycles;
-        flow.frame.kind == FrameKind::Main && cycles.is_some_and(|cycles| flow.main_passes + 1 >= cycles)
+        let is_last = cycles.map_or(!jumps, |cycles| flow.main_passes + 1 >= cycles);
+        flow.frame.kind == FrameKind::Main && is_last
     }
 
     /// Returns the frame in which the run continues after M99.
@@ -238,11 +239,14 @@ impl Control {
     /// any.
     pub(super) fn return_to(&mut self, to: Option<(u32, OpIndex)>) -> Option<RunEnd> {
         let is_main = self.executor.flow.frame.kind == FrameKind::Main;
-        let ends_run = self.is_last_cycle();
+        let ends_run = self.is_last_cycle(to.is_some());
         if is_main {
             self.executor.flow.main_passes += 1;
         }
         if ends_run {
+            if self.executor.registers.data.settings.main_program_cycles.is_none() {
+                self.executor.log.note(Note::MainRepeats, self.executor.flow.block);
+            }
             return Some(RunEnd::ProgramEnd);
         }
         let Some((number, target)) = to else {

@@ -137,7 +137,7 @@ impl Planner<'_> {
     pub(super) fn check_flow_of_triggering_block(&self, flow: &BlockFlow) -> ExecResult<()> {
         let what = match flow {
             _ if self.flow.triggered_call().is_none() => return Ok(()),
-            BlockFlow::Next | BlockFlow::Return { .. } => return Ok(()),
+            BlockFlow::Next | BlockFlow::Return { .. } | BlockFlow::Jump { .. } => return Ok(()),
             BlockFlow::Call(_) => "a modal macro call after a block that both moves and calls",
             BlockFlow::CancelModal => "a modal macro call after a block that moves and has G67",
             BlockFlow::End => "a modal macro call after a block that moves and ends the program",

@@ -186,7 +186,7 @@ impl ControlData {
     pub(super) fn length_offset(&self, state: &State) -> Result<Position, Alarm> {
         let mut offset = Position::default();
         let sign = match state.modal.length {
-            Length::Plus | Length::TipByAngles | Length::TipByVector => 1.0,
+            Length::Plus | Length::TipByAngles | Length::TipByVector | Length::TipOfHaas => 1.0,
             Length::Minus => -1.0,
             Length::Off => return Ok(offset),
         };

@@ -72,7 +72,7 @@ impl CyclePlan {
     ) {
         let state = &self.start_state;
         let initial = state.cycle.initial;
-        let is_rigid = state.is_tapping_rigid || data.settings.taps_rigidly;
+        let is_rigid = state.is_tapping_rigid || data.settings.taps_rigidly || self.cycle.is_rigid;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
         let speed = Rpm(state.modal_words.s);
         let spindle = |direction| EventKind::Spindle { direction, speed, is_rigid };

@@ -7,7 +7,9 @@ use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::{CycleLevel, PeckSchedule, State};
 use gcode_lang::alarm::Alarm;
+use gcode_lang::control::Dialect;
 use gcode_lang::motion::{AxisIndex, Position};
+use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::g_codes::HolePattern;
 use gcode_lang::program::modes::{Distance, Plane, Polar, ReturnTo};
@@ -238,6 +240,10 @@ impl Planner<'_> {
         }
         if let Some(value) = self.dimension(self.data.axis_letter(axis), state)? {
             data.z = CycleLevel { value, is_incremental: incremental, is_commanded: true };
+        }
+        // J of a Haas: a faster retract.
+        if self.data.settings.codes == Dialect::HaasNgc && state.modal.cycle.is_some_and(Cycle::taps) {
+            self.words.mark_read(Letters::of(b"J"));
         }
         if let Some(value) = self.dimension(b'Q', state)? {
             data.q = Some(value.abs());

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use super::functions::integer;
 use super::state::State;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::{ParameterError, ParameterId, Settings};
+use gcode_lang::control::{OffsetMemory, ParameterError, ParameterId, Settings};
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::Words;
 use gcode_lang::program::modes::WorkSystem;
@@ -116,21 +116,31 @@ impl ControlData {
         work[0][axis] + work[system][axis] + state.g52_shift[axis] + state.g92_shift[axis]
     }
 
-    /// Returns the table that a register number or variable addresses: series 15 offsets swap geometry and wear.
+    /// Returns the table that a variable addresses: series 15 offsets swap geometry and wear.
     pub(super) fn register(&self, register: Register) -> Register {
-        match (self.settings.series_15_offsets, register) {
+        self.table(match (self.settings.series_15_offsets, register) {
             (false, same) => same,
             (true, Register::HGeometry) => Register::HWear,
             (true, Register::HWear) => Register::HGeometry,
             (true, Register::DGeometry) => Register::DWear,
             (true, Register::DWear) => Register::DGeometry,
+        })
+    }
+
+    /// Returns the table of a register in the memory: A and B have one for H and D, A none for wear.
+    pub(super) fn table(&self, register: Register) -> Register {
+        match (self.settings.offset_memory, register) {
+            (OffsetMemory::C, same) => same,
+            (OffsetMemory::B, Register::HWear | Register::DWear) => Register::HWear,
+            (OffsetMemory::A | OffsetMemory::B, _) => Register::HGeometry,
         }
     }
 
     /// Returns the radius of a D number, geometry and wear, half of it with ODI; `None` if the table lacks the number.
     pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
-        let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
-        let sum = geometry + self.offsets.tool(Register::DWear, d).ok()?;
+        let geometry = self.offsets.tool(self.table(Register::DGeometry), d).ok()?;
+        let wear = self.offsets.tool(self.table(Register::DWear), d).ok()?;
+        let sum = if self.settings.offset_memory == OffsetMemory::A { geometry } else { geometry + wear };
         Some(if self.settings.has_diameter_offsets() { sum / 2.0 } else { sum })
     }
 

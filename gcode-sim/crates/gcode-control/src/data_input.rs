@@ -7,7 +7,7 @@ use super::planner::Planner;
 use super::variables::{Value, VariableClass};
 use super::words::WordNumber;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
-use gcode_lang::control::{ParameterError, ParameterId, Settings, is_without_effect};
+use gcode_lang::control::{OffsetMemory, ParameterError, ParameterId, Settings, is_without_effect};
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{Distance, WorkSystem};
 
@@ -70,7 +70,16 @@ impl Planner<'_> {
 
     /// L1 and L10 to L13: tool offsets.
     fn plan_tool_offset(&self, l: u32, number: u32, plan: &mut BlockPlan) -> ExecResult<()> {
-        let register = Register::of_data_input(l);
+        let memory = self.data.settings.offset_memory;
+        let is_known = match l {
+            10 => memory != OffsetMemory::A,
+            12 | 13 => memory == OffsetMemory::C,
+            _ => true,
+        };
+        if !is_known {
+            return Err(self.format_alarm(&format!("L{l} is not available in this tool offset memory")));
+        }
+        let register = self.data.table(Register::of_data_input(l));
         let old = self.locate(self.data.offsets.tool(register, number))?;
         if number == 0 {
             return Err(Alarm::OffsetNumber { number: 0 }.located_at(self.block));

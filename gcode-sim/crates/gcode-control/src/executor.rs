@@ -76,12 +76,13 @@ impl Executor {
         for (kind, seconds) in &plan.events {
             self.emit(kind, *seconds, sink);
         }
+        // The first positioning of a cycle sends the M codes of its block.
+        for (kind, seconds) in &plan.events_after_motion {
+            self.emit(kind, *seconds, sink);
+        }
         if let Some(cycle_plan) = plan.cycle_plan.take() {
             self.log.has_drilled = true;
             self.emit_cycle(&cycle_plan, sink);
-        }
-        for (kind, seconds) in &plan.events_after_motion {
-            self.emit(kind, *seconds, sink);
         }
         let Registers { data, variables, panel, .. } = &mut self.registers;
         for write in &plan.writes {

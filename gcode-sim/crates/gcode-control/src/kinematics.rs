@@ -47,7 +47,7 @@ pub(super) fn sine_cosine(angle: f64) -> (f64, f64) {
 pub(super) struct Matrix(pub(super) [Vector; 3]);
 
 impl Matrix {
-    const IDENTITY: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    pub(super) const IDENTITY: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
 
     /// Returns the right-handed rotation by an angle in degrees about a direction of length 1 (Rodrigues).
     pub(super) fn about(direction: Vector, angle: f64) -> Self {
@@ -127,7 +127,7 @@ pub(super) struct Alignment {
     /// Rotation of the tool from the head's position 0.
     pub(super) tool: Matrix,
     /// Positions of all axes when the rotary axes took their angles.
-    at: Position,
+    pub(super) at: Position,
 }
 
 impl Alignment {
@@ -147,9 +147,19 @@ impl Alignment {
         Self { frame, tool: head.rotation, at: *at }
     }
 
-    /// Returns true if the rotary axes are at the angles of the alignment.
-    pub(super) fn holds_at(&self, kinematics: &Kinematics, at: &Position) -> bool {
-        kinematics.axes().all(|axis| at[axis.axis] == self.at[axis.axis])
+    /// Returns the alignment that turns a plane level about its origin, in machine coordinates, as a table does; for a machine that
+    /// nothing describes.
+    pub(super) fn level(plane: &Matrix, origin: Vector) -> Self {
+        let rotation = plane.transposed();
+        let shift = sum(origin, scaled(rotation.apply(origin), -1.0));
+        Self { frame: Frame { rotation, shift }, tool: Matrix::IDENTITY, at: Position::default() }
+    }
+
+    /// Returns the alignment of a table that doesn't turn with its axes.
+    pub(super) fn of_head(kinematics: &Kinematics, at: &Position) -> Self {
+        let table = Vec::new();
+        let head = Kinematics { table, head: kinematics.head.clone(), ..*kinematics };
+        Self::new(&head, at, at)
     }
 }
 

@@ -78,6 +78,7 @@ mod calls;
 mod circle_pocket;
 mod cycles;
 mod data_input;
+mod engraving;
 mod lookahead_request;
 mod move_repeats;
 mod moves;
@@ -86,6 +87,7 @@ mod plane_codes;
 mod plane_moves;
 mod probing;
 mod tip_control;
+mod tool_axis;
 mod transform_codes;
 
 mod executor;

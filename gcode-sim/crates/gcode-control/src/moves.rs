@@ -43,7 +43,15 @@ impl Planner<'_> {
             plan.push_event(EventKind::ToolLength { offset, compensation: by });
         }
         plan.state.length_offset = offset;
-        if plan.state.controls_tip() || self.registers.state.controls_tip() {
+        let (before, now) = (self.registers.state.controls_tip(), plan.state.controls_tip());
+        if before && !now && plan.state.transform.is_identity() {
+            plan.state.transform.unknown_centre = 0;
+        }
+        if now && self.data.settings.kinematics.is_none() {
+            let code = plan.state.modal.length.code();
+            self.lose_position(plan, code, false);
+        }
+        if before || now {
             // The tool stays: tool centre point control starts and ends without a move.
             self.data.recompute_position(&mut plan.state);
             return Ok(false);
@@ -169,7 +177,7 @@ impl Planner<'_> {
             endpoint.machine[axis] = rolled_machine[axis];
         }
         if !state.transform.is_identity() {
-            self.check_plane(state, &endpoint.machine)?;
+            self.check_plane(state)?;
         }
         if endpoint.machine.0.iter().any(|at| at.abs() > basis.max_coordinate) {
             self.check_coordinate_range(&endpoint.machine, basis.max_coordinate)?;
@@ -177,18 +185,13 @@ impl Planner<'_> {
         Ok(endpoint)
     }
 
-    /// Raises the alarm of a move while a plane is incomplete, or off the angles of the rotary axes that G53.1 has set.
-    fn check_plane(&self, state: &State, end: &Position) -> ExecResult<()> {
+    /// Raises the alarm of a move while a plane is incomplete.
+    fn check_plane(&self, state: &State) -> ExecResult<()> {
         if state.transform.plane_entry.is_some() {
             let what = "a move before the last block of a plane by points or vectors";
             return Err(Alarm::PlaneFormat(what).located_at(self.block));
         }
-        match (state.alignment(), &self.data.settings.kinematics) {
-            (Some((_, alignment)), Some(kinematics)) if !alignment.holds_at(kinematics, end) => {
-                Err(self.not_simulated("a rotary axis off its angle in a plane that G53.1 has set"))
-            }
-            _ => Ok(()),
-        }
+        Ok(())
     }
 
     /// Notes an axis that the block doesn't name, if a change of the transform has changed its coordinate.

@@ -241,6 +241,8 @@ impl Registers {
                     }
                     Some(MCodeEffect::Orient) => unsimulated.m_codes.push(text(Letters::of(b"PR"))),
                     Some(MCodeEffect::Output { .. }) => unsimulated.m_codes.push(text(Letters::of(b"P"))),
+                    Some(MCodeEffect::JumpByInput) => unsimulated.m_codes.push(text(Letters::of(b"PQ"))),
+                    Some(MCodeEffect::OperatorInput) => unsimulated.m_codes.push(text(Letters::of(b"P"))),
                     Some(MCodeEffect::SkipAlarm(_)) => unsimulated.m_codes.push(text(Letters::NONE)),
                     Some(MCodeEffect::End) => unsimulated.end_code = Some(code),
                     Some(

@@ -1,7 +1,7 @@
 //! Notes: things that a control does without an alarm and a programmer rarely means; one finding per kind, at its first
 //! block.
 use gcode_lang::diag::FindingKind;
-use gcode_lang::program::g_codes::spelled;
+use gcode_lang::program::g_codes::{name, spelled};
 
 gcode_lang::finding_kinds! {
     "../../../../docs/explain/";
@@ -15,6 +15,7 @@ gcode_lang::finding_kinds! {
     DOUBLED_NUMBER = "doubled-number", Warning, "a jump to one of several N";
     DRILL_PLANE = "drill-plane", Warning, "a cycle drills along Z while another plane is active";
     END_BEFORE_SWITCH = "end-before-switch", Warning, "a position read after a change of coordinates";
+    ENGRAVED_TEXT = "engraved-text", Warning, "the strokes of engraved text are unknown";
     G53_IGNORED = "g53-ignored", Warning, "G53 in G91 moves nothing";
     INTO_LOOP = "into-loop", Warning, "a jump into a loop";
     LARGE_ALARM_NUMBER = "large-alarm-number", Warning, "the number of #3000 exceeds its range";
@@ -24,10 +25,12 @@ gcode_lang::finding_kinds! {
     LOWER_CASE = "lower-case", Note, "lower-case letters are read as capitals";
     M_CODE_LOST = "m-code-lost", Warning, "only the last M code of a block counts";
     MACHINE_VALUE = "machine-value", Warning, "a value of the machine that nothing states";
+    MAIN_REPEATS = "main-repeats", Error, "the main program ends with M99";
     MIRROR_ENDED = "mirror-ended", Note, "G50.1 without an axis";
     NO_ANGLE = "no-angle", Warning, "G68 without R";
     NO_AXIS = "no-axis", Warning, "a code without an axis";
     NO_INTERRUPT = "no-interrupt", Warning, "the macro of M96 is never called";
+    NO_KINEMATICS = "no-kinematics", Warning, "rotary axes that the machine file does not describe";
     NO_PASS = "no-pass", Warning, "a call with L0";
     NO_REPEATS = "no-repeats", Note, "K0 stores a cycle and drills nothing";
     NO_SIGNAL = "no-signal", Warning, "G31 goes to its end";
@@ -109,6 +112,17 @@ pub enum Note {
         /// Number behind its point.
         item: Option<u32>,
     },
+    /// G47 of a Haas runs as one cut below its text: number of characters, and their height in mm.
+    Engraving {
+        /// Number of characters.
+        characters: u32,
+        /// Height × 1000, mm.
+        height: u32,
+    },
+    /// M99 of the main program ends the run, where a control starts again.
+    MainRepeats,
+    /// A code × 10 depends on the kinematics of the machine, which nothing states.
+    NoKinematics(u32),
     /// A comment extends to the end of its block.
     UnclosedComment,
     /// A block, or the rest of one, after `/`, which depends on a switch of block skip.
@@ -163,6 +177,10 @@ impl Note {
             Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
             Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as 0: nothing states its value on the machine"), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
+            Self::Engraving { characters, height } => (&ENGRAVED_TEXT, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),
+            Self::MainRepeats => (&MAIN_REPEATS, "M99 ends the main program: a control starts it again for ever, the run ends after the first pass".into(), "end it with M30, or state the passes with --cycles 1"),
+            Self::NoKinematics(code @ (542 | 544)) => (&NO_KINEMATICS, format!("the offsets of {} are taken as 0: nothing states them, and where X, Y and Z are on the part is unknown", name(code)), "write the offset into a work offset, or end it with P0"),
+            Self::NoKinematics(code) => (&NO_KINEMATICS, format!("{} without the rotary axes of the machine: X, Y and Z go on as if a table had turned the part, and where they and the rotary axes are on the machine is unknown", name(code)), "describe [[table]] or [[head.axis]], and [head], in the machine file"),
             Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),
             Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
             Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),

@@ -69,7 +69,11 @@ impl Planner<'_> {
     fn execute_one_shot(&self, one: OneShot, plan: &mut BlockPlan) -> ExecResult<()> {
         let is_on_path = matches!(
             one,
-            OneShot::Skip | OneShot::SingleDirection | OneShot::CirclePocket(_) | OneShot::BoltHoles(_)
+            OneShot::Skip
+                | OneShot::SingleDirection
+                | OneShot::CirclePocket(_)
+                | OneShot::BoltHoles(_)
+                | OneShot::Engraving
         );
         if is_on_path && plan.state.controls_tip() {
             return Err(self.not_simulated("G31 or G60 in tool centre point control"));
@@ -119,10 +123,11 @@ impl Planner<'_> {
             OneShot::SingleDirection if cycle => Err(self.not_simulated("G60 (in a canned cycle)")),
             OneShot::SingleDirection => self.plan_single_direction(plan),
             OneShot::ToolOffset(factor) => self.plan_tool_offset_move(f64::from(factor), plan),
+            OneShot::Engraving => self.plan_engraving(plan),
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
             OneShot::MachineCoordinateSystem => self.plan_machine_move(plan),
-            OneShot::ToolAxis => self.plan_tool_axis(plan),
+            OneShot::ToolAxis { keeps_tip } => self.plan_tool_axis(keeps_tip, plan),
             OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),
             OneShot::CornerArc => Err(self.not_simulated("G39 without cutter compensation")),
         }
@@ -139,6 +144,7 @@ impl Planner<'_> {
                 shift(&mut plan.state, axis, value);
             }
         }
+        self.realign(&mut plan.state);
         self.data.recompute_position(&mut plan.state);
         Ok(())
     }

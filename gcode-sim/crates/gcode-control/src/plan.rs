@@ -100,6 +100,11 @@ pub(super) enum BlockFlow {
         number: Option<u32>,
         target: Option<OpIndex>,
     },
+    /// M96 of a Haas: to a sequence number and, once resolved, its operation.
+    Jump {
+        number: u32,
+        target: OpIndex,
+    },
     /// G67.
     CancelModal,
     End,

@@ -16,6 +16,8 @@ pub(super) struct Tilt {
     pub(super) plane: Plane,
     /// Part and tool after G53.1; `None` before it.
     pub(super) alignment: Option<Alignment>,
+    /// The plane of a second G68 with I J K.
+    pub(super) is_nested: bool,
 }
 
 /// Origin of a plane, and its axes as the columns of a rotation.
@@ -91,6 +93,22 @@ impl Plane {
         let z = unit_vector(cross(x, Matrix::about(X, j).apply(Y)))?;
         let matrix = Matrix::from_columns([x, cross(z, x), z]);
         Some(Self { origin, matrix: matrix.after(&Matrix::about(Z, k)) })
+    }
+
+    /// G68.3: Z along the tool, X square to it and to the vertical direction, then all turn by an angle about Z. Where both are
+    /// parallel, X is the axis after the vertical one: Y after X, Z after Y, X after Z.
+    pub(super) fn along_tool(origin: Vector, tool: Vector, vertical: Vector, angle: f64) -> Self {
+        let [x, y, z] = vertical.map(f64::abs);
+        let next = if x > y && x > z {
+            Y
+        } else if y > z {
+            Z
+        } else {
+            X
+        };
+        let x = unit_vector(cross(vertical, tool)).unwrap_or(next);
+        let matrix = Matrix::from_columns([x, cross(tool, x), tool]);
+        Self { origin, matrix: matrix.after(&Matrix::about(Z, angle)) }
     }
 
     /// Returns the plane whose numbers count in `base`.

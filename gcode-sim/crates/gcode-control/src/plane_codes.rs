@@ -1,15 +1,14 @@
-//! G68.2 and G68.4: a tilted plane. G53.1: the rotary axes point the tool along its Z.
+//! Tilted planes: G68.2, G68.4 and G68.3, G268 of a Haas, and G68 about a direction in space.
 use super::functions::ExecResult;
-use super::kinematics::{Alignment, Vector, choosing_axis, pointing_positions};
+use super::kinematics::{Alignment, Matrix, Vector, unit_vector};
 use super::plan::BlockPlan;
 use super::plane::{Plane, PlaneEntry, Tilt};
 use super::planner::Planner;
 use super::state::State;
-use std::cmp::Ordering;
 
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
-use gcode_lang::control::Kinematics;
 use gcode_lang::motion::{AxisIndex, EventKind, Position};
+use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Rotation;
 
 impl State {
@@ -35,63 +34,197 @@ impl State {
 }
 
 impl Planner<'_> {
-    /// G68.2, and G68.4 within the plane that is active: the forms P0 to P4.
+    /// G68.2, and G68.4 within the plane that is active: the forms P0 to P4. G268 of a Haas, and G68.3 along the tool.
     pub(super) fn plan_tilt(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         if plan.state.controls_tip() {
-            return Err(self.not_simulated("G68.2 in tool centre point control (command G49 before it)"));
+            return Err(
+                self.not_simulated("a tilted plane in tool centre point control (command G49 before it)")
+            );
         }
-        let state = &mut plan.state;
-        let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
-        for (index, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {
-            let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            axes[index] = self.locate(self.data.settings.axes.find(letter).ok_or(missing))?;
-            origin[index] = self.dimension(letter, state)?.unwrap_or(0.0);
-        }
-        let form = self.words.count(b'P')?.unwrap_or(0);
-        if form != 3 {
-            for (index, letter) in [b'I', b'J', b'K'].into_iter().enumerate() {
-                angles[index] = self.angle(letter)?.unwrap_or(0.0);
+        let axes = self.locate(self.slides())?;
+        let rotation = plan.state.modal.rotation;
+        let plane = match rotation {
+            Rotation::AlongTool => return self.plan_plane_along_tool(axes, plan),
+            Rotation::Feature => Some(self.feature_plane(&plan.state)?),
+            Rotation::On | Rotation::Off | Rotation::Tilted | Rotation::TiltedFurther => {
+                self.plane_of_form(&mut plan.state)?
             }
-        }
-        let is_within = state.modal.rotation == Rotation::TiltedFurther;
-        let base = match state.transform.tilt {
-            Some(tilt) if is_within => Some(tilt.plane),
-            None if is_within => return Err(self.plane_format("G68.4 without G68.2")),
-            _ => None,
         };
-        let plane = match form {
-            0 if !self.words.has_any(b"QR") => Some(Plane::by_euler_angles(origin, angles)),
-            1 if !self.words.has(b'R') => {
-                let order = self.words.count(b'Q')?.unwrap_or(123);
-                let plane = Plane::by_roll_pitch_yaw(origin, angles, order);
-                Some(plane.ok_or_else(|| self.plane_format("Q of P1 is an order of 1, 2 and 3"))?)
+        let base = match plan.state.transform.tilt {
+            Some(tilt) if rotation == Rotation::TiltedFurther => Some(tilt.plane),
+            None if rotation == Rotation::TiltedFurther => {
+                return Err(self.plane_format("G68.4 without G68.2"));
             }
-            2 | 3 => self.add_plane_block(state, form, origin)?,
-            4 if !self.words.has_any(b"QR") => {
-                let plane = Plane::by_projection(origin, angles);
-                Some(plane.ok_or_else(|| self.plane_format("both directions of P4 are parallel"))?)
-            }
-            _ => return Err(self.plane_format("P is 0 to 4; Q belongs to P1, P2 and P3, R to P2")),
+            _ => None,
         };
         let Some(plane) = plane else { return Ok(()) };
         let plane = base.map_or(plane, |base| plane.within(&base));
-        let before = state.length_offset;
-        state.end_alignment();
-        state.transform.plane_entry = None;
-        state.transform.tilt = Some(Tilt { axes, plane, alignment: None });
+        self.set_plane(plan, Tilt { axes, plane, alignment: None, is_nested: false });
+        Ok(())
+    }
+
+    /// Replaces the plane, and turns the tool length back.
+    fn set_plane(&self, plan: &mut BlockPlan, tilt: Tilt) {
+        let before = plan.state.length_offset;
+        plan.state.end_alignment();
+        plan.state.transform.plane_entry = None;
+        plan.state.transform.tilt = Some(tilt);
         self.push_turned_length(plan, before);
         self.data.apply_transform_change(&mut plan.state);
+    }
+
+    /// Returns X, Y and Z; PS0009 if the control lacks one.
+    fn slides(&self) -> Result<[AxisIndex; 3], Alarm> {
+        let missing = |letter: u8| Alarm::ImproperAddress { letter: char::from(letter) };
+        let find = |letter: u8| self.data.settings.axes.find(letter).ok_or_else(|| missing(letter));
+        Ok([find(b'X')?, find(b'Y')?, find(b'Z')?])
+    }
+
+    /// Returns the values of three letters as lengths, 0 for those that the block lacks.
+    fn lengths(&self, letters: [u8; 3], state: &State) -> ExecResult<Vector> {
+        let mut vector = [0.0; 3];
+        for (value, letter) in vector.iter_mut().zip(letters) {
+            *value = self.dimension(letter, state)?.unwrap_or(0.0);
+        }
+        Ok(vector)
+    }
+
+    /// Returns I, J and K as angles, 0 for those that the block lacks.
+    fn angles_ijk(&self) -> ExecResult<Vector> {
+        let mut angles = [0.0; 3];
+        for (value, letter) in angles.iter_mut().zip([b'I', b'J', b'K']) {
+            *value = self.angle(letter)?.unwrap_or(0.0);
+        }
+        Ok(angles)
+    }
+
+    /// Returns the plane of G68.2 and G68.4; `None` before the last block of P2 and P3.
+    fn plane_of_form(&self, state: &mut State) -> ExecResult<Option<Plane>> {
+        let form = self.words.count(b'P')?.unwrap_or(0);
+        let origin = self.lengths(*b"XYZ", state)?;
+        let angles = if form == 3 { [0.0; 3] } else { self.angles_ijk()? };
+        match form {
+            0 if !self.words.has_any(b"QR") => Ok(Some(Plane::by_euler_angles(origin, angles))),
+            1 if !self.words.has(b'R') => {
+                let order = self.words.count(b'Q')?.unwrap_or(123);
+                let plane = Plane::by_roll_pitch_yaw(origin, angles, order);
+                plane.ok_or_else(|| self.plane_format("Q of P1 is an order of 1, 2 and 3")).map(Some)
+            }
+            2 | 3 => self.add_plane_block(state, form, origin),
+            4 if !self.words.has_any(b"QR") => {
+                let plane = Plane::by_projection(origin, angles);
+                plane.ok_or_else(|| self.plane_format("both directions of P4 are parallel")).map(Some)
+            }
+            _ => Err(self.plane_format("P is 0 to 4; Q belongs to P1, P2 and P3, R to P2")),
+        }
+    }
+
+    /// Returns the plane of G268 of a Haas: I, J and K about X, Y and Z in the order of Q, 312 without it, about the axes of the
+    /// work system or those that turn.
+    fn feature_plane(&self, state: &State) -> ExecResult<Plane> {
+        let origin = self.lengths(*b"XYZ", state)?;
+        let angles = self.angles_ijk()?;
+        let order = self.words.count(b'Q')?.unwrap_or(312);
+        let order = match self.data.settings.undocumented.feature_axes_turn {
+            // Turning axes: the last rotation acts first about the fixed ones.
+            true => order % 10 * 100 + order / 10 % 10 * 10 + order / 100,
+            false => order,
+        };
+        let plane = Plane::by_roll_pitch_yaw(origin, angles, order);
+        plane.ok_or_else(|| self.plane_format("Q of G268 is an order of 1, 2 and 3"))
+    }
+
+    /// G68.3: Z of the plane points along the tool, X is square to it and to the direction of 12321. Without an origin the
+    /// position is it (A-79976E).
+    fn plan_plane_along_tool(&self, axes: [AxisIndex; 3], plan: &mut BlockPlan) -> ExecResult<()> {
+        let named = axes.into_iter().filter(|axis| self.names(*axis)).count();
+        if named == 1 || named == 2 {
+            return Err(self.plane_format("G68.3 takes X, Y and Z or none of them"));
+        }
+        let before = plan.state.length_offset;
+        plan.state.end_alignment();
+        let mut here = plan.state.transform.work_position(plan.state.programmed_position);
+        self.data.move_to_part(&plan.state, &plan.state.machine_position, &mut here);
+        let origin = match named {
+            0 => axes.map(|axis| here[axis]),
+            _ => self.lengths(*b"XYZ", &plan.state)?,
+        };
+        let kinematics = self.data.settings.kinematics.as_ref();
+        let alignment = kinematics.map(|kinematics| {
+            Alignment::new(kinematics, &plan.state.machine_position, &self.data.zeros(&plan.state))
+        });
+        let (reference, tool) = match (kinematics, &alignment) {
+            (Some(kinematics), Some(alignment)) => {
+                let tool = alignment.tool.apply(kinematics.direction);
+                (kinematics.direction, alignment.frame.rotation.transposed().apply(tool))
+            }
+            _ => ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]),
+        };
+        let vertical = match self.data.settings.vertical_axis {
+            1 => [1.0, 0.0, 0.0],
+            2 => [0.0, 1.0, 0.0],
+            3 => [0.0, 0.0, 1.0],
+            _ => reference,
+        };
+        let angle = self.angle(b'R')?.unwrap_or(0.0);
+        let plane = Plane::along_tool(origin, tool, vertical, angle);
+        plan.state.transform.plane_entry = None;
+        let tilt = Tilt { axes, plane, alignment: None, is_nested: false };
+        match alignment {
+            Some(alignment) => self.align(plan, tilt, alignment, before),
+            None => {
+                let alignment = self.level_alignment(&plan.state, &tilt);
+                self.align(plan, tilt, alignment, before);
+                let code = self.code_of(|effect| effect == Effect::Rotation(Rotation::AlongTool));
+                self.lose_position(plan, code, false);
+            }
+        }
         Ok(())
+    }
+
+    /// G68 with I, J or K: rotates by R about the direction I J K through X Y Z, the new origin. A second G68 counts in the first.
+    pub(super) fn plan_rotation_in_space(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let format = |what| Alarm::SpaceRotation(what).located_at(self.block);
+        let axes = self.locate(self.slides())?;
+        let state = &plan.state;
+        if state.transform.rotation.is_some() || state.controls_tip() {
+            return Err(
+                self.not_simulated("G68 with I J K in G68 of a plane, or in tool centre point control")
+            );
+        }
+        let mut origin = axes.map(|axis| state.programmed_position[axis]);
+        for (value, axis) in origin.iter_mut().zip(axes) {
+            *value = self.axis_dimension(axis, state)?.unwrap_or(*value);
+        }
+        let direction =
+            unit_vector(self.lengths(*b"IJK", state)?).ok_or_else(|| format("I, J and K are all 0"))?;
+        let angle = self.angle(b'R')?.ok_or_else(|| format("R is missing"))?;
+        let plane = Plane { origin, matrix: Matrix::about(direction, angle) };
+        let plane = match (&state.transform.tilt, self.registers.state.modal.rotation) {
+            (None, _) => (plane, false),
+            (Some(tilt), Rotation::On) if !tilt.is_nested => (plane.within(&tilt.plane), true),
+            (Some(_), Rotation::On) => return Err(format("a third G68 within two others")),
+            (Some(_), _) => return Err(self.not_simulated("G68 with I J K in a tilted plane")),
+        };
+        self.set_plane(plan, Tilt { axes, plane: plane.0, alignment: None, is_nested: plane.1 });
+        Ok(())
+    }
+
+    /// Counts the plane that the rotary axes are aligned with from their work zeros, which have changed.
+    pub(super) fn realign(&self, state: &mut State) {
+        let zero = self.data.zeros(state);
+        let Some(mut tilt) = state.transform.tilt else { return };
+        let Some(alignment) = tilt.alignment else { return };
+        tilt.alignment = Some(match &self.data.settings.kinematics {
+            Some(kinematics) => Alignment::new(kinematics, &alignment.at, &zero),
+            None => self.level_alignment(state, &tilt),
+        });
+        state.transform.tilt = Some(tilt);
     }
 
     /// Adds a block of P2 or P3; returns the plane with the last one.
     fn add_plane_block(&self, state: &mut State, form: u32, point: Vector) -> ExecResult<Option<Plane>> {
-        let mut vector = [0.0; 3];
-        if form == 3 {
-            for (index, letter) in [b'I', b'J', b'K'].into_iter().enumerate() {
-                vector[index] = self.dimension(letter, state)?.unwrap_or(0.0);
-            }
-        }
+        let vector = if form == 3 { self.lengths(*b"IJK", state)? } else { [0.0; 3] };
         let angle = self.angle(b'R')?.unwrap_or(0.0);
         let q = self.words.count(b'Q')?.unwrap_or(0);
         let mut entry = state.transform.plane_entry.unwrap_or(PlaneEntry { form, ..PlaneEntry::default() });
@@ -117,110 +250,5 @@ impl Planner<'_> {
             let (offset, compensation) = (plan.state.length_offset, plan.state.length_compensation());
             plan.push_event(EventKind::ToolLength { offset, compensation });
         }
-    }
-
-    /// Returns the kinematics of the machine file; an alarm names what the file lacks.
-    pub(super) fn kinematics(&self, code: &str) -> ExecResult<&Kinematics> {
-        self.data.settings.kinematics.as_ref().ok_or_else(|| {
-            self.not_simulated(format!(
-                "{code} without a machine file that describes the rotary axes, [[table]] or [[head.axis]], and the tool, [head],"
-            ))
-        })
-    }
-
-    /// G53.1: rotary axes turn by rapid so that the tool points along Z of the plane, which stays on the part. X, Y and Z
-    /// don't move.
-    pub(super) fn plan_tool_axis(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        let illegal = |what| Alarm::ToolAxisCode(what).located_at(self.block);
-        if self.names_axis() {
-            return Err(illegal("G53.1 with an axis"));
-        }
-        let state = &mut plan.state;
-        let Some(mut tilt) = state.transform.tilt.filter(|_| state.transform.plane_entry.is_none()) else {
-            return Err(illegal("G53.1 without a plane of G68.2"));
-        };
-        let kinematics = self.kinematics("G53.1")?;
-        let before = state.length_offset;
-        state.end_alignment();
-        tilt.alignment = None;
-        state.transform.tilt = Some(tilt);
-        let zero = self.data.zeros(state);
-        let normal = state.transform.direction_in_plane(&tilt, tilt.axes[2]);
-        let side = match self.words.count(b'P')?.unwrap_or(0) {
-            0 => 0.0,
-            1 => 1.0,
-            2 => -1.0,
-            _ => return Err(illegal("P of G53.1 is 0 to 2")),
-        };
-        let target = self.tool_axis_target(state, kinematics, normal, &zero, side)?;
-        for axis in kinematics.axes() {
-            state.unknown = state.apply_absolute(axis.axis, state.unknown);
-        }
-        self.push_unknown_axes(plan);
-        self.push_rapid(plan, &target);
-        let state = &mut plan.state;
-        let alignment = Alignment::new(kinematics, &target, &zero);
-        let length = alignment.tool.apply(tilt.axes.map(|axis| state.length_offset[axis]));
-        for (axis, value) in tilt.axes.into_iter().zip(length) {
-            state.length_offset[axis] = value;
-        }
-        state.transform.tilt = Some(Tilt { alignment: Some(alignment), ..tilt });
-        self.push_turned_length(plan, before);
-        self.data.apply_transform_change(&mut plan.state);
-        Ok(())
-    }
-
-    /// Returns the position with the rotary axes where the tool points along `normal`, a direction on the machine with the
-    /// table at its work zeros. A positive `side` takes the solution with the plus sign of the choosing axis, a negative one the
-    /// other; 0 the one with the shortest way of the first axis, then of the second, then the plus sign of the first.
-    pub(super) fn tool_axis_target(
-        &self,
-        state: &State,
-        kinematics: &Kinematics,
-        normal: Vector,
-        zero: &Position,
-        side: f64,
-    ) -> ExecResult<Position> {
-        let from = &state.machine_position;
-        let on_table = Alignment::new(kinematics, &Position::default(), zero).frame.rotation.apply(normal);
-        let Some(found) = pointing_positions(kinematics, on_table, from) else {
-            return Err(self.not_simulated("G53.1 on a machine with more than two rotary axes"));
-        };
-        let choosing = choosing_axis(kinematics, self.data.settings.tool_axis_choice);
-        let is_on_side = |at: &Position| {
-            let angle = choosing.map_or(0.0, |axis| at[axis] - 360.0 * (at[axis] / 360.0).round());
-            angle * side >= 0.0
-        };
-        let reachable = found.into_iter().filter(is_on_side).filter_map(|mut at| {
-            for axis in kinematics.axes() {
-                at[axis.axis] = self.nearest_turn(axis.axis, at[axis.axis], from[axis.axis])?;
-            }
-            Some(at)
-        });
-        let order = |a: &Position, b: &Position| {
-            let way = |axis: AxisIndex| ((a[axis] - from[axis]).abs(), (b[axis] - from[axis]).abs());
-            let differing = kinematics.axes().map(|axis| way(axis.axis)).find(|(a, b)| (a - b).abs() > 1e-6);
-            let first = kinematics.axes().next().map(|axis| (-a[axis.axis], -b[axis.axis]));
-            let (a, b) = differing.or(first).unwrap_or_default();
-            a.total_cmp(&b)
-        };
-        let nearest = reachable.min_by(order);
-        nearest.ok_or_else(|| Alarm::ToolAxisUnreachable.located_at(self.block))
-    }
-
-    /// Returns the angle plus full turns that is nearest to the current position within the stroke limits.
-    fn nearest_turn(&self, axis: AxisIndex, angle: f64, from: f64) -> Option<f64> {
-        let turns = ((from - angle) / 360.0).round();
-        let limits = self.data.settings.stroke_limits.filter(|_| !self.data.settings.rolls_over[axis]);
-        let is_allowed = |at: &f64| {
-            limits.is_none_or(|limits| {
-                limits.max[axis].is_none_or(|max| *at <= max) && limits.min[axis].is_none_or(|min| min <= *at)
-            })
-        };
-        let mut candidates = [turns, turns - 1.0, turns + 1.0].map(|turns| angle + 360.0 * turns);
-        // Of two half turns the one nearer to 0, then the plus side.
-        let order = |at: f64| (((at - from).abs() * 1e6).round(), (at.abs() * 1e6).round(), -at);
-        candidates.sort_by(|a, b| order(*a).partial_cmp(&order(*b)).unwrap_or(Ordering::Equal));
-        candidates.into_iter().find(is_allowed)
     }
 }

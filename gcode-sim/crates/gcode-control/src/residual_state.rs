@@ -2,7 +2,7 @@
 use super::control::Control;
 use super::data::{STANDARD_SYSTEMS, system_index};
 use gcode_lang::control::{Dialect, ParameterId};
-use gcode_lang::program::modes::{GROUPS, WorkSystem};
+use gcode_lang::program::modes::{DynamicOffset, GROUPS, ModalGroup, WorkSystem};
 
 /// Value that is no longer as it is when the control is switched on.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,9 @@ impl Control {
         for (number, value) in self.variables().filter(|(number, _)| *number >= 100) {
             push(ResidualKind::Variable, format!("#{number}"), value);
         }
-        for group in GROUPS {
+        // A dynamic work offset that is off is none, as a shift of 0.
+        let is_off = |group| group == ModalGroup::DynamicOffset && state.modal.dynamic == DynamicOffset::Off;
+        for group in GROUPS.iter().filter(|group| !is_off(**group)) {
             let code = state.modal.code_in(*group);
             push(ResidualKind::Mode, mode_name(group.number()), f64::from(code) / 10.0);
         }
@@ -148,7 +150,8 @@ mod tests {
                     Effect::AdditionalWork => (" P1", 541),
                     Effect::NumberedWork(_) => ("", 541),
                     Effect::Scaling(Scaling::On) => (" P2000", row.code),
-                    Effect::Mirror(Mirror::On) => (" X0", row.code),
+                    Effect::Mirror(mirror) => (if mirror == Mirror::On { " X0" } else { "" }, mirror.code()),
+                    Effect::Rotation(Rotation::Off) => ("", Rotation::Off.code()),
                     Effect::Rotation(Rotation::Tilted) => (" X0 Y0 Z0 I0 J0 K0", row.code),
                     _ => ("", row.code),
                 };
@@ -158,13 +161,15 @@ mod tests {
                 };
                 let (block, expected) = (format!("{plane}{}{words}", name(row.code)), f64::from(code) / 10.0);
                 let control = after(dialect, &block);
-                // A Haas has no number for G154.
-                if code != 541 || dialect != Dialect::HaasNgc {
+                // A Haas has no number for G154, a Fanuc none for G54.2 and G54.4.
+                let is_fixture = matches!(row.effect, Effect::UnstatedOffset(_));
+                if (code != 541 || dialect != Dialect::HaasNgc) && !is_fixture {
                     assert_eq!(control.variable(4000 + group), Ok(Value::Number(expected)), "{block}");
                 }
                 let residual =
                     ResidualValue { kind: ResidualKind::Mode, name: mode_name(group), value: expected };
-                assert!(control.residual_values().contains(&residual), "{block} on {dialect:?}");
+                let is_off = row.effect == Effect::DynamicOffset(DynamicOffset::Off);
+                assert_eq!(control.residual_values().contains(&residual), !is_off, "{block} on {dialect:?}");
             }
         }
     }

@@ -6,8 +6,8 @@ use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirecti
 use gcode_lang::program::cycles::Cycle;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::{
-    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, ModalGroup, Motion, Plane, Polar,
-    ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
+    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, ModalCall, ModalGroup,
+    Motion, Plane, Polar, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
 };
 
 /// Control between two blocks; lengths in mm even with G20.
@@ -75,7 +75,7 @@ impl State {
     pub(super) fn length_compensation(&self) -> LengthCompensation {
         match self.modal.length {
             Length::Off => LengthCompensation::Off,
-            Length::Plus | Length::TipByAngles | Length::TipByVector => {
+            Length::Plus | Length::TipByAngles | Length::TipByVector | Length::TipOfHaas => {
                 LengthCompensation::Plus(self.modal_words.h)
             }
             Length::Minus => LengthCompensation::Minus(self.modal_words.h),
@@ -208,6 +208,7 @@ pub struct Modal {
     pub(super) rotation: Rotation,
     pub(super) polar: Polar,
     pub(super) mirror: Mirror,
+    pub(super) dynamic: DynamicOffset,
 }
 
 impl Modal {
@@ -229,6 +230,7 @@ impl Modal {
             Effect::NumberedWork(number) => self.work = WorkSystem::Additional(number),
             Effect::Cutting(mode) => self.cutting = mode,
             Effect::Polar(polar) => self.polar = polar,
+            Effect::DynamicOffset(dynamic) => self.dynamic = dynamic,
             Effect::Scaling(scaling) => {
                 self.scaling = scaling;
                 return (scaling == Scaling::On).then_some(AxisWordUse::Scale);
@@ -238,7 +240,9 @@ impl Modal {
                 return match rotation {
                     Rotation::Off => None,
                     Rotation::On => Some(AxisWordUse::Rotate),
-                    Rotation::Tilted | Rotation::TiltedFurther => Some(AxisWordUse::Tilt),
+                    Rotation::Tilted | Rotation::TiltedFurther | Rotation::AlongTool | Rotation::Feature => {
+                        Some(AxisWordUse::Tilt)
+                    }
                 };
             }
             Effect::Mirror(mirror) => {
@@ -248,6 +252,7 @@ impl Modal {
             Effect::AdditionalWork => return Some(AxisWordUse::AdditionalWork),
             Effect::OneShot(one) => return Some(AxisWordUse::OneShot(one)),
             Effect::Motion(_)
+            | Effect::UnstatedOffset(_)
             | Effect::NoEffect
             | Effect::LookAhead
             | Effect::Smoothness
@@ -288,6 +293,7 @@ impl Modal {
             ModalGroup::InFeed => 1600,
             ModalGroup::PolarInterpolation => 131,
             ModalGroup::Mirror => self.mirror.code(),
+            ModalGroup::DynamicOffset => self.dynamic.code(),
         }
     }
 }
@@ -303,7 +309,7 @@ mod tests {
         let codes: Vec<_> = GROUPS.iter().map(|group| modal.code_in(*group)).collect();
         let expected = [
             0, 170, 900, 220, 940, 210, 400, 490, 800, 980, 500, 670, 970, 540, 640, 690, 150, 401, 401,
-            1600, 131, 501,
+            1600, 131, 501, 2550,
         ];
         assert_eq!(codes, expected);
     }

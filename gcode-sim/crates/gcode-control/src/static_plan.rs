@@ -135,6 +135,10 @@ fn depends_on_words_alone(alarm: &Alarm) -> bool {
             | Alarm::ReferenceReturnInCycle
             | Alarm::ReferenceReturnP { .. }
             | Alarm::CornerInThread
+            | Alarm::CornerWords
+            | Alarm::ScaleRate { .. }
+            | Alarm::G10Format { .. }
+            | Alarm::TooManyArgumentSets
             | Alarm::LookAheadFormat
             | Alarm::TNotAllowed
             | Alarm::TwoMacroCalls

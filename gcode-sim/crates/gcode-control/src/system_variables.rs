@@ -5,7 +5,7 @@ use super::notes::Note;
 use super::registers::{Registers, check_signal_word};
 use super::variables::Value;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::{Dialect, MachineValue, OffsetVariables, Settings, has_items};
+use gcode_lang::control::{Dialect, MachineValue, OffsetMemory, OffsetVariables, Settings, has_items};
 use gcode_lang::motion::{AxisIndex, Position, SpindleDirection};
 use gcode_lang::program::modes::{Unit, WorkSystem};
 
@@ -185,6 +185,14 @@ fn find(number: u32, settings: &Settings) -> Result<&'static VariableRow, Alarm>
     {
         return Ok(row);
     }
+    let is_missing = match settings.offset_memory {
+        OffsetMemory::A => matches!(number, 2201..=2400 | 11_001..=13_999),
+        OffsetMemory::B => matches!(number, 12_001..=13_999),
+        OffsetMemory::C => false,
+    };
+    if is_missing {
+        return Err(unknown);
+    }
     let index = ROWS.partition_point(|row| row.to < number);
     let found = ROWS.get(index).filter(|row| row.from <= number);
     found.ok_or_else(|| not_simulated(number, NOT_SIMULATED).unwrap_or(unknown))
@@ -244,7 +252,7 @@ impl Registers {
 
     /// Returns a value of the machine: one that follows from the settings of the control, or is stated; 0 with a note for any
     /// other.
-    fn machine_value(&self, number: u32, item: Option<u32>) -> f64 {
+    pub(super) fn machine_value(&self, number: u32, item: Option<u32>) -> f64 {
         let known = if item.is_none() { self.haas_setting(number) } else { None };
         if let Some(value) = known {
             return value;
@@ -318,6 +326,10 @@ impl Registers {
                 && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
             {
                 return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
+            }
+            // Group 23 is that of a Haas.
+            23 if self.data.settings.codes != Dialect::HaasNgc => {
+                return Err(Alarm::NoSuchVariable { number: i64::from(4000 + item) });
             }
             group => {
                 let unknown = Alarm::NoSuchVariable { number: i64::from(4000 + group) };

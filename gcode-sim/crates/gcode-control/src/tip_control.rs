@@ -2,14 +2,16 @@
 use super::coordinates::remove_noise;
 use super::data::ControlData;
 use super::functions::ExecResult;
-use super::kinematics::{Alignment, Frame, Vector, dot, scaled, sum, unit_vector};
+use super::kinematics::{Alignment, Frame, Matrix, Vector, cross, dot, scaled, sum, unit_vector};
 use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::State;
+use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Kinematics;
 use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
-use gcode_lang::program::modes::{CutterSide, Length, Motion};
+use gcode_lang::program::g_codes::name;
+use gcode_lang::program::modes::{CutterSide, DynamicOffset, Length, Motion};
 use gcode_lang::units::MmPerMin;
 
 /// Part and tool with the rotary axes at fixed angles, as G53.1 or tool centre point control sets them.
@@ -26,13 +28,13 @@ impl State {
     /// Returns true if the program moves the tip of the tool on the part.
     #[inline]
     pub(super) fn controls_tip(&self) -> bool {
-        matches!(self.modal.length, Length::TipByAngles | Length::TipByVector)
+        matches!(self.modal.length, Length::TipByAngles | Length::TipByVector | Length::TipOfHaas)
     }
 
     /// Returns true if X, Y and Z depend on the angles of the rotary axes.
     #[inline]
     pub(super) fn is_turned(&self) -> bool {
-        self.controls_tip() || self.alignment().is_some()
+        self.controls_tip() || self.alignment().is_some() || self.modal.dynamic == DynamicOffset::On
     }
 }
 
@@ -41,16 +43,47 @@ impl ControlData {
     #[inline]
     pub(super) fn aligned(&self, state: &State, at: &Position) -> Option<Aligned> {
         if state.controls_tip() {
-            return self.tip_alignment(state, at);
+            return match self.settings.tip_in_work_system {
+                true => self.aligned_by(state, Alignment::of_head(self.settings.kinematics.as_ref()?, at)),
+                false => self.part_aligned(state, at),
+            };
         }
-        let (axes, alignment) = state.alignment()?;
-        Some(Aligned { axes, frame: alignment.frame, length: axes.map(|axis| state.length_offset[axis]) })
+        if let Some((axes, alignment)) = state.alignment() {
+            let length = axes.map(|axis| state.length_offset[axis]);
+            return Some(match &self.settings.kinematics {
+                Some(kinematics) if self.settings.undocumented.plane_turns_with_axes => {
+                    let turned = Alignment::new(kinematics, at, &self.zeros(state));
+                    let length = turned.tool.apply(alignment.tool.transposed().apply(length));
+                    Aligned { axes, frame: turned.frame, length }
+                }
+                _ => Aligned { axes, frame: alignment.frame, length },
+            });
+        }
+        match state.modal.dynamic {
+            DynamicOffset::On => self.dynamic_alignment(state, at),
+            DynamicOffset::Off | DynamicOffset::Fixture | DynamicOffset::SettingError => None,
+        }
     }
 
-    fn tip_alignment(&self, state: &State, at: &Position) -> Option<Aligned> {
-        let kinematics = self.settings.kinematics.as_ref()?;
+    /// G254 of a Haas: the work zero turns with the table, and X, Y and Z keep their directions.
+    fn dynamic_alignment(&self, state: &State, at: &Position) -> Option<Aligned> {
         let axes = self.linear_axes()?;
-        let alignment = Alignment::new(kinematics, at, &self.zeros(state));
+        let zero = self.zeros(state);
+        let Frame { rotation, shift } = Alignment::new(self.settings.kinematics.as_ref()?, at, &zero).frame;
+        let here = axes.map(|axis| zero[axis]);
+        let shift = sum(sum(rotation.apply(here), shift), scaled(here, -1.0));
+        let frame = Frame { rotation: Matrix::IDENTITY, shift };
+        Some(Aligned { axes, frame, length: axes.map(|axis| state.length_offset[axis]) })
+    }
+
+    /// Returns part and tool with the rotary axes at `at`; the tip counts on the part, which turns with the table.
+    pub(super) fn part_aligned(&self, state: &State, at: &Position) -> Option<Aligned> {
+        let kinematics = self.settings.kinematics.as_ref()?;
+        self.aligned_by(state, Alignment::new(kinematics, at, &self.zeros(state)))
+    }
+
+    fn aligned_by(&self, state: &State, alignment: Alignment) -> Option<Aligned> {
+        let axes = self.linear_axes()?;
         let length = alignment.tool.apply(axes.map(|axis| state.length_offset[axis]));
         Some(Aligned { axes, frame: alignment.frame, length })
     }
@@ -75,6 +108,15 @@ impl ControlData {
             machine[axis] = remove_noise(value);
         }
         machine
+    }
+
+    /// Replaces X, Y and Z of a work position by those of the tip on the part at a position of the machine.
+    pub(super) fn move_to_part(&self, state: &State, position: &Position, work: &mut Position) {
+        let Some(aligned) = self.part_aligned(state, position) else { return };
+        let tip = sum(aligned.axes.map(|axis| position[axis]), scaled(aligned.length, -1.0));
+        for (axis, value) in aligned.axes.into_iter().zip(aligned.frame.revert(tip)) {
+            work[axis] = value - self.zero(state, axis);
+        }
     }
 
     /// Returns the number of chords from which the tip deviates by at most the tolerance.
@@ -111,20 +153,31 @@ impl ControlData {
 impl Planner<'_> {
     /// Checks that the block can start or keep tool centre point control.
     pub(super) fn check_tip_control(&self, state: &State) -> ExecResult<()> {
-        let code = if state.modal.length == Length::TipByVector { "G43.5" } else { "G43.4" };
-        self.kinematics(code)?;
+        let code = name(state.modal.length.code());
         let with = if !state.transform.is_identity() {
             "with G51, G51.1, G68 or G68.2"
         } else if state.modal.cutter != CutterSide::Off || self.words.corner.is_some() {
             "with cutter compensation or a corner word"
-        } else if state.modal.cycle.is_some() {
-            "with a canned cycle"
+        } else if state.modal.cycle.is_some() && !self.drills_along_tool(state) {
+            "with a canned cycle that does not drill along the tool, or with a rotary axis in its block"
         } else if state.modal.motion == Motion::Thread {
             "with G33"
         } else {
             return Ok(());
         };
         Err(self.not_simulated(format!("{code} (tool centre point control) {with}")))
+    }
+
+    /// Returns true if the block turns no rotary axis, and Z of the program is along the tool.
+    fn drills_along_tool(&self, state: &State) -> bool {
+        let axes = &self.data.settings.axes;
+        let turns = (0..axes.len()).any(|axis| axes.is_rotary(axis) && self.names(axis));
+        let Some(kinematics) = &self.data.settings.kinematics else { return !turns };
+        let at = &state.machine_position;
+        let part = self.data.aligned(state, at).map_or(Matrix::IDENTITY, |aligned| aligned.frame.rotation);
+        let tool = Alignment::new(kinematics, at, at).tool.apply(kinematics.direction);
+        let aside = cross(part.apply([0.0, 0.0, 1.0]), tool);
+        !turns && dot(aside, aside).sqrt() < 1e-7
     }
 
     /// G43.5: turns the rotary axes of an end point so that the tool points along I J K.
@@ -136,7 +189,10 @@ impl Planner<'_> {
         let Some(vector) = unit_vector(vector) else {
             return Err(self.not_simulated("G43.5 with I J K of length 0"));
         };
-        let kinematics = self.kinematics("G43.5")?;
+        if self.data.settings.tip_in_work_system {
+            return Err(Alarm::MachineParameter("G43.5 with WKP 19696#5 = 1").located_at(self.block));
+        }
+        let Some(kinematics) = &self.data.settings.kinematics else { return Ok(()) };
         let target = self.tool_axis_target(state, kinematics, vector, &self.data.zeros(state), 0.0)?;
         for axis in kinematics.axes() {
             let axis = axis.axis;
@@ -162,9 +218,16 @@ impl Planner<'_> {
         endpoint: &Endpoint,
         arc: Option<(PlanarArc, f64)>,
     ) -> ExecResult<()> {
-        let kinematics = self.kinematics("G43.4")?;
-        let (from, start) = (plan.state.machine_position, plan.state.programmed_position);
-        let (to, end) = (endpoint.machine, endpoint.programmed);
+        let (from, to) = (plan.state.machine_position, endpoint.machine);
+        let (mut start, mut end) = (plan.state.programmed_position, endpoint.programmed);
+        if self.data.settings.tip_in_work_system && self.turns_table(&from, &to) {
+            if arc.is_some() {
+                return Err(self.not_simulated("an arc while the table turns, with WKP 19696#5 = 1"));
+            }
+            for (point, position) in [(&mut start, &from), (&mut end, &to)] {
+                self.data.move_to_part(&plan.state, position, point);
+            }
+        }
         if from == to && arc.is_none() {
             plan.repeat_unknown_axes();
             return Ok(());
@@ -191,7 +254,21 @@ impl Planner<'_> {
                 Some(self.locate(timed)?)
             }
         };
+        let Some(kinematics) = &self.data.settings.kinematics else {
+            match arc {
+                Some((PlanarArc { plane, centre, sweep }, radius)) => {
+                    let mut middle = start;
+                    (middle[plane.0], middle[plane.1]) = centre;
+                    let middle = self.data.to_machine_unrounded(&plan.state, &middle);
+                    let arc = PlanarArc { plane, centre: (middle[plane.0], middle[plane.1]), sweep };
+                    return self.push_arc(plan, to, arc, radius);
+                }
+                None => self.push_chord(plan, to, feed),
+            }
+            return Ok(());
+        };
         let chords = self.data.tip_chords(kinematics, [&from, &to], &plan.state, sweep);
+        let turns_table = self.turns_table(&from, &to);
         for chord in 1..=chords {
             let fraction = f64::from(chord) / f64::from(chords);
             let between = |a: f64, b: f64| a + (b - a) * fraction;
@@ -205,13 +282,24 @@ impl Planner<'_> {
                 work[plane.0] = centre.0 + x * turned.cos() - y * turned.sin();
                 work[plane.1] = centre.1 + x * turned.sin() + y * turned.cos();
             }
-            let at = match self.data.aligned(&plan.state, &at) {
+            let aligned = match turns_table {
+                true => self.data.part_aligned(&plan.state, &at),
+                false => self.data.aligned(&plan.state, &at),
+            };
+            let at = match aligned {
                 Some(aligned) if chord < chords => self.data.with_tip_at(&plan.state, &aligned, &work, &at),
                 _ => to,
             };
             self.push_chord(plan, at, feed.map(|(rate, seconds)| (rate, seconds / f64::from(chords))));
         }
         Ok(())
+    }
+
+    /// Returns true if a rotary axis of the table turns between two positions.
+    fn turns_table(&self, from: &Position, to: &Position) -> bool {
+        let kinematics = self.data.settings.kinematics.as_ref();
+        kinematics
+            .is_some_and(|kinematics| kinematics.table.iter().any(|axis| from[axis.axis] != to[axis.axis]))
     }
 
     /// Emits a rapid, or a cut with its rate and seconds.

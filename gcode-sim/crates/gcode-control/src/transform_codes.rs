@@ -14,6 +14,9 @@ use gcode_lang::program::modes::{Mirror, Rotation, Scaling};
 impl Planner<'_> {
     /// G68: rotates the plane about a point.
     pub(super) fn plan_rotation(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        if self.words.has_any(b"IJK") {
+            return self.plan_rotation_in_space(plan);
+        }
         let state = &mut plan.state;
         let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
         let first = self.axis_dimension(plane.0, state)?.unwrap_or(state.programmed_position[plane.0]);
@@ -54,8 +57,7 @@ impl Planner<'_> {
                 _ => continue,
             };
             let common = self.words.count(b'P')?.map(f64::from);
-            let factor =
-                own.or(common).ok_or_else(|| self.not_simulated("G51 without P (parameter 5411)"))?;
+            let factor = own.or(common).unwrap_or(self.data.settings.scale_factor * unit);
             if factor == 0.0 || factor.abs() > 999_999_999.0 {
                 return Err(Alarm::ScaleRate { value: factor }.located_at(self.block));
             }
@@ -95,28 +97,33 @@ impl Planner<'_> {
         let is_rotated = before.rotation == Rotation::On && modal.rotation == Rotation::On;
         let is_mirrored = before.mirror == Mirror::On;
         let was_scaled = before.scaling == Scaling::On;
-        let is_aligned = state.transform.tilt.is_some_and(|tilt| tilt.alignment.is_some());
         let is_scaled = was_scaled && modal.scaling == Scaling::On;
         for row in self.words.g_codes() {
             // G53 without an axis only waits.
             if row.effect == Effect::OneShot(OneShot::MachineCoordinateSystem) && !self.names_axis() {
                 continue;
             }
+            let returns = matches!(
+                row.effect,
+                Effect::OneShot(
+                    OneShot::MachineCoordinateSystem
+                        | OneShot::CheckReference
+                        | OneShot::Reference
+                        | OneShot::FromReference
+                        | OneShot::SecondReference
+                )
+            );
+            if returns && self.data.settings.undocumented.returns_in_transforms {
+                continue;
+            }
             let is_bound = row.facts.coordinates == CoordinateUse::NotTransformed;
             let is_mirror = |mirror| row.effect == Effect::Mirror(mirror);
             let is_scaling = |scaling| row.effect == Effect::Scaling(scaling);
-            let is_shift = is_bound
-                && !matches!(
-                    row.effect,
-                    Effect::OneShot(
-                        OneShot::MachineCoordinateSystem
-                            | OneShot::CheckReference
-                            | OneShot::Reference
-                            | OneShot::FromReference
-                            | OneShot::SecondReference
-                    )
-                );
-            let (active, cancel) = if is_shift && is_aligned {
+            let sets_position = matches!(
+                row.effect,
+                Effect::OneShot(OneShot::SetWorkCoordinateSystem | OneShot::PresetWorkCoordinateSystem)
+            );
+            let (active, cancel) = if sets_position && state.alignment().is_some() {
                 ("G53.1", "G69")
             } else if is_rotated
                 && (is_bound

@@ -28,6 +28,7 @@ impl Registers {
     ) -> ExecResult<()> {
         block_words.clear();
         block_words.punched_value = words.punched_value();
+        block_words.comment_length = words.comment_length();
         for (index, word) in words.list.iter().enumerate() {
             if !calling.is_some_and(|calling| calling.contains(index, word)) {
                 self.evaluate_into(words, word, block_words)?;

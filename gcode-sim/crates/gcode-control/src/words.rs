@@ -58,6 +58,8 @@ pub(super) struct BlockWords {
     pub(super) replaced_m_codes: Vec<u32>,
     /// Value in the comment of `G10 L85`.
     pub(super) punched_value: Option<u64>,
+    /// Number of characters in the comment beside G47.
+    pub(super) comment_length: Option<u32>,
 }
 
 impl BlockWords {
@@ -68,6 +70,7 @@ impl BlockWords {
         self.m_codes.clear();
         self.replaced_m_codes.clear();
         (self.motion, self.corner, self.punched_value) = (None, None, None);
+        self.comment_length = None;
         self.has_other_g_codes = false;
     }
 

@@ -2,6 +2,7 @@
 use super::font::{ASCENT, DESCENT};
 use super::ink::{DrawCommand, Px, Rect, px};
 use super::labels::{LabelArea, LabelPlacement, LeaderRule, Symbol};
+use super::lines::{SIGN, ZERO};
 use super::marks::DrawnMark;
 use super::measure::{Frame, LABEL_LIMIT};
 use super::obstacle::Obstacle;
@@ -150,7 +151,7 @@ pub(super) fn caption_strokes(
                 let angles = (0..48).map(|i| Deg(f64::from(i) * 7.5 + 225.0));
                 angles.map(|angle| centre.toward(symbol::direction(angle), radius)).collect()
             }
-            Shape::Arrow(_) | Shape::Zero(_) | Shape::Text { .. } => Vec::new(),
+            Shape::Arrow(_) | Shape::Zero(_) | Shape::Sign { .. } | Shape::Text { .. } => Vec::new(),
             // The number of one path must not cover another path, to which a reader would assign it.
             Shape::Line(_) if stroke.pen.is_path() => {
                 let own = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke));
@@ -166,15 +167,28 @@ pub(super) fn caption_strokes(
                 .windows(2)
                 .flat_map(|ends| {
                     let (from, to) = (frame.scale.px(ends[0]), frame.scale.px(ends[1]));
-                    // Beyond a vertical tick the number would collide with its neighbours.
-                    let is_level = stroke.pen == Pen::Scale && from.y == to.y;
+                    // Beyond a vertical tick the number of a scale would collide with its neighbours.
+                    let is_beyond = stroke.pen == Pen::Ruler || stroke.pen == Pen::Scale && from.y == to.y;
                     let middle = px((from.x + to.x) / 2.0, (from.y + to.y) / 2.0);
-                    [is_level.then(|| beyond(from, to, size)), Some(middle)]
+                    let on_line = (stroke.pen != Pen::Ruler).then_some(middle);
+                    [is_beyond.then(|| beyond(from, to, size)), on_line]
                 })
                 .flatten()
                 .collect(),
         };
+        let place = match stroke.shape {
+            Shape::Zero(at) => Some((at, ZERO)),
+            Shape::Sign { at, .. } => Some((at, SIGN)),
+            Shape::Line(_) | Shape::Circle { .. } | Shape::Arrow(_) | Shape::Text { .. } => None,
+        };
         let spot = field.place_on(points, size).or_else(|| {
+            if let Some((at, radius)) = place {
+                let (position, clearance) = (frame.scale.px(at), (radius + 0.1) * frame.text_size);
+                let rules = [LeaderRule::Clear, LeaderRule::ThroughAll];
+                return rules.into_iter().find_map(|leader_rule| {
+                    field.place(Symbol { position, clearance, leader_rule }, size, frame.text_size * LEADING)
+                });
+            }
             let path = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke))?;
             let at = path.points[path.points.len() / 2];
             let symbol = Symbol { position: at, clearance: 0.0, leader_rule: LeaderRule::ThroughAll };
@@ -187,16 +201,18 @@ pub(super) fn caption_strokes(
                 sheet.commands.push(DrawCommand::Disc { centre: from, radius, color });
             }
             write(lines, &spot, frame, sheet);
-        } else if stroke.pen != Pen::Scale {
+        } else if !matches!(stroke.pen, Pen::Scale | Pen::Ruler) {
             left.push(caption.clone());
         }
     }
     left
 }
 
-/// Returns the middle of a box that continues a horizontal line at its end.
-fn beyond(from: Px, to: Px, (width, _): (f64, f64)) -> Px {
-    px(to.x + (width / 2.0).copysign(to.x - from.x), to.y)
+/// Returns the middle of a box that continues a line at its end.
+fn beyond(from: Px, to: Px, (width, height): (f64, f64)) -> Px {
+    let (x, y) = (to.x - from.x, to.y - from.y);
+    let length = libm::hypot(x, y).max(1e-9);
+    px(to.x + x / length * width / 2.0, to.y + y / length * height / 2.0)
 }
 
 /// A captioned tool path: a sample of its points and their bounding box.

@@ -89,15 +89,21 @@ pub use layout::lay_out;
 pub use picture::Picture;
 pub use plot::{Bar, Plot, PlotBody};
 pub use raster::{paint, png};
-pub use scene::{Align, Axis, HoleStatus, Mark, Pen, Point, Scene, Shape, Stroke, ZoneDeviation, arc};
+pub use scene::{
+    Align, Axis, HoleStatus, Mark, Pen, Point, Scene, Shape, Sign, Stroke, Style, Tint, ZoneDeviation, arc,
+};
 pub use sheet::Sheet;
-pub use side::Side;
+pub use side::{Projection, Side};
 pub use size::Size;
 pub use svg::svg;
 pub use views::development::development;
 pub use views::flute_view::{Fault, FlutePoint, FluteView, HelixCourses, HelixPoint};
 pub use views::flutes::{side_view, tip_view};
 pub use views::helix::helix_graph;
+pub use views::path_picture::path_picture;
+pub use views::path_view::{
+    Arrangement, ColorBy, DrawnTool, PathPlace, PathRun, PathView, RunKind, StandardView,
+};
 pub use views::purpose::PicturePurpose;
 pub use views::top::{Cylinder, DrawnHole, TopView, top_view};
 

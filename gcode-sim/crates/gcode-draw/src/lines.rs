@@ -7,16 +7,22 @@ use super::palette;
 use super::scene::{Pen, Point, Scene, Shape, Stroke};
 use super::symbol;
 
+/// Radius of the symbol of a zero point in text heights.
+pub(super) const ZERO: f64 = 2.0 / 3.0;
+/// Radius of the symbol of a place on a path in text heights.
+pub(super) const SIGN: f64 = 0.42;
+
 /// Draws a shape of a scene.
 pub(super) fn shape_commands(stroke: &Stroke, scale: &Scale, text: f64) -> Vec<DrawCommand> {
-    let ink = palette::pen(stroke.pen, text);
+    let ink = palette::ink(stroke.pen, stroke.style, text, scale.factor);
     vec![match &stroke.shape {
         Shape::Line(points) => DrawCommand::path(points.iter().map(|p| scale.px(*p)).collect(), ink),
         Shape::Circle { centre, radius } => {
             DrawCommand::Ring { centre: scale.px(*centre), radius: radius * scale.factor, ink }
         }
         Shape::Arrow([from, to]) => return symbol::arrow(scale.px(*from), scale.px(*to), ink, 0.75 * text),
-        Shape::Zero(at) => return symbol::zero(scale.px(*at), text / 1.5, palette::pen(Pen::Edge, text)),
+        Shape::Zero(at) => return symbol::zero(scale.px(*at), ZERO * text, palette::pen(Pen::Edge, text)),
+        Shape::Sign { at, sign } => return symbol::sign(*sign, scale.px(*at), SIGN * text),
         Shape::Text { at, align, text: words } => {
             let (at, align, text_color) = (scale.px(*at), *align, palette::TEXT);
             DrawCommand::Text { at, align, size: text, text: words.clone(), color: text_color }
@@ -26,7 +32,7 @@ pub(super) fn shape_commands(stroke: &Stroke, scale: &Scale, text: f64) -> Vec<D
 
 /// Adds a stroke to the label area: labels never cover edges and avoid other lines.
 pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame) {
-    let hard = stroke.pen == Pen::Outline;
+    let hard = stroke.pen == Pen::Outline || matches!(stroke.shape, Shape::Zero(_) | Shape::Sign { .. });
     let segments = |points: &[Point], step: usize| -> Vec<Obstacle> {
         let ends: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
         ends.windows(2).map(|w| Obstacle::Segment(w[0], w[1])).collect()
@@ -36,14 +42,17 @@ pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame
         Shape::Line(points) if stroke.pen.is_path() && stroke.caption.is_some() => {
             segments(points, (points.len() / 40).max(1))
         }
-        _ if stroke.pen.is_path() => Vec::new(),
+        Shape::Line(_) | Shape::Circle { .. } | Shape::Arrow(_) if stroke.pen.is_path() => Vec::new(),
         Shape::Line(points) => segments(points, 1),
         Shape::Arrow(ends) => segments(ends, 1),
         Shape::Circle { centre, radius } => {
             vec![Obstacle::Ring { centre: frame.scale.px(*centre), radius: radius * frame.scale.factor }]
         }
         Shape::Zero(at) => {
-            vec![Obstacle::Disc { centre: frame.scale.px(*at), radius: frame.text_size / 1.5 }]
+            vec![Obstacle::Disc { centre: frame.scale.px(*at), radius: ZERO * frame.text_size }]
+        }
+        Shape::Sign { at, .. } => {
+            vec![Obstacle::Disc { centre: frame.scale.px(*at), radius: SIGN * frame.text_size }]
         }
         Shape::Text { at, align, text } => {
             let wide = frame.font.width(text, frame.text_size);

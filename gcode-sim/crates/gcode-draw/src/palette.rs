@@ -4,7 +4,7 @@
 //! Colour never carries meaning alone: every status has its own shape and mark (`symbol`), every pen its own
 //! width or dash pattern.
 use super::ink::{Ink, Rgb};
-use super::scene::{HoleStatus, Pen};
+use super::scene::{HoleStatus, Pen, Style, Tint};
 
 pub(super) const PAPER: Rgb = Rgb(255, 255, 255);
 pub(super) const TEXT: Rgb = Rgb(0, 0, 0);
@@ -39,6 +39,60 @@ pub(super) fn leader(text: f64) -> Ink {
     Ink::solid(0.05 * text, THIN)
 }
 
+/// Dark end to light end of the scale of shades: viridis without its bright end, which is faint on white. Lightness grows
+/// steadily, so that the order shows without colour too.
+const SHADES: [Rgb; 7] = [
+    Rgb(68, 1, 84),
+    Rgb(72, 35, 116),
+    Rgb(64, 67, 135),
+    Rgb(52, 94, 141),
+    Rgb(41, 120, 142),
+    Rgb(32, 144, 140),
+    Rgb(53, 183, 121),
+];
+
+/// Returns the colour of a value on a scale from 0 to 1.
+pub(super) fn shade(value: f64) -> Rgb {
+    let at = value.clamp(0.0, 1.0) * (SHADES.len() - 1) as f64;
+    let index = (at as usize).min(SHADES.len() - 2);
+    let (Rgb(r, g, b), Rgb(r2, g2, b2)) = (SHADES[index], SHADES[index + 1]);
+    let mixed = |from: u8, to: u8| {
+        (f64::from(from) + (f64::from(to) - f64::from(from)) * (at - index as f64)).round() as u8
+    };
+    Rgb(mixed(r, r2), mixed(g, g2), mixed(b, b2))
+}
+
+/// Colours of classes, the ones of Okabe and Ito's that are dark enough for thin lines, and black.
+const CLASSES: [Rgb; 6] =
+    [BLUE, VERMILION, Rgb(0, 158, 115), Rgb(204, 121, 167), Rgb(0, 0, 0), Rgb(190, 132, 0)];
+
+/// Number of dash patterns.
+pub(super) const PATTERNS: u8 = 6;
+
+/// Dash patterns in text heights, from 1 on; 0 is a solid line.
+const DASHES: [[f64; 4]; PATTERNS as usize - 1] = [
+    [0.9, 0.3, 0.9, 0.3],
+    [0.9, 0.25, 0.2, 0.25],
+    [0.45, 0.25, 0.45, 0.25],
+    [1.6, 0.3, 0.4, 0.3],
+    [0.2, 0.2, 0.2, 0.2],
+];
+
+/// Returns the line style of a stroke at a text height of `text` pixels and `scale` pixels a millimetre.
+pub(super) fn ink(of: Pen, style: Option<Style>, text: f64, scale: f64) -> Ink {
+    let base = pen(of, text);
+    let Some(Style { tint, pattern, width }) = style else { return base };
+    let color = match tint {
+        None => base.color,
+        Some(Tint::Shade(value)) => shade(value),
+        Some(Tint::Class(class)) => CLASSES[class % CLASSES.len()],
+        Some(Tint::Pale) => Rgb(226, 226, 226),
+    };
+    let pattern = usize::from(pattern % PATTERNS).checked_sub(1).and_then(|index| DASHES.get(index));
+    let dash = pattern.map(|lengths| lengths.map(|length| length * text)).or(base.dash);
+    Ink { color, width: width.map_or(base.width, |mm| mm * scale), dash }
+}
+
 /// Returns the line style of a pen at a text height of `text` pixels.
 pub(super) fn pen(pen: Pen, text: f64) -> Ink {
     // Long dash, gap, short dash, gap.
@@ -52,7 +106,7 @@ pub(super) fn pen(pen: Pen, text: f64) -> Ink {
         Pen::Centre => (THIN, 0.06, Some(chain)),
         Pen::Tool => (BLUE, 0.1, None),
         Pen::Construction => (Rgb(120, 120, 120), 0.06, dashed(0.55, 0.4)),
-        Pen::Scale => (Rgb(120, 120, 120), 0.06, None),
+        Pen::Scale | Pen::Ruler => (Rgb(120, 120, 120), 0.06, None),
         Pen::Feed => (Rgb(0, 158, 115), 0.1, None),
         Pen::Faulty | Pen::New => (VERMILION, 0.24, None),
         Pen::FaultyFarSide => (VERMILION, 0.08, dashed(0.4, 0.3)),

@@ -1,12 +1,14 @@
 //! Title block, legend and notes beside the drawing.
 use super::font::{ASCENT, Font};
 use super::ink::{DrawCommand, Ink, Px, Rect, Rgb, px};
+use super::lines::{SIGN, ZERO};
 use super::marks::displacement_commands;
 use super::measure::{Frame, plain};
 use super::palette;
 use super::picture::{LegendItem, LegendUse, Picture, Sample};
-use super::scene::HoleStatus;
+use super::scene::{HoleStatus, Pen};
 use super::symbol;
+use super::ticks::Ticks;
 
 /// The areas of drawing, title block and legend on the page.
 pub(super) struct Panel {
@@ -40,11 +42,19 @@ impl PanelRow {
     fn importance(&self) -> u8 {
         match self {
             Self::Gap => 0,
-            Self::Sample(Sample::Pen(_), _) => 1,
-            Self::Sample(Sample::Direction | Sample::Displacement, _) => 2,
+            Self::Sample(Sample::Pen(_) | Sample::Line(..) | Sample::Zero, _) => 1,
+            Self::Sample(Sample::Direction | Sample::Displacement | Sample::Sign(_), _) => 2,
             Self::Text { important: false, .. } => 3,
             Self::Rule => 4,
-            Self::Sample(Sample::Deviation | Sample::Status(_) | Sample::Plain(_), _) => 5,
+            Self::Sample(
+                Sample::Deviation
+                | Sample::Status(_)
+                | Sample::Plain(_)
+                | Sample::Shades(..)
+                | Sample::Nothing
+                | Sample::Projection(_),
+                _,
+            ) => 5,
             Self::Text { important: true, .. } => 6,
             Self::Zone(_) => 7,
             Self::Verdict(..) => 8,
@@ -223,6 +233,12 @@ fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCom
                 y += write(words, left, *size, *color, &mut commands);
             }
             PanelRow::Zone(zone) => y += zone_frame(*zone, left, font, text, &mut commands),
+            PanelRow::Sample(Sample::Shades(low, high), words) => {
+                y += write(words, left, text, palette::TEXT, &mut commands);
+                let bar = Rect::new(left.x, y + 0.2 * text, column.width(), 0.8 * text);
+                commands.extend(shades(bar, (*low, *high), font, text));
+                y += 2.6 * text;
+            }
             PanelRow::Verdict(_, words) | PanelRow::Sample(_, words) => {
                 commands.extend(match row {
                     PanelRow::Verdict(status, _) => symbol::status_sign(*status, sign, 0.62 * text),
@@ -236,6 +252,31 @@ fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCom
         }
     }
     (commands, y - column.top)
+}
+
+/// Draws the scale of shades with round numbers below it.
+fn shades(bar: Rect, (low, high): (f64, f64), font: &Font, text: f64) -> Vec<DrawCommand> {
+    const STEPS: u32 = 64;
+    // Whole pixels leave no seams between the steps.
+    let at = |share: f64| (bar.left + share * bar.width()).round();
+    let step = |n: u32| f64::from(n) / f64::from(STEPS);
+    let mut commands: Vec<DrawCommand> = (0..STEPS)
+        .map(|n| {
+            let points = Rect { left: at(step(n)), right: at(step(n + 1)), ..bar }.corners();
+            DrawCommand::Area { points, color: palette::shade(step(n)) }
+        })
+        .collect();
+    let ticks = Ticks::over(low, high, 4.0);
+    for value in ticks.all() {
+        let (x, name) = (at((value - low) / (high - low)), ticks.name(value));
+        let end = px(x, bar.bottom + 0.25 * text);
+        commands.push(DrawCommand::line(px(x, bar.bottom), end, palette::thin(text, palette::TEXT)));
+        let half = font.width(&name, 0.9 * text) / 2.0;
+        let middle = x.clamp(bar.left + half, bar.right - half);
+        let at = px(middle - half, bar.bottom + 1.1 * text);
+        commands.push(DrawCommand::text(at, 0.9 * text, name, palette::TEXT));
+    }
+    commands
 }
 
 /// Draws the feature control frame; returns its height.
@@ -262,6 +303,16 @@ fn sample_commands(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
         Sample::Status(status) => symbol::status_sign(status, middle, 0.5 * text),
         Sample::Plain(status) => symbol::hole(status, middle, 0.4 * text, [0.0, 1.0], 1.0),
         Sample::Pen(pen) => vec![DrawCommand::line(left, right, palette::pen(pen, text))],
+        Sample::Line(pen, style) => {
+            let ink = palette::ink(pen, Some(style), text, text);
+            let inset = if style.width.is_some() { ink.width / 2.0 } else { 0.0 };
+            vec![DrawCommand::line(px(left.x + inset, left.y), px(right.x - inset, right.y), ink)]
+        }
+        Sample::Sign(sign) => symbol::sign(sign, middle, SIGN * text),
+        Sample::Zero => symbol::zero(middle, 0.8 * ZERO * text, palette::pen(Pen::Edge, text)),
+        Sample::Projection(projection) => symbol::projection(projection, middle, text),
+        // Shades have a row of their own height.
+        Sample::Shades(..) | Sample::Nothing => Vec::new(),
         Sample::Direction => symbol::arrow(left, right, Ink::solid(0.08 * text, palette::TEXT), 0.5 * text),
         Sample::Displacement => displacement_commands(left, right, 0.3 * text, text).into(),
         Sample::Deviation => {

@@ -1,6 +1,7 @@
 //! Pictures: a scene or a chart with a title block and a legend, as a view builds them.
 use super::chart::Chart;
-use super::scene::{HoleStatus, Pen, Scene};
+use super::scene::{HoleStatus, Pen, Scene, Sign, Style};
+use super::side::Projection;
 
 /// One picture of a part or program, which [`lay_out`](crate::lay_out) places on a sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,12 +44,23 @@ impl LegendItem {
 }
 
 /// The sample at the left of a legend line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sample {
     Status(HoleStatus),
     /// Replaces `Status` for holes that the sheet draws to scale, without a symbol.
     Plain(HoleStatus),
     Pen(Pen),
+    /// A text alone.
+    Nothing,
+    /// A line whose look differs from its pen's.
+    Line(Pen, Style),
+    Sign(Sign),
+    /// Symbol of a zero point.
+    Zero,
+    /// Scale of shades between two values, the text above it.
+    Shades(f64, f64),
+    /// Symbol of ISO 5456-2 for the arrangement of the views.
+    Projection(Projection),
     /// Direction of a hole axis; omitted if no axis is drawn.
     Direction,
     /// Deviation in its zone; the sheet adds the magnification, or omits the line if none is drawn.

@@ -48,6 +48,34 @@ pub struct Stroke<const D: usize = 2> {
     /// Text on the line, if there is room.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub caption: Option<String>,
+    /// Look that differs from the pen's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub style: Option<Style>,
+}
+
+/// Look of a line that differs from that of its pen: a value as colour, a class as dash pattern, a true width.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Style {
+    /// Colour; `None` for the pen's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tint: Option<Tint>,
+    /// Number of the dash pattern; 0 for a solid line.
+    pub pattern: u8,
+    /// Width, mm; `None` for the pen's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width: Option<f64>,
+}
+
+/// Colour of a line by its meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tint {
+    /// Value on a continuous scale, 0 for its dark end to 1 for its light end.
+    Shade(f64),
+    /// One of a few classes, counted from 0.
+    Class(usize),
+    /// Area below the lines, such as that which a tool sweeps.
+    Pale,
 }
 
 /// Geometry of a stroke, mm.
@@ -68,6 +96,13 @@ pub enum Shape<const D: usize = 2> {
     Arrow([[f64; D]; 2]),
     /// Symbol of a zero point: a circle with two black quarters.
     Zero([f64; D]),
+    /// Symbol of a place on a tool path.
+    Sign {
+        /// The place.
+        at: [f64; D],
+        /// Meaning of the place.
+        sign: Sign,
+    },
     /// Text at a fixed position.
     Text {
         /// Reference point on the base line.
@@ -77,6 +112,20 @@ pub enum Shape<const D: usize = 2> {
         /// One line of text.
         text: String,
     },
+}
+
+/// Meaning of a place on a tool path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sign {
+    /// Start of the path.
+    Start,
+    /// End of the path.
+    End,
+    /// Operator stop.
+    Stop,
+    /// Position at which an alarm ends the run.
+    Alarm,
 }
 
 /// Horizontal alignment of a text to its reference point.
@@ -120,6 +169,8 @@ pub enum Pen {
     Construction,
     /// Tick of a scale, drawn outwards; numbers that would collide are omitted.
     Scale,
+    /// Tick of a scale with its number beyond the end; numbers that would collide are omitted.
+    Ruler,
     /// Tool path at cutting feed.
     Feed,
     /// Tool path with a fault.
@@ -243,7 +294,7 @@ pub struct ZoneDeviation<const D: usize = 2> {
 impl<const D: usize> Stroke<D> {
     /// Builds a stroke without texts.
     pub fn new(pen: Pen, shape: Shape<D>) -> Self {
-        Self { shape, pen, caption: None }
+        Self { shape, pen, caption: None, style: None }
     }
 }
 
@@ -256,7 +307,7 @@ impl Shape {
                 vec![[x - radius, y - radius], [x + radius, y + radius]]
             }
             Self::Arrow(ends) => ends.to_vec(),
-            Self::Zero(at) | Self::Text { at, .. } => vec![*at],
+            Self::Zero(at) | Self::Sign { at, .. } | Self::Text { at, .. } => vec![*at],
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Symbols as paths: status symbols that are distinct without colour, arrows, the position symbol.
 use super::ink::{DrawCommand, Ink, Px, Rgb, px};
 use super::palette;
-use super::scene::HoleStatus;
+use super::scene::{HoleStatus, Sign};
+use super::side::Projection;
 use gcode_lang::units::Deg;
 
 /// Draws the symbol of a status, `radius` pixels large. Each differs from the others in outline and mark: ✓
@@ -105,6 +106,51 @@ pub(super) fn zero(at: Px, radius: f64, ink: Ink) -> Vec<DrawCommand> {
         quarter(0.0),
         quarter(180.0),
     ]
+}
+
+/// Draws the symbol of a place on a tool path: a ring at the start, a square at the end, a pause in a square at a stop,
+/// a cross at an alarm.
+pub(super) fn sign(of: Sign, at: Px, radius: f64) -> Vec<DrawCommand> {
+    let (color, width) = (palette::TEXT, (radius * 0.3).max(1.2));
+    let ink = Ink::solid(width, color);
+    let square = [[-0.8, -0.8], [0.8, -0.8], [0.8, 0.8], [-0.8, 0.8]];
+    match of {
+        Sign::Start => vec![
+            DrawCommand::Disc { centre: at, radius, color: palette::PAPER },
+            DrawCommand::Ring { centre: at, radius: radius - width / 2.0, ink },
+        ],
+        Sign::End => vec![area(at, radius, &square, color)],
+        Sign::Stop => vec![
+            area(at, radius, &square, palette::PAPER),
+            DrawCommand::outline(points(at, radius, &square), ink),
+            path(at, radius, &[[-0.3, -0.4], [-0.3, 0.4]], ink),
+            path(at, radius, &[[0.3, -0.4], [0.3, 0.4]], ink),
+        ],
+        Sign::Alarm => {
+            let strokes = [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]];
+            let halo = Ink::solid(3.0 * width, palette::PAPER);
+            let cross = Ink::solid(1.6 * width, palette::VERMILION);
+            [halo, cross]
+                .into_iter()
+                .flat_map(|ink| strokes.map(|ends| path(at, radius, &ends, ink)))
+                .collect()
+        }
+    }
+}
+
+/// Draws the symbol of an arrangement of views: a truncated cone from the side and along its axis.
+pub(super) fn projection(of: Projection, at: Px, text: f64) -> Vec<DrawCommand> {
+    let ink = Ink::solid(0.07 * text, palette::TEXT);
+    let (circles, cone) = match of {
+        Projection::Third => (-0.45 * text, 0.5 * text),
+        Projection::First => (0.45 * text, -0.5 * text),
+    };
+    let ring =
+        |radius: f64| DrawCommand::Ring { centre: px(at.x + circles, at.y), radius: radius * text, ink };
+    // The small end points to the circles in the third angle, which show what is nearest to them.
+    let ends = [[-0.35, -0.2], [0.35, -0.4], [0.35, 0.4], [-0.35, 0.2]];
+    let side = points(px(at.x + cone, at.y), text, &ends);
+    vec![ring(0.4), ring(0.2), DrawCommand::outline(side, ink)]
 }
 
 /// Returns the unit direction on the sheet at an angle counter-clockwise from the right.

@@ -44,4 +44,5 @@ pub mod flutes;
 pub mod holes;
 pub mod machine;
 pub mod stylus;
+pub mod tool_path;
 pub mod verify;

@@ -120,6 +120,13 @@ impl Source {
         })
     }
 
+    /// Returns the offsets of a line, counted from 1, with its end.
+    pub fn line_range(&self, line: u32) -> Option<std::ops::Range<u32>> {
+        let (starts, line) = (self.cached_line_starts(), line as usize);
+        let start = *starts.get(line.checked_sub(1)?)?;
+        Some(start..starts.get(line).map_or(self.bytes.len() as u32 + 1, |next| *next))
+    }
+
     /// Returns line and column of the byte at `offset`.
     pub fn line_column(&self, offset: u32) -> LineColumn {
         let lines = self.cached_line_starts();

@@ -148,7 +148,13 @@ fn uses_axis_words(row: &GCodeRow) -> bool {
     let is_transform = matches!(
         row.effect,
         Effect::Scaling(Scaling::On)
-            | Effect::Rotation(Rotation::On | Rotation::Tilted | Rotation::TiltedFurther)
+            | Effect::Rotation(
+                Rotation::On
+                    | Rotation::Tilted
+                    | Rotation::TiltedFurther
+                    | Rotation::AlongTool
+                    | Rotation::Feature
+            )
             | Effect::Mirror(_)
             | Effect::StrokeCheck(StrokeCheck::On)
     );

@@ -1,7 +1,7 @@
 //! Reads of unset locals: locals that a call leaves vacant and that no block sets.
 use gcode_lang::program::OpIndex;
 use gcode_lang::source::Span;
-use gcode_lang::syntax::ast::{Expr, Statement};
+use gcode_lang::syntax::ast::{BinaryOp, Block, Expr, ExprKind, Statement};
 
 use super::calls::CallSite;
 use super::context::ProgramUnit;
@@ -9,7 +9,7 @@ use super::expressions::ValueUse;
 use super::first_reach::FirstReach;
 use super::literal::variable;
 use super::vacancy::{ANY_VALUE, Locals, NUMBER, States, guards};
-use super::variables::{self, VariableRead};
+use super::variables::{self, VariableRead, VariableUses};
 
 /// Returns the locals at the start of a called macro.
 pub(super) fn entry_locals(call: &CallSite) -> Locals {
@@ -34,9 +34,11 @@ pub(super) fn unset_reads(unit: &ProgramUnit<'_>, states: &States) -> Vec<UnsetR
         }
         let reads = variables::block_reads(written);
         let guarded = guarded_locals(unit, block, &reads);
+        let counter = counter(written);
         let unset = reads.iter().filter(|read| {
             (1..=33).contains(&read.number)
                 && read.usage != ValueUse::VacancyTest
+                && Some(read.number) != counter
                 && !guarded.contains(&read.number)
                 && first.is_unset(block, read.number)
         });
@@ -65,6 +67,20 @@ fn is_computed_with(reads: &[VariableRead], number: u32) -> bool {
     reads.iter().any(|read| {
         read.number == number && !matches!(read.usage, ValueUse::VacancyTest | ValueUse::Comparison)
     })
+}
+
+/// Returns the variable that a block adds to or subtracts from: in `#33=#33+1` a vacant #33 is 0, and a count begins.
+fn counter(block: &Block) -> Option<u32> {
+    let (target, value) = variables::assignment(block)?;
+    let target = variable(target)?;
+    let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right) = &value.kind else {
+        return None;
+    };
+    let is_counted = |term: &Expr, other: &Expr| {
+        let reads = VariableUses::of(vec![(other, ValueUse::Computed)]).reads;
+        variable(term) == Some(target) && reads.iter().all(|read| read.number != target)
+    };
+    (is_counted(left, right) || *op == BinaryOp::Add && is_counted(right, left)).then_some(target)
 }
 
 fn same_variable(left: &Expr, right: &Expr) -> bool {

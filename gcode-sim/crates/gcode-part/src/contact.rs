@@ -1,8 +1,8 @@
-//! Contact of a moved cylinder with a convex body.
-use nalgebra::{Point3, Vector3};
+//! Contact of a moved part of a tool with a convex body.
+use nalgebra::{Point3, Unit, Vector3};
 
-use super::solid::Rod;
-use super::surface::Surface;
+use super::solid::Taper;
+use super::surface::{Surface, bisect};
 
 /// Distance that counts as contact, mm.
 const CONTACT: f64 = 1e-6;
@@ -10,51 +10,94 @@ const CONTACT: f64 = 1e-6;
 /// Largest number of projections onto the body.
 const MAX_PROJECTIONS: u32 = 400;
 
+/// Cylinder or frustum of a cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frustum {
+    /// Centre of the end face from which the axis points into the body.
+    pub base: Point3<f64>,
+    /// Direction of its axis.
+    pub axis: Unit<Vector3<f64>>,
+    /// Length along the axis, mm.
+    pub length: f64,
+    /// Radius by the height above the base.
+    pub taper: Taper,
+}
+
 impl Surface {
-    /// Returns true if a cylinder touches the body while it moves by `along`.
+    /// Returns true if a frustum touches the body while it moves by `along`.
     ///
-    /// Body and swept cylinder are convex: alternating projections onto them converge to their nearest points (von
+    /// Body and swept frustum are convex: alternating projections onto them converge to their nearest points (von
     /// Neumann). A plane between them proves that they do not meet.
-    pub fn touches(&self, rod: &Rod, along: &Vector3<f64>) -> bool {
-        let mut p = rod.base;
+    pub fn touches(&self, frustum: &Frustum, along: &Vector3<f64>) -> bool {
+        let mut p = frustum.base;
         for _ in 0..MAX_PROJECTIONS {
             let nearest = self.nearest(&p);
             if nearest.distance <= CONTACT {
                 return true;
             }
             let foot = p - nearest.normal.into_inner() * nearest.distance;
-            let least = rod.least_along(&nearest.normal) + along.dot(&nearest.normal).min(0.0);
+            let least = frustum.least_along(&nearest.normal) + along.dot(&nearest.normal).min(0.0);
             if foot.coords.dot(&nearest.normal) + CONTACT < least {
                 return false;
             }
-            let t = Self::Rod(*rod).nearest_between(&foot, &(foot - along));
-            p = rod.project(&(foot - along * t)) + along * t;
+            p = frustum.project_swept(&foot, along);
         }
         false
     }
 }
 
-impl Rod {
-    /// Returns the least coordinate of the cylinder in a direction.
+impl Frustum {
+    /// Returns the least coordinate in a direction.
     fn least_along(&self, direction: &Vector3<f64>) -> f64 {
         let along = self.axis.dot(direction);
         let across = (direction - self.axis.into_inner() * along).norm();
-        self.base.coords.dot(direction) + (self.length * along).min(0.0) - self.radius * across
+        let end = |height: f64| height * along - self.taper.at(height) * across;
+        self.base.coords.dot(direction) + end(0.0).min(end(self.length))
     }
 
-    /// Returns the point of the cylinder that is nearest to `p`.
+    /// Returns the point of the frustum that is nearest to `p`.
     fn project(&self, p: &Point3<f64>) -> Point3<f64> {
-        let nearest = self.nearest(p);
-        p - nearest.normal.into_inner() * nearest.distance.max(0.0)
+        let from_base = p - self.base;
+        let height = from_base.dot(&self.axis);
+        let away = from_base - self.axis.into_inner() * height;
+        let aside = away.norm();
+        let mut height = height;
+        let mut reach = self.taper.at(height.clamp(0.0, self.length));
+        if reach < aside {
+            // The foot of the perpendicular on the side.
+            let Taper { radius, slope } = self.taper;
+            height = (height + slope * (aside - radius)) / (1.0 + slope * slope);
+            reach = self.taper.at(height.clamp(0.0, self.length));
+        }
+        let height = height.clamp(0.0, self.length);
+        let across = if reach < aside { away * (reach / aside) } else { away };
+        self.base + self.axis.into_inner() * height + across
+    }
+
+    /// Returns the point of the frustum, moved by a part of `along`, that is nearest to `p`.
+    fn project_swept(&self, p: &Point3<f64>, along: &Vector3<f64>) -> Point3<f64> {
+        // The distance is a convex function of the part.
+        let is_past = |part: f64| {
+            let moved = p - along * part;
+            (moved - self.project(&moved)).dot(along) <= 0.0
+        };
+        let part = match (is_past(0.0), is_past(1.0)) {
+            (true, _) => 0.0,
+            (false, true) => bisect(0.0, 1.0, is_past),
+            (false, false) => 1.0,
+        };
+        self.project(&(p - along * part)) + along * part
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Rod;
 
-    fn upright(x: f64, y: f64, z: f64, radius: f64) -> Rod {
-        Rod { base: Point3::new(x, y, z), axis: Vector3::z_axis(), length: 10.0, radius }
+    fn upright(x: f64, y: f64, z: f64, radius: f64) -> Frustum {
+        let taper = Taper::cylinder(radius);
+        Frustum { base: Point3::new(x, y, z), axis: Vector3::z_axis(), length: 10.0, taper }
     }
 
     /// The block ends at x 80, y 80 and z 0. At x 83 a cylinder of 6 touches its face. A cylinder about 82, 82 is
@@ -78,7 +121,12 @@ mod tests {
     /// A rod of 2 about x 4 lies inside a cylinder of 20 whose axis and mantle miss it.
     #[test]
     fn a_body_narrower_than_the_cylinder_is_found() {
-        let pin = Surface::Rod(Rod { length: 20.0, ..upright(4.0, 0.0, -20.0, 1.0) });
+        let pin = Surface::Rod(Rod {
+            base: Point3::new(4.0, 0.0, -20.0),
+            axis: Vector3::z_axis(),
+            length: 20.0,
+            radius: 1.0,
+        });
         let still = Vector3::zeros();
         assert!(pin.touches(&upright(0.0, 0.0, -5.0, 10.0), &still));
         assert!(!pin.touches(&upright(-7.01, 0.0, -5.0, 10.0), &still));
@@ -103,13 +151,38 @@ mod tests {
     #[test]
     fn the_rim_touches_a_flank() {
         let body = Surface::Ellipsoid { a: 20.0, b: 10.0 };
-        let over = |x: f64| Rod {
+        let over = |x: f64| Frustum {
             base: Point3::new(x, 3.0, 0.0),
             axis: Vector3::y_axis(),
             length: 10.0,
-            radius: 3.0,
+            taper: Taper::cylinder(3.0),
         };
         assert!(body.touches(&over(22.078), &Vector3::zeros()));
         assert!(!body.touches(&over(22.080), &Vector3::zeros()));
+    }
+
+    /// A cone of 90° with its tip at z −5 is 5 wide at z 0: beside a block that ends at x 0 its side is (x − 5)/SQRT[2] away,
+    /// and swept along y it is the same. A point 3 above the tip on the axis is inside.
+    #[test]
+    fn a_cone_touches_an_edge_with_its_side() {
+        let block =
+            Surface::Block { min: Point3::new(-50.0, -10.0, -20.0), max: Point3::new(0.0, 10.0, 0.0) };
+        let cone = |x: f64, y: f64| Frustum {
+            base: Point3::new(x, y, -5.0),
+            axis: Vector3::z_axis(),
+            length: 8.0,
+            taper: Taper { radius: 0.0, slope: 1.0 },
+        };
+        assert!(block.touches(&cone(4.999, 0.0), &Vector3::zeros()));
+        assert!(!block.touches(&cone(5.001, 0.0), &Vector3::zeros()));
+        assert!(block.touches(&cone(4.999, -40.0), &Vector3::new(0.0, 80.0, 0.0)));
+        assert!(!block.touches(&cone(5.001, -40.0), &Vector3::new(0.0, 80.0, 0.0)));
+        assert!(!block.touches(&cone(4.0, -40.0), &Vector3::new(0.0, 25.0, 0.0)));
+        let projected = |p: [f64; 3]| cone(0.0, 0.0).project(&Point3::from(p));
+        assert_eq!(projected([0.0, 1.0, -2.0]), Point3::new(0.0, 1.0, -2.0));
+        assert_eq!(projected([4.0, 0.0, -5.0]), Point3::new(2.0, 0.0, -3.0));
+        assert_eq!(projected([9.0, 0.0, 4.0]), Point3::new(8.0, 0.0, 3.0));
+        assert_eq!(projected([-1.0, -1.0, -9.0]), Point3::new(0.0, 0.0, -5.0));
+        assert_eq!(projected([2.0, 0.0, 7.0]), Point3::new(2.0, 0.0, 3.0));
     }
 }

@@ -8,7 +8,7 @@ use super::feature::{DepthTo, Feature, FeatureKind};
 use super::hole::Hole;
 use super::limits::NOISE;
 use super::point_tree::PointTree;
-use super::solid::Rod;
+use super::solid::{Rod, Taper, shares_between};
 use super::surface::Surface;
 
 /// Thickness of the wall round a hole that is known to be metal, mm.
@@ -18,11 +18,11 @@ const WALL: f64 = 1.0;
 /// reamer, and some clearance.
 pub const MAX_BREAK_THROUGH: f64 = 10.0;
 
+/// Width by which a cone may break the edge of a hole without a countersink, mm.
+pub const MAX_EDGE_BREAK: f64 = 0.5;
+
 /// Length of a drill's point of 118° in diameters: a finishing tool need not reach below the drill's full diameter.
 pub const POINT_LENGTH: f64 = 0.300_430;
-
-/// Number of cylinders for the cone of a countersink.
-const CONE_STEPS: u8 = 8;
 
 /// Cosine of the largest angle between axes that count as parallel: 5°.
 pub const PARALLEL_COSINE: f64 = 0.996_194_698_091_745_5;
@@ -53,6 +53,8 @@ pub struct EntryPlanes {
     middles: PointTree,
     /// Largest distance of a collar's point from its middle.
     reach: f64,
+    /// Largest length by which the room of a hole leaves its collar, mm.
+    room: f64,
     /// The same along each axis.
     extent: Vector3<f64>,
     /// Direction of all axes if they agree, and the height of the highest entry along it.
@@ -67,7 +69,7 @@ pub struct Collar {
     pub rod: Rod,
     /// Radius inside which the metal at the entry belongs to the hole, mm.
     pub hole_radius: f64,
-    /// Cylinders that the hole consists of, each from the entry.
+    /// Cylinders and cones that the hole consists of, each from the entry.
     pub steps: Vec<Step>,
     /// The reference states the hole's diameter.
     pub has_diameter: bool,
@@ -75,13 +77,20 @@ pub struct Collar {
     pub is_through: bool,
 }
 
-/// Cylinder of a hole.
+/// Cylinder or cone of a hole; above the entry it is as wide as there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// Radius, mm.
-    pub radius: f64,
+    /// Radius by the depth below the entry.
+    pub taper: Taper,
     /// Largest depth of a feed below the entry, mm: with the tolerance, or the room below the far side.
     pub max_depth: f64,
+}
+
+impl Step {
+    /// Returns the radius at a depth below the entry, mm.
+    pub fn radius(&self, depth: f64) -> f64 {
+        self.taper.at(depth.clamp(0.0, self.max_depth))
+    }
 }
 
 impl EntryPlanes {
@@ -95,6 +104,7 @@ impl EntryPlanes {
         Self {
             middles: PointTree::new(collars.iter().map(middle)),
             reach: collars.iter().map(reach).fold(0.0, f64::max),
+            room: collars.iter().map(|collar| collar.max_depth() - collar.rod.length).fold(WALL, f64::max),
             extent: collars.iter().map(|collar| extent(&collar.rod)).fold(Vector3::zeros(), |a, b| a.sup(&b)),
             top: top(&collars),
             ids: holes.iter().map(|hole| hole.id.clone().unwrap_or_default()).collect(),
@@ -152,6 +162,26 @@ impl EntryPlanes {
     }
 }
 
+impl EntryPlanes {
+    /// Calls `each` with the holes whose room, or the space up to a height above it, may be nearer than `margin` to the box from
+    /// `low` to `high`.
+    pub fn below(
+        &self,
+        low: &Point3<f64>,
+        high: &Point3<f64>,
+        (margin, height): (f64, f64),
+        each: &mut impl FnMut(usize),
+    ) {
+        let margin = Vector3::repeat(margin.max(self.room));
+        // Without a common direction the space may be on any side.
+        let [before, behind] = match self.top {
+            Some((out, _)) => [height, -height].map(|height| out.map(|out| (out * height).max(0.0))),
+            None => [Vector3::repeat(height); 2],
+        };
+        self.around(&(low - margin - before), &(high + margin + behind), each);
+    }
+}
+
 /// Returns the largest distance of a rod's point from its middle along each axis.
 fn extent(rod: &Rod) -> Vector3<f64> {
     rod.axis.map(|along| along.abs() * rod.length / 2.0 + rod.radius * (1.0 - along * along).max(0.0).sqrt())
@@ -204,7 +234,8 @@ impl Collar {
     /// Returns the shares of a straight travel between which it is in the collar, deeper than `skin` below the entry
     /// plane.
     pub fn piece(&self, from: &Point3<f64>, to: &Point3<f64>, skin: f64) -> Option<[f64; 2]> {
-        self.rod.piece(from, to, (-self.floor(), self.rod.length - skin), self.rod.radius)
+        let taper = Taper::cylinder(self.rod.radius);
+        self.rod.piece(from, to, (-self.floor(), self.rod.length - skin), taper)
     }
 
     /// Returns the thickness of the metal below the bottom, mm.
@@ -212,20 +243,33 @@ impl Collar {
         if self.is_through { 0.0 } else { WALL }
     }
 
-    /// Returns the shares of a straight travel between which it is within `radius` of the axis and not below a depth.
-    pub fn piece_above(
-        &self,
-        from: &Point3<f64>,
-        to: &Point3<f64>,
-        radius: f64,
-        max_depth: f64,
-    ) -> Option<[f64; 2]> {
-        self.rod.piece(from, to, (self.rod.length - max_depth, f64::INFINITY), radius)
+    /// Returns the shares of a straight travel between which it is in a step of the hole, down to a depth, and above it.
+    pub fn pieces_of_step(&self, from: &Point3<f64>, to: &Point3<f64>, step: &Step) -> [Option<[f64; 2]>; 2] {
+        let (entry, bottom) = (self.rod.length, self.rod.length - step.max_depth);
+        let Taper { radius, slope } = step.taper;
+        let above = Taper::cylinder(radius);
+        if slope == 0.0 {
+            return [self.rod.piece(from, to, (bottom, f64::INFINITY), above), None];
+        }
+        let cone = Taper { radius: radius + slope * entry, slope: -slope };
+        [
+            self.rod.piece(from, to, (bottom, entry), cone),
+            self.rod.piece(from, to, (entry, f64::INFINITY), above),
+        ]
     }
 
     /// Returns the shares of a straight travel between which it is below the entry plane.
     pub fn piece_below_entry(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<[f64; 2]> {
-        self.rod.piece(from, to, (f64::NEG_INFINITY, self.rod.length), f64::INFINITY)
+        let gain = (to - from).dot(&self.rod.axis);
+        shares_between([0.0, 1.0], (-self.depth(from), gain), (f64::NEG_INFINITY, 0.0))
+    }
+
+    /// Returns the room of a cone that breaks the edge at the entry; `None` where the reference has a countersink or no diameter.
+    /// `slope` is the gain of the tool's radius per mm of height.
+    pub fn edge_break(&self, slope: f64) -> Option<Step> {
+        let has_edge = self.has_diameter && self.steps.iter().all(|step| step.taper.slope == 0.0);
+        let taper = Taper { radius: self.hole_radius + MAX_EDGE_BREAK, slope: -slope };
+        (has_edge && 0.0 < slope).then(|| Step { taper, max_depth: MAX_EDGE_BREAK / slope })
     }
 
     /// Returns the largest depth of a feed in the hole, mm.
@@ -234,29 +278,29 @@ impl Collar {
     }
 }
 
-/// Returns the cylinders of a hole; `radius` is that of a hole without features.
+/// Returns the cylinders and cones of a hole; `radius` is that of a hole without features.
 fn steps(hole: &Hole, radius: f64, tolerance: f64) -> Vec<Step> {
     let step = |radius: f64, depth: f64| {
         let is_far = hole.through && hole.depth <= depth + NOISE;
         let room = if is_far { MAX_BREAK_THROUGH + POINT_LENGTH * 2.0 * radius } else { tolerance };
-        Step { radius, max_depth: depth + room }
+        Step { taper: Taper::cylinder(radius), max_depth: depth + room }
     };
     let of_feature = |feature: &Feature| {
         let (radius, bottom) = (feature.diameter / 2.0, feature.bottom());
-        let is_cone = feature.kind == FeatureKind::Countersink && feature.angle.is_some();
+        if feature.kind == FeatureKind::Countersink && feature.angle.is_some() && 0.0 < bottom {
+            let slope = -radius / bottom;
+            let taper = Taper { radius: radius - slope * tolerance, slope };
+            return Step { taper, max_depth: bottom + tolerance };
+        }
         let point = match feature.to {
             DepthTo::Full => POINT_LENGTH * feature.diameter,
             DepthTo::Point => 0.0,
         };
-        let count = if is_cone { CONE_STEPS } else { 1 };
-        (0..count).map(move |index| {
-            let share = |index: u8| f64::from(index) / f64::from(count);
-            step(radius * (1.0 - share(index)), (bottom + point) * share(index + 1))
-        })
+        step(radius, bottom + point)
     };
     match hole.features[..] {
         [] => vec![step(radius, hole.depth)],
-        _ => hole.features.iter().flat_map(of_feature).collect(),
+        _ => hole.features.iter().map(of_feature).collect(),
     }
 }
 
@@ -295,7 +339,7 @@ mod tests {
     }
 
     /// A drill of 6 through 19 may end 10 mm and its point, 1.803, below the far side; the counterbore of 20 ends at 5.1. The
-    /// cone of Φ16 and 90° is 8 deep, in eight steps of 1.
+    /// cone of Φ16 and 90° is 8 deep and may be 0.1 deeper.
     #[test]
     fn each_feature_of_a_hole_has_its_room() {
         let features = |texts: &[&str]| texts.iter().map(|text| Feature::parse(text).unwrap()).collect();
@@ -306,16 +350,25 @@ mod tests {
             ..hole([0.0; 3], [0.0, 0.0, 1.0], None)
         };
         let steps = |hole: &Hole| -> Vec<[f64; 2]> {
-            let rounded = |s: &Step| [s.radius, s.max_depth].map(|v| (v * 1e3).round() / 1e3);
+            let rounded = |s: &Step| [s.taper.radius, s.max_depth].map(|v| (v * 1e3).round() / 1e3);
             Collar::of(hole, 0.1).steps.iter().map(rounded).collect()
         };
         let bored = ["drill 6 19", "counterbore 20 5"];
         assert_eq!(steps(&up(false, &bored)), [[3.0, 19.1], [10.0, 5.1]]);
         assert_eq!(steps(&up(true, &bored)), [[3.0, 30.803], [10.0, 5.1]]);
         assert_eq!(steps(&up(false, &["drill 6 19 to=full"])), [[3.0, 20.903]]);
-        let cone = steps(&up(false, &["countersink 16 angle=90"]));
-        assert_eq!(cone[..3], [[8.0, 1.1], [7.0, 2.1], [6.0, 3.1]]);
-        assert_eq!(cone.len(), 8);
+        let countersunk = up(false, &["countersink 16 angle=90"]);
+        assert_eq!(steps(&countersunk), [[8.1, 8.1]]);
+        let cone = Collar::of(&countersunk, 0.1).steps[0];
+        assert_eq!(
+            [-5.0, 0.0, 3.0, 8.1].map(|depth| (cone.radius(depth) * 1e6).round() / 1e6),
+            [8.1, 8.1, 5.1, 0.0]
+        );
+        let collar = Collar::of(&countersunk, 0.1);
+        let line = [Point3::new(5.0, 0.0, 4.0), Point3::new(5.0, 0.0, -6.0)];
+        let pieces = collar.pieces_of_step(&line[0], &line[1], &cone);
+        let rounded = pieces.map(|piece| piece.unwrap().map(|share| (share * 1e6).round() / 1e6));
+        assert_eq!(rounded, [[0.4, 0.71], [0.0, 0.4]]);
     }
 
     #[test]

@@ -63,21 +63,24 @@ mod touch_uncertainty;
 
 pub use assumption::{Assumption, AssumptionPlace, Total};
 pub use clusters::Clusters;
-pub use entry_planes::{Collar, EntryPlanes, MAX_BREAK_THROUGH, Metal, PARALLEL_COSINE, POINT_LENGTH, Step};
+pub use contact::Frustum;
+pub use entry_planes::{
+    Collar, EntryPlanes, MAX_BREAK_THROUGH, MAX_EDGE_BREAK, Metal, PARALLEL_COSINE, POINT_LENGTH, Step,
+};
 pub use feature::{DepthTo, Feature, FeatureKind, Hand};
 pub use flutes::Flutes;
 pub use hole::{Hole, HoleList, Origin, Unit};
 pub use indicator::tilted_ellipsoid;
 pub use limits::{NOISE, exceeds};
 pub use nominal::{NominalPart, ProbedPart};
-pub use nominal_axes::{NominalAxes, NominalAxis};
+pub use nominal_axes::{NominalAxes, NominalAxis, NominalThread};
 pub use overlap::overlaps;
 pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use read::STOPPED;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
-pub use solid::{NearestPoint, Rod, shares_between, shares_in_ball};
+pub use solid::{NearestPoint, Rod, Taper, shares_between, shares_within};
 pub use stock::{Pocket, Stock, StockAxis};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};

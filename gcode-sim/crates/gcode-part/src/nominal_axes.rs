@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::entry_planes::PARALLEL_COSINE;
-use super::feature::FeatureKind;
+use super::feature::{Feature, FeatureKind};
 use super::hole::Hole;
 use super::limits::NOISE;
 use super::point_tree::PointTree;
@@ -35,8 +35,41 @@ pub struct NominalAxis {
     pub spacing: f64,
     /// Radius of the hole at its widest, mm; `None` if unknown.
     pub radius: Option<f64>,
-    /// True if the hole has a thread.
-    pub is_threaded: bool,
+    /// Thread of the hole; `None` without one.
+    pub thread: Option<NominalThread>,
+}
+
+/// Metal of the thread of a nominal hole, mm. Depths count from the entry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NominalThread {
+    /// Radius of the hole before it is threaded: that of its widest feature that is narrower, at least the minor radius.
+    pub core: f64,
+    /// Major radius.
+    pub major: f64,
+    /// Pitch; 0 if the list has none.
+    pub pitch: f64,
+    /// Depths at which it begins, below wider features, and ends.
+    pub span: [f64; 2],
+}
+
+impl NominalThread {
+    /// Returns the thread of a hole, the deepest of several.
+    fn of(hole: &Hole) -> Option<Self> {
+        let taps = hole.features.iter().filter(|feature| feature.kind == FeatureKind::Tap);
+        let tap = taps.reduce(|deepest, tap| if deepest.bottom() < tap.bottom() { tap } else { deepest })?;
+        let pitch = tap.pitch.unwrap_or(0.0);
+        let others = || hole.features.iter().filter(|feature| feature.kind != FeatureKind::Tap);
+        // ISO 724: the minor diameter of an internal thread.
+        let minor = tap.diameter - 1.082_532 * pitch;
+        let narrower = others().map(|feature| feature.diameter).filter(|own| *own < tap.diameter);
+        let wider = others().filter(|feature| tap.diameter <= feature.diameter);
+        Some(Self {
+            core: narrower.fold(minor, f64::max) / 2.0,
+            major: tap.diameter / 2.0,
+            pitch,
+            span: [wider.map(Feature::bottom).fold(0.0, f64::max), tap.bottom()],
+        })
+    }
 }
 
 /// Step of a stepped hole that a list has as several holes on one axis.
@@ -57,6 +90,8 @@ pub struct NominalAxes {
     /// Depth of the deepest hole, mm.
     max_depth: f64,
     has_close: bool,
+    /// Largest major radius of a thread, mm; 0 without threads.
+    max_thread: f64,
     /// Steps of each stepped hole, the uppermost first, with those of the axes that it has.
     stacks: Vec<Vec<Step>>,
     stack_of: BTreeMap<usize, usize>,
@@ -70,7 +105,7 @@ impl NominalAxes {
             out: hole.axis.into(),
             spacing: f64::INFINITY,
             radius: hole.widest_diameter().map(|diameter| diameter / 2.0),
-            is_threaded: hole.features.iter().any(|feature| feature.kind == FeatureKind::Tap),
+            thread: NominalThread::of(hole),
         };
         let mut axes: Vec<NominalAxis> = holes.iter().map(axis).collect();
         let tree = PointTree::new(axes.iter().map(|axis| axis.entry));
@@ -85,8 +120,9 @@ impl NominalAxes {
             }
         });
         let max_depth = holes.iter().map(|hole| hole.depth).fold(0.0, f64::max);
+        let max_thread = axes.iter().filter_map(|axis| Some(axis.thread?.major)).fold(0.0, f64::max);
         let (stacks, stack_of) = stacks(holes);
-        Self { axes, tree, max_depth, has_close, stacks, stack_of }
+        Self { axes, tree, max_depth, has_close, max_thread, stacks, stack_of }
     }
 
     /// Returns true if the list has the steps of a hole as several holes.
@@ -118,6 +154,21 @@ impl NominalAxes {
         let mut entered = steps().filter(|(_, step)| SAME_LEVEL < below(step));
         let nearest = wide.min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
         nearest.or(entered.next_back()).map_or(0, |(index, _)| index)
+    }
+
+    /// Returns the threaded hole that a motion along `out` is in, with its axis' distance; `None` beside the threads.
+    pub fn threaded(
+        &self,
+        motion: [&Point3<f64>; 2],
+        out: &Unit<Vector3<f64>>,
+    ) -> Option<(&NominalAxis, &NominalThread, f64)> {
+        if self.max_thread == 0.0 {
+            return None;
+        }
+        let (index, distance) =
+            self.nearest_of(motion, out, self.max_thread, |axis| axis.thread.is_some())?;
+        let axis = &self.axes[index];
+        axis.thread.as_ref().filter(|thread| distance < thread.major).map(|thread| (axis, thread, distance))
     }
 
     /// Returns true if two axes are less than 1 mm apart.

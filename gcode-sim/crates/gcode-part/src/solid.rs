@@ -25,6 +25,33 @@ pub(super) fn block_nearest(min: &Point3<f64>, max: &Point3<f64>, p: &Point3<f64
     nearest(beyond, || block_face(min, max, p))
 }
 
+/// Radius of a body of revolution that changes evenly along its axis: of a cylinder, or of a cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taper {
+    /// Radius at height 0, mm.
+    pub radius: f64,
+    /// Gain of the radius per mm of height.
+    pub slope: f64,
+}
+
+impl Taper {
+    /// Returns the radius of a cylinder.
+    pub fn cylinder(radius: f64) -> Self {
+        Self { radius, slope: 0.0 }
+    }
+
+    /// Returns the radius at a height, mm.
+    pub fn at(&self, height: f64) -> f64 {
+        // An infinite height has no product with 0.
+        if self.slope == 0.0 { self.radius } else { self.radius + self.slope * height }
+    }
+
+    /// Returns the taper of a surface that is farther out everywhere, mm square to the surface.
+    pub fn grown(&self, by: f64) -> Self {
+        Self { radius: self.radius + by * libm::hypot(1.0, self.slope), ..*self }
+    }
+}
+
 /// Cylinder of limited length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rod {
@@ -76,20 +103,21 @@ impl Rod {
 }
 
 impl Rod {
-    /// Returns the shares of a straight travel between which it is in a cylinder about this axis, of another radius and
-    /// between two heights above the base.
+    /// Returns the shares of a straight travel between which it is within a radius of this axis and between two heights above
+    /// the base.
     pub fn piece(
         &self,
         from: &Point3<f64>,
         to: &Point3<f64>,
         heights: (f64, f64),
-        radius: f64,
+        taper: Taper,
     ) -> Option<[f64; 2]> {
         let (to_start, along) = (from - self.base, to - from);
         let (start, gain) = (to_start.dot(&self.axis), along.dot(&self.axis));
-        let [low, high] = shares_between([0.0, 1.0], (start, gain), heights)?;
+        let shares = shares_between([0.0, 1.0], (start, gain), heights)?;
         let axis = self.axis.into_inner();
-        shares_in_ball([low, high], to_start - axis * start, along - axis * gain, radius)
+        let radius = (taper.at(start), taper.slope * gain);
+        shares_within(shares, to_start - axis * start, along - axis * gain, radius)
     }
 }
 
@@ -108,27 +136,39 @@ pub fn shares_between(
     (first < last).then_some([first, last])
 }
 
-/// Returns the shares of a travel, within some, between which it is nearer than `radius` to the origin.
-pub fn shares_in_ball(
-    [first, last]: [f64; 2],
+/// Returns the shares of a travel, within some, between which it is nearer to the origin than a radius. The radius begins at a
+/// value and grows by a gain; below 0 nothing is nearer.
+pub fn shares_within(
+    shares: [f64; 2],
     from: Vector3<f64>,
     along: Vector3<f64>,
-    radius: f64,
+    (radius, gain): (f64, f64),
 ) -> Option<[f64; 2]> {
+    let [first, last] = shares_between(shares, (radius, gain), (0.0, f64::INFINITY))?;
     // a·t² + 2·b·t + c ≤ 0
-    let (a, b, c) = (along.norm_squared(), from.dot(&along), from.norm_squared() - radius * radius);
-    if radius <= 0.0 {
-        return None;
-    }
-    if a < 1e-18 {
+    let a = along.norm_squared() - gain * gain;
+    let b = from.dot(&along) - radius * gain;
+    let c = from.norm_squared() - radius * radius;
+    if a.abs() < 1e-18 && b.abs() < 1e-9 {
         return (c <= 0.0).then_some([first, last]);
     }
     let root = b * b - a * c;
     if root < 0.0 {
-        return None;
+        return (a < 0.0).then_some([first, last]);
     }
-    let root = root.sqrt();
-    let (first, last) = (first.max((-b - root) / a), last.min((-b + root) / a));
+    // Neither root is a difference of nearly equal numbers.
+    let sum = -(b + root.sqrt().copysign(b));
+    let (one, other) = (
+        if a == 0.0 { f64::INFINITY.copysign(sum) } else { sum / a },
+        if sum == 0.0 { 0.0 } else { c / sum },
+    );
+    let (low, high) = (one.min(other), one.max(other));
+    let (first, last) = match (a < 0.0, gain < 0.0) {
+        (false, _) => (first.max(low), last.min(high)),
+        // A steep travel enters a cone that widens along it and leaves one that narrows.
+        (true, false) => (first.max(high), last),
+        (true, true) => (first, last.min(low)),
+    };
     (first < last).then_some([first, last])
 }
 
@@ -176,6 +216,29 @@ mod tests {
             let found = body.nearest(&Point3::from(p));
             assert!((found.distance - distance).abs() < 1e-12, "{p:?}: {found:?}");
         }
+    }
+
+    /// The cone x² + y² = z² from z 0 on. A line at x 3 is in it from z 3; one at z 5 for 5 on both sides; one along its side
+    /// and 0.1 inside from its own begin on; one on the axis from below from z 0.
+    #[test]
+    fn a_line_is_in_a_cone_between_the_heights_worked_out_by_hand() {
+        let rod = Rod { base: Point3::origin(), axis: Vector3::z_axis(), length: 20.0, radius: 9.0 };
+        let cone = Taper { radius: 0.0, slope: 1.0 };
+        let piece = |from: [f64; 3], to: [f64; 3]| {
+            let piece = rod.piece(&from.into(), &to.into(), (f64::NEG_INFINITY, f64::INFINITY), cone)?;
+            Some(piece.map(|share| (share * 1e9).round() / 1e9))
+        };
+        assert_eq!(piece([3.0, 0.0, -10.0], [3.0, 0.0, 10.0]), Some([0.65, 1.0]));
+        assert_eq!(piece([-10.0, 0.0, 5.0], [10.0, 0.0, 5.0]), Some([0.25, 0.75]));
+        assert_eq!(piece([-10.0, 3.0, 5.0], [10.0, 3.0, 5.0]), Some([0.3, 0.7]));
+        assert_eq!(piece([2.9, 0.0, 3.0], [7.9, 0.0, 8.0]), Some([0.0, 1.0]));
+        assert_eq!(piece([3.1, 0.0, 3.0], [8.1, 0.0, 8.0]), None);
+        assert_eq!(piece([0.0, 0.0, -4.0], [0.0, 0.0, 4.0]), Some([0.5, 1.0]));
+        assert_eq!(piece([0.0, 0.0, 4.0], [0.0, 0.0, -4.0]), Some([0.0, 0.5]));
+        assert_eq!(piece([3.0, 0.0, -10.0], [3.0, 0.0, -2.0]), None);
+        let narrowing = Taper { radius: 4.0, slope: -1.0 };
+        let down = rod.piece(&[1.0, 0.0, 8.0].into(), &[1.0, 0.0, -2.0].into(), (0.0, 20.0), narrowing);
+        assert_eq!(down.map(|piece| piece.map(|share| (share * 1e9).round() / 1e9)), Some([0.5, 0.8]));
     }
 
     #[test]

@@ -114,9 +114,13 @@ pub enum StockAxis {
 
 /// Describes the key that distinguishes the kinds.
 fn describe_kind(schema: &mut Schema) {
-    for kind in schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten() {
+    let mut all: Vec<&mut Value> =
+        schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten().collect();
+    let has_surface = all.iter().any(|kind| kind["properties"]["kind"]["const"] == "surface");
+    let surface = if has_surface { "; surface: inside the surface of the reference" } else { "" };
+    for kind in &mut all {
         let kind = &mut kind["properties"]["kind"];
-        let description = "box; cylinder; surface: inside the surface of the reference.";
+        let description = format!("box; cylinder{surface}.");
         *kind = json!({ "type": "string", "enum": [kind["const"]], "description": description });
     }
 }

@@ -2,7 +2,7 @@
 //! gradients.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::solid::{Rod, block_face, shares_between, shares_in_ball};
+use super::solid::{Rod, Taper, block_face, shares_between, shares_within};
 
 /// A convex body; lengths in mm, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,21 +101,23 @@ impl Surface {
         match *self {
             Self::Ellipsoid { a, b } => {
                 let scale = Vector3::new(a - skin, b - skin, a - skin);
-                shares_in_ball(
+                shares_within(
                     [0.0, 1.0],
                     from.coords.component_div(&scale),
                     along.component_div(&scale),
-                    1.0,
+                    (1.0, 0.0),
                 )
             }
             Self::Cylinder { radius } => {
                 let across = |v: Vector3<f64>| Vector3::new(0.0, v.y, v.z);
-                shares_in_ball([0.0, 1.0], across(from.coords), across(along), radius - skin)
+                shares_within([0.0, 1.0], across(from.coords), across(along), (radius - skin, 0.0))
             }
             Self::Block { min, max } => (0..3).try_fold([0.0, 1.0], |shares, i| {
                 shares_between(shares, (from[i], along[i]), (min[i] + skin, max[i] - skin))
             }),
-            Self::Rod(rod) => rod.piece(from, to, (skin, rod.length - skin), rod.radius - skin),
+            Self::Rod(rod) => {
+                rod.piece(from, to, (skin, rod.length - skin), Taper::cylinder(rod.radius - skin))
+            }
         }
     }
 

@@ -6,8 +6,8 @@ use gcode_lang::units::Deg;
 /// Describes the difference of two arcs, unless it follows from a shift of their ends: I, J and K count from the
 /// start, R is the distance of the centre, and parallel arcs have one centre.
 pub(super) fn reshaped(
-    (old, a): (&Step, &PlanarArc),
-    (new, b): (&Step, &PlanarArc),
+    (old, a): (&Step<'_>, &PlanarArc),
+    (new, b): (&Step<'_>, &PlanarArc),
     is_moved: bool,
     tolerance: f64,
 ) -> Option<String> {
@@ -40,7 +40,7 @@ pub(super) fn reshaped(
 }
 
 /// Returns start and end of an arc relative to its centre.
-fn seen_from_centre(step: &Step, arc: &PlanarArc) -> [(f64, f64); 2] {
+fn seen_from_centre(step: &Step<'_>, arc: &PlanarArc) -> [(f64, f64); 2] {
     let (x, y) = (step.at[arc.plane.0] - arc.centre.0, step.at[arc.plane.1] - arc.centre.1);
     let back = Deg(-arc.sweep.0);
     [(x * back.cos() - y * back.sin(), x * back.sin() + y * back.cos()), (x, y)]
@@ -53,13 +53,12 @@ mod tests {
     use gcode_lang::motion::Position;
 
     /// An arc from (10, 0) about (0, 0) to (0, 10), shifted by `x` and changed by `other`.
-    fn arc(x: f64, other: impl Fn(&mut PlanarArc)) -> (Step, PlanarArc) {
+    fn arc(x: f64, other: impl Fn(&mut PlanarArc)) -> (Step<'static>, PlanarArc) {
         let mut arc = PlanarArc { plane: (0, 1), centre: (x, 0.0), sweep: Deg(90.0) };
         other(&mut arc);
         let point = |x: f64, y: f64| Position([x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let (from, to) = (point(10.0 + x, 0.0), point(x, 10.0));
-        let kind = StepKind::Arc(arc, 100.0);
-        (Step { kind, from, to, at: to, block_number: 0, set_by: None, condition: 0 }, arc)
+        (Step { kind: &StepKind::Rapid, from, to, at: to, block_number: 0, set_by: None, condition: 0 }, arc)
     }
 
     fn differs(x: f64, other: impl Fn(&mut PlanarArc)) -> bool {

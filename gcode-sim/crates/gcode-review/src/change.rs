@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::record::BlockLocation;
+use super::block_location::BlockLocation;
 use gcode_lang::diag::FindingKind;
 
 /// Entry of one edit: its effects on part and control, the one with the highest precedence first.
@@ -61,9 +61,10 @@ impl Effect {
     pub(super) fn new(
         kind: &'static FindingKind,
         message: impl Into<String>,
-        [old, new]: [Option<&BlockLocation>; 2],
+        blocks: [Option<Cow<'_, BlockLocation>>; 2],
     ) -> Self {
-        Self { code: kind.code.into(), message: message.into(), old: old.cloned(), new: new.cloned() }
+        let [old, new] = blocks.map(|block| block.map(Cow::into_owned));
+        Self { code: kind.code.into(), message: message.into(), old, new }
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) fn changed_cut_settings(
                 texts.push(format!("{is} instead of {was}"));
             }
         }
-        if let (Some(was), Some(is)) = (old.steps[*i].kind.rate(), new.steps[*j].kind.rate())
+        if let (Some(was), Some(is)) = (old.steps.kind(*i).rate(), new.steps.kind(*j).rate())
             && (was - is).abs() > 1e-6 * was.abs().max(is.abs())
         {
             texts.push(format!("F{} instead of F{}", short(is), short(was)));
@@ -52,10 +52,11 @@ fn states(
         steps.map(|step| (step, Default::default())).collect();
     let (mut now, mut done) = ((None, CutState::default()), 0);
     for (end, state) in &mut states {
-        for (number, step) in record.steps.iter().enumerate().take(*end).skip(done) {
-            now.1.follow(&step.kind, number, is_named);
-            if let StepKind::Tool(tool) = step.kind {
-                now.0 = Some(tool);
+        for number in done..*end {
+            let kind = record.steps.kind(number);
+            now.1.follow(kind, number, is_named);
+            if let StepKind::Tool(tool) = kind {
+                now.0 = Some(*tool);
             }
         }
         done = *end;

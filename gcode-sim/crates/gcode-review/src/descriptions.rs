@@ -32,7 +32,7 @@ pub(super) fn describe(kind: &StepKind, axes: &Axes) -> String {
 }
 
 /// Formats the end point of the axes that a move moves, in machine coordinates.
-pub(super) fn point(step: &Step, axes: &Axes) -> String {
+pub(super) fn point(step: &Step<'_>, axes: &Axes) -> String {
     let displacement = difference(&step.to, &step.from);
     let moving: Vec<String> = axes
         .iter()

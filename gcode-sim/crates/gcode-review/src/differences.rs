@@ -1,10 +1,11 @@
 //! Differences of two runs: all of them, also those that follow from others.
 use std::collections::BTreeSet;
 
-use super::align::{Alignment, StepPair};
+use super::align::Alignment;
 use super::arcs::reshaped;
 use super::change::Effect;
 use super::hole_groups::HoleEffect;
+use super::links::StepPair;
 use super::modal_conditions::ModalAspect;
 use super::redundant_commands::{is_redundant, redundant_commands};
 use super::reordered_cuts::ReorderedCuts;
@@ -46,7 +47,7 @@ pub(super) enum StepDifference {
     Shifted(&'static str),
 }
 
-/// Returns all differences: outcome, name and start, then those of holes, of steps, and of the final state.
+/// Passes on all differences: outcome, name and start, then those of holes, of steps, and of the final state.
 ///
 /// If the outcomes differ, the final states are not compared; with a run that never ends, the outcome is the only
 /// difference, because the iteration that corresponds to the other's end is unknown.
@@ -54,104 +55,129 @@ pub(super) fn differences(
     alignment: &Alignment<'_>,
     holes: Vec<HoleEffect>,
     cuts: &ReorderedCuts<'_>,
-) -> Vec<Difference> {
+    mut each: impl FnMut(Difference),
+) {
     let Alignment { records, tolerance, .. } = *alignment;
     let outcome = end_state::outcome(records);
     let ends = records.map(|record| record.outcome());
     let is_to_the_end = outcome.is_none() || ends == ["end", "end"];
     if !is_to_the_end && ends.contains(&"limit") {
-        return outcome.into_iter().map(Difference::Run).collect();
+        outcome.into_iter().map(Difference::Run).for_each(each);
+        return;
     }
-    let mut all: Vec<Difference> = outcome.into_iter().map(Difference::Run).collect();
-    all.extend(end_state::program(records).map(Difference::Run));
-    all.extend(initial_commands::compare(alignment).into_iter().map(Difference::Run));
-    all.extend(holes.into_iter().map(Difference::Holes));
-    all.extend(conditions(alignment));
-    let (steps, relied) = steps(alignment, cuts);
-    all.extend(steps);
-    all.extend(cuts.effects().into_iter().chain(relied).map(Difference::Run));
+    outcome.into_iter().chain(end_state::program(records)).map(Difference::Run).for_each(&mut each);
+    initial_commands::compare(alignment).into_iter().map(Difference::Run).for_each(&mut each);
+    holes.into_iter().map(Difference::Holes).for_each(&mut each);
+    conditions(alignment, &mut each);
+    let relied = steps(alignment, cuts, &mut each);
+    cuts.effects().into_iter().chain(relied).map(Difference::Run).for_each(&mut each);
     if is_to_the_end {
-        all.extend(end_state::compare(records, tolerance).into_iter().map(Difference::Run));
+        end_state::compare(records, tolerance).into_iter().map(Difference::Run).for_each(each);
     }
-    all
 }
 
-/// Returns the moves whose modal conditions differ, with H2 for H1 even if both are 0 in a run without a table.
-fn conditions(alignment: &Alignment<'_>) -> Vec<Difference> {
+/// Passes on the moves whose modal conditions differ, with H2 for H1 even if both are 0 in a run without a table.
+fn conditions(alignment: &Alignment<'_>, each: &mut impl FnMut(Difference)) {
     let [old, new] = alignment.records;
-    let mut all = Vec::new();
-    for (i, j) in alignment.pairs().filter(|(i, _)| old.steps[*i].is_move()) {
-        for aspect in ModalAspect::ALL {
-            let (was, is) = (&old.under(i).word(aspect).text, &new.under(j).word(aspect).text);
+    let differs = |numbers: (usize, usize)| {
+        let under = (&old.conditions[numbers.0], &new.conditions[numbers.1]);
+        let differs = |aspect: &ModalAspect| {
+            let (was, is) = (&under.0.word(*aspect).text, &under.1.word(*aspect).text);
             // A cycle in one revision alone is a difference of its holes.
-            if was != is && !was.is_empty() && !is.is_empty() {
-                all.push(Difference::Step(StepDifference::Condition(aspect), [Some(i), Some(j)]));
-            }
+            was != is && !was.is_empty() && !is.is_empty()
+        };
+        (numbers, ModalAspect::ALL.into_iter().filter(differs).collect::<Vec<_>>())
+    };
+    let mut last = ((usize::MAX, usize::MAX), Vec::new());
+    for (i, j) in alignment.pairs() {
+        let numbers = (old.steps.condition(i), new.steps.condition(j));
+        if last.0 != numbers {
+            last = differs(numbers);
+        }
+        if !last.1.is_empty() && old.steps.is_move(i) {
+            let condition = |aspect: &ModalAspect| {
+                Difference::Step(StepDifference::Condition(*aspect), [Some(i), Some(j)])
+            };
+            last.1.iter().map(condition).for_each(&mut *each);
         }
     }
-    all
 }
 
-/// Returns all differences of steps in their order, and the changed commands that cuts relied on. Steps of
+/// Passes on all differences of steps in their order, and returns the changed commands that cuts relied on. Steps of
 /// reordered cuts are part of these; a command of what is in force already is no difference.
-fn steps(alignment: &Alignment<'_>, cuts: &ReorderedCuts<'_>) -> (Vec<Difference>, Vec<Effect>) {
+fn steps(
+    alignment: &Alignment<'_>,
+    cuts: &ReorderedCuts<'_>,
+    each: &mut impl FnMut(Difference),
+) -> Vec<Effect> {
     let Alignment { records: [old, new], links, .. } = *alignment;
     let mut explained: BTreeSet<usize> = redundant_commands(alignment).collect();
     let mut shifted = shifted_events(alignment);
     explained.extend(take_with_runs(&mut shifted, links, cuts));
-    let is_free = |k: usize| links[k].is_unpaired() && !shifted.contains_key(&k);
+    let is_unpaired = |k: usize| links.get(k).is_some_and(StepPair::is_unpaired);
+    let is_free = |k: usize| is_unpaired(k) && !shifted.contains_key(&k);
     let relied = relied_on_changes(alignment, is_free);
     let is_of_step = |(k, effect): &&(usize, Effect)| {
-        let change = alignment.step(links[*k]).and_then(|step| step.kind.change());
-        change.is_some_and(|kind| kind.code == effect.code)
+        let step = links.get(*k).and_then(|link| alignment.step(link));
+        step.and_then(|step| step.kind.change()).is_some_and(|kind| kind.code == effect.code)
     };
     explained.extend(relied.iter().filter(is_of_step).map(|(k, _)| *k));
-    let mut all = Vec::new();
     for (k, link) in links.iter().enumerate() {
         let sides = link.sides();
-        let mut add = |kind| all.push(Difference::Step(kind, sides));
+        let mut add = |kind| each(Difference::Step(kind, sides));
+        if let StepPair::Same(i, j) = link {
+            if let (Some(was), Some(is)) = (old.steps.kind(i).rate(), new.steps.kind(j).rate())
+                && is_other_rate(was, is)
+            {
+                feed(&old.steps.at(i), &new.steps.at(j)).into_iter().for_each(add);
+            }
+            continue;
+        }
         let [was, is] = alignment.steps(sides);
         let both = was.zip(is);
         match (shifted.get(&k), both) {
             (Some(None), _) => {}
             (Some(Some((i, j, word))), _) => {
                 if !(is_redundant(&old.steps, *i) && is_redundant(&new.steps, *j)) {
-                    all.push(Difference::Step(StepDifference::Shifted(word), [Some(*i), Some(*j)]));
+                    each(Difference::Step(StepDifference::Shifted(word), [Some(*i), Some(*j)]));
                 }
             }
-            (None, None) if !explained.contains(&k) && !cuts.contains(link) => add(StepDifference::Unpaired),
-            (None, Some((was, is))) if matches!(link, StepPair::Changed(..)) => {
+            (None, None) if !explained.contains(&k) && !cuts.contains(&link) => add(StepDifference::Unpaired),
+            (None, None) => {}
+            (None, Some((was, is))) => {
                 if was.is_move() {
-                    moved(was, is, alignment.tolerance, &mut add);
+                    moved(&was, &is, alignment.tolerance, &mut add);
                 } else {
-                    add(command(was, is));
+                    add(command(&was, &is));
                 }
-                feed(was, is).into_iter().for_each(add);
+                feed(&was, &is).into_iter().for_each(add);
             }
-            (None, both) => both.and_then(|(was, is)| feed(was, is)).into_iter().for_each(add),
         }
     }
-    (all, relied.into_iter().map(|(_, effect)| effect).collect())
+    relied.into_iter().map(|(_, effect)| effect).collect()
+}
+
+fn is_other_rate(was: f64, is: f64) -> bool {
+    (was - is).abs() > 1e-6 * was.abs().max(is.abs())
 }
 
 /// Returns the difference of two feeds. In G93 a move takes its time, and is slower if its path is shorter.
-fn feed(old: &Step, new: &Step) -> Option<StepDifference> {
+fn feed(old: &Step<'_>, new: &Step<'_>) -> Option<StepDifference> {
     let (was, is) = (old.kind.rate()?, new.kind.rate()?);
     let (before, now) = (old.length() / was, new.length() / is);
     let is_other_length = (old.length() - new.length()).abs() > 1e-9;
     let is_as_long = is_other_length && (before - now).abs() <= 1e-5 * before;
-    let is_other = (was - is).abs() > 1e-6 * was.abs().max(is.abs());
-    (is_other && !is_as_long).then_some(StepDifference::Feed { was, is })
+    (is_other_rate(was, is) && !is_as_long).then_some(StepDifference::Feed { was, is })
 }
 
 /// Adds the differences of a move without its feed.
-fn moved(old: &Step, new: &Step, tolerance: f64, add: &mut impl FnMut(StepDifference)) {
+fn moved(old: &Step<'_>, new: &Step<'_>, tolerance: f64, add: &mut impl FnMut(StepDifference)) {
     if old.kind.name() != new.kind.name() {
         add(StepDifference::MoveKind);
     }
     let shift = difference(&new.to, &old.to);
     let is_moved = !near(&shift, &Position::default(), tolerance);
-    if let (StepKind::Arc(a, _), StepKind::Arc(b, _)) = (&old.kind, &new.kind) {
+    if let (StepKind::Arc(a, _), StepKind::Arc(b, _)) = (old.kind, new.kind) {
         let is_moved = is_moved || !near(&new.from, &old.from, tolerance);
         let text = reshaped((old, a), (new, b), is_moved, tolerance);
         text.map(StepDifference::ArcShape).into_iter().for_each(&mut *add);
@@ -161,8 +187,8 @@ fn moved(old: &Step, new: &Step, tolerance: f64, add: &mut impl FnMut(StepDiffer
     }
 }
 
-fn command(old: &Step, new: &Step) -> StepDifference {
-    match (&old.kind, &new.kind) {
+fn command(old: &Step<'_>, new: &Step<'_>) -> StepDifference {
+    match (old.kind, new.kind) {
         (StepKind::Spindle(was, a), StepKind::Spindle(is, b)) if was == is => {
             StepDifference::Speed { was: *a, is: *b }
         }

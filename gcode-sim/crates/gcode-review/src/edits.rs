@@ -1,70 +1,104 @@
 //! Edits: blocks that two revisions write differently, and the edit that causes an effect.
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::block_location::BlockLocation;
 use super::change::Effect;
 use super::hole_groups::HoleEffect;
-use super::program_text::{TextBlock, executed, gaps, written};
-use super::record::{BlockLocation, Record};
+use super::program_text::{ProgramSide, executed, for_each_gap, written};
+use super::record::Record;
 
 /// A block that is written differently, or consecutive blocks that are added, removed, moved or rewritten together.
-#[derive(Clone, Debug)]
-pub(super) struct Edit {
-    /// Its first executed block, old and new; `None` if it has none.
-    pub blocks: [Option<BlockLocation>; 2],
-    /// Number of steps of each run before its first execution.
-    reached: [Option<usize>; 2],
+#[derive(Clone, Copy, Debug)]
+struct Edit {
+    /// Number of its program among those of both revisions.
+    program: u32,
+    /// Its first executed block, old and new; [`NONE`] if it has none.
+    first: [u32; 2],
+    /// Number of steps of each run before its first execution; [`NONE`] without one.
+    reached: [u32; 2],
+}
+
+/// No block, no number of steps.
+const NONE: u32 = u32::MAX;
+
+/// Consecutive lines of one edit, or each of the next one.
+#[derive(Clone, Copy, Debug)]
+struct LineRun {
+    first: u32,
+    count: u32,
+    edit: u32,
+    is_counting: bool,
 }
 
 /// All edits that one of the runs executes.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Edits {
+#[derive(Default)]
+pub(super) struct Edits<'a> {
+    programs: Vec<[ProgramSide<'a>; 2]>,
     all: Vec<Edit>,
     /// Edits by program and line, old and new.
-    of_block: [BTreeMap<String, BTreeMap<u32, usize>>; 2],
-    /// Number of steps before each edit, and the edit, in that order; old and new.
-    by_step: [Vec<(usize, usize)>; 2],
+    of_line: [BTreeMap<String, Vec<LineRun>>; 2],
+    /// Edits that a run executes, by the number of steps before them, old and new; `None` if all are in that order.
+    by_step: [Option<Vec<u32>>; 2],
 }
 
-impl Edits {
+impl<'a> Edits<'a> {
     /// Compares the programs' texts; of a record without texts the blocks that steps and their calls name.
-    pub(super) fn new(old: &Record, new: &Record) -> Self {
+    pub(super) fn new(old: &'a Record, new: &'a Record) -> Self {
         let programs = match (written(old), written(new)) {
             (Some(was), Some(is)) => [was, is],
             _ => [executed(old), executed(new)],
         };
-        let [was, is] = programs.map(|all| all.into_iter().collect::<BTreeMap<_, _>>());
+        let by_name = |all: Vec<ProgramSide<'a>>| all.into_iter().map(|side| (side.name.clone(), side));
+        let [was, mut is] = programs.map(|all| by_name(all).collect::<BTreeMap<_, _>>());
+        // The edit of a program that one revision alone calls is its call.
+        let shared = was.into_iter().filter_map(|(name, before)| Some([before, is.remove(&name)?]));
+        Self::of_programs(shared.collect())
+    }
+
+    fn of_programs(programs: Vec<[ProgramSide<'a>; 2]>) -> Self {
         let mut edits = Self::default();
-        for (name, before) in &was {
-            // The edit of a program that one revision alone calls is its call.
-            let Some(now) = is.get(name) else { continue };
-            for [of_old, of_new] in gaps(before, now) {
-                edits.add([&before[of_old], &now[of_new]]);
-            }
+        for (number, [before, now]) in programs.iter().enumerate() {
+            for_each_gap([before, now], |gap| edits.add(number as u32, [before, now], gap));
         }
-        for (side, by_step) in edits.by_step.iter_mut().enumerate() {
-            let reached =
-                edits.all.iter().enumerate().filter_map(|(edit, one)| Some((one.reached[side]?, edit)));
-            by_step.extend(reached);
-            by_step.sort_unstable();
+        edits.programs = programs;
+        for runs in edits.of_line.iter_mut().flat_map(BTreeMap::values_mut) {
+            runs.sort_by_key(|run| run.first);
+        }
+        for side in 0..2 {
+            let reached = |edit: &Edit| edit.reached[side];
+            if !edits.all.is_sorted_by_key(reached) || edits.all.iter().any(|edit| reached(edit) == NONE) {
+                let numbers = 0..edits.all.len() as u32;
+                let mut by_step: Vec<u32> =
+                    numbers.filter(|edit| reached(&edits.all[*edit as usize]) != NONE).collect();
+                by_step.sort_by_key(|edit| reached(&edits.all[*edit as usize]));
+                edits.by_step[side] = Some(by_step);
+            }
         }
         edits
     }
 
-    fn add(&mut self, sides: [&[TextBlock]; 2]) {
-        let reached = sides.map(|blocks| blocks.iter().filter_map(|block| block.reached).min());
-        if reached == [None, None] {
+    /// Adds an edit of some blocks of a program, old and new.
+    fn add(&mut self, program: u32, sides: [&ProgramSide<'_>; 2], blocks: [&[u32]; 2]) {
+        let reached = [0, 1].map(|side| {
+            let reached = blocks[side].iter().filter_map(|block| sides[side].reached(*block as usize));
+            reached.map(|(steps, _)| steps as u32).min().unwrap_or(NONE)
+        });
+        if reached == [NONE, NONE] {
             return;
         }
-        let first = |blocks: &[TextBlock]| {
-            let executed = blocks.iter().find(|block| block.reached.is_some());
-            executed.or(blocks.first()).map(|block| block.location.clone())
+        let first = |side: usize| {
+            let is_executed = |block: &&u32| sides[side].reached(**block as usize).is_some();
+            blocks[side].iter().find(is_executed).or(blocks[side].first()).copied().unwrap_or(NONE)
         };
-        for (blocks, of_block) in sides.iter().zip(&mut self.of_block) {
-            for BlockLocation { program, line, .. } in blocks.iter().map(|block| &block.location) {
-                of_block.entry(program.clone()).or_default().insert(*line, self.all.len());
+        let edit = self.all.len() as u32;
+        for side in 0..2 {
+            for block in blocks[side] {
+                let (program, line) = sides[side].place(*block as usize);
+                add_line(&mut self.of_line[side], program, line, edit);
             }
         }
-        self.all.push(Edit { blocks: sides.map(first), reached });
+        self.all.push(Edit { program, first: [first(0), first(1)], reached });
     }
 
     pub(super) fn len(&self) -> usize {
@@ -76,109 +110,170 @@ impl Edits {
         self.all.len() == 1
     }
 
+    fn of_place(&self, side: usize, program: &str, line: u32) -> Option<usize> {
+        let runs = self.of_line[side].get(program)?;
+        let run = &runs[runs.partition_point(|run| run.first <= line).checked_sub(1)?];
+        let index = line - run.first;
+        (index < run.count).then_some((run.edit + if run.is_counting { index } else { 0 }) as usize)
+    }
+
+    /// Returns the edit of the outermost call of numbered blocks, or of the blocks themselves.
+    pub(super) fn of_numbers(&self, records: [&Record; 2], numbers: [Option<usize>; 2]) -> Option<usize> {
+        let of = |side: usize| self.of_number(side, records[side], numbers[side]?);
+        first_edit(of(0), of(1))
+    }
+
+    fn of_number(&self, side: usize, record: &Record, number: usize) -> Option<usize> {
+        record.blocks.find_from_outermost(number, |program, line| self.of_place(side, program, line))
+    }
+
     /// Returns the edit of the outermost call of blocks, or of the blocks themselves.
-    pub(super) fn of(&self, blocks: [Option<&BlockLocation>; 2]) -> Option<usize> {
-        let of = |side: usize| self.of_side(side, blocks[side]?);
-        match (of(0), of(1)) {
-            (Some(old), Some(new)) => Some(old.min(new)),
-            (old, new) => old.or(new),
-        }
+    fn of(&self, blocks: [Option<&BlockLocation>; 2]) -> Option<usize> {
+        first_edit(self.of_side(0, blocks[0]), self.of_side(1, blocks[1]))
     }
 
-    fn of_side(&self, side: usize, block: &BlockLocation) -> Option<usize> {
-        let find = |block: &BlockLocation| self.of_block[side].get(&block.program)?.get(&block.line).copied();
-        block.calls.iter().rev().chain([block]).find_map(find)
+    fn of_side(&self, side: usize, block: Option<&BlockLocation>) -> Option<usize> {
+        block?.outermost_first().find_map(|block| self.of_place(side, &block.program, block.line))
     }
 
-    /// Returns the edit that causes an effect at these blocks and steps: theirs, else the last one before the
-    /// steps.
-    pub(super) fn cause(
+    /// Returns the edit that causes an effect at numbered blocks and steps: theirs, else the last one before the steps.
+    pub(super) fn cause_of_numbers(
         &self,
-        blocks: [Option<&BlockLocation>; 2],
+        records: [&Record; 2],
+        numbers: [Option<usize>; 2],
         steps: [Option<usize>; 2],
     ) -> Option<usize> {
-        let only = || self.is_single().then_some(0);
-        self.of(blocks).or_else(only).or_else(|| self.last_before(steps))
+        self.of_numbers(records, numbers).or_else(|| self.cause_of_steps(steps))
     }
 
-    fn last_before(&self, steps: [Option<usize>; 2]) -> Option<usize> {
+    /// Returns the only edit, or the last one before some steps.
+    fn cause_of_steps(&self, steps: [Option<usize>; 2]) -> Option<usize> {
+        if self.is_single() {
+            return Some(0);
+        }
         let last = |side: usize| {
-            let (step, by_step) = (steps[side]?, &self.by_step[side]);
-            let (reached, edit) =
-                by_step[..by_step.partition_point(|(reached, _)| *reached <= step)].last()?;
-            Some((step - reached, *edit))
+            let step = steps[side]? as u32;
+            let is_before = |edit: &Edit| edit.reached[side] <= step;
+            let edit = match &self.by_step[side] {
+                Some(by_step) => {
+                    let behind = by_step.partition_point(|edit| is_before(&self.all[*edit as usize]));
+                    by_step[behind.checked_sub(1)?] as usize
+                }
+                None => self.all.partition_point(is_before).checked_sub(1)?,
+            };
+            Some((step - self.all[edit].reached[side], edit))
         };
         [last(0), last(1)].into_iter().flatten().min().map(|(_, edit)| edit)
     }
 
     /// Returns the blocks of the only edit if an effect names others.
-    pub(super) fn blocks(&self, named: [Option<&BlockLocation>; 2]) -> Option<&[Option<BlockLocation>; 2]> {
-        let [Edit { blocks, .. }] = &self.all[..] else { return None };
-        let is_named = (0..2).all(|side| match (named[side], &blocks[side]) {
-            (Some(block), Some(_)) => self.of_side(side, block).is_some(),
-            (None, None) => true,
+    pub(super) fn blocks(&self, named: [Option<&BlockLocation>; 2]) -> Option<[Option<BlockLocation>; 2]> {
+        let [Edit { program, first, .. }] = self.all[..] else { return None };
+        let is_named = (0..2).all(|side| match (named[side], first[side]) {
+            (Some(block), index) if index != NONE => self.of_side(side, Some(block)).is_some(),
+            (None, NONE) => true,
             _ => false,
         });
-        (!is_named).then_some(blocks)
+        let block = |side: usize| {
+            (first[side] != NONE)
+                .then(|| self.programs[program as usize][side].location(first[side] as usize))
+        };
+        (!is_named).then(|| [block(0), block(1)])
     }
 
     /// Returns edits of single lines.
     #[cfg(test)]
     pub(super) fn of_lines(lines: &[u32]) -> Self {
-        let mut edits = Self::default();
-        for line in lines {
-            let location = |block: &str| BlockLocation {
+        let program = |lines: &[u32], block: &str| {
+            let location = |line: &u32| BlockLocation {
                 program: "O0001".to_owned(),
                 line: *line,
                 block: block.to_owned(),
                 calls: Vec::new(),
             };
-            let [old, new] = ["X1.", "X2."].map(|block| [TextBlock::new(location(block), Some(0))]);
-            edits.add([&old, &new]);
+            let blocks = lines.iter().map(|line| (location(line), Some(0)));
+            ProgramSide::named(String::new(), blocks.collect())
+        };
+        Self::of_programs(vec![["X1.", "X2."].map(|block| program(lines, block))])
+    }
+}
+
+/// Adds the edit of a line.
+fn add_line(of_line: &mut BTreeMap<String, Vec<LineRun>>, program: &str, line: u32, edit: u32) {
+    if !of_line.contains_key(program) {
+        of_line.insert(program.to_owned(), Vec::new());
+    }
+    let Some(runs) = of_line.get_mut(program) else { return };
+    if let Some(run) = runs.last_mut()
+        && run.first + run.count == line
+    {
+        let is_first = run.count == 1;
+        let last = run.edit + if run.is_counting { run.count - 1 } else { 0 };
+        let (is_next, is_same) = (edit == last + 1, edit == last);
+        if is_next && (run.is_counting || is_first) || is_same && (!run.is_counting || is_first) {
+            (run.count, run.is_counting) = (run.count + 1, is_next);
+            return;
         }
-        edits
+    }
+    runs.push(LineRun { first: line, count: 1, edit, is_counting: false });
+}
+
+/// Returns the first of the edits of both sides.
+fn first_edit(old: Option<usize>, new: Option<usize>) -> Option<usize> {
+    match (old, new) {
+        (Some(old), Some(new)) => Some(old.min(new)),
+        (old, new) => old.or(new),
     }
 }
 
 /// Finds the edits that cause effects, by the blocks and steps of these.
 pub(super) struct Causes<'a> {
-    edits: &'a Edits,
+    edits: &'a Edits<'a>,
     records: [&'a Record; 2],
-    /// The first step of each block, old and new.
-    first: [BTreeMap<&'a BlockLocation, usize>; 2],
+    /// The first step of each block by its number, old and new.
+    first: [OnceCell<Vec<u32>>; 2],
 }
 
 impl<'a> Causes<'a> {
-    pub(super) fn new(edits: &'a Edits, records: [&'a Record; 2]) -> Self {
-        let first = records.map(|record| {
-            let mut first = BTreeMap::new();
-            for (number, step) in record.steps.iter().enumerate() {
-                first.entry(&record.blocks[step.block_number]).or_insert(number);
+    pub(super) fn new(edits: &'a Edits<'a>, records: [&'a Record; 2]) -> Self {
+        Self { edits, records, first: Default::default() }
+    }
+
+    /// Returns the first step of a block.
+    fn first(&self, side: usize, block: Option<&BlockLocation>) -> Option<usize> {
+        let record = self.records[side];
+        let number = record.blocks.find(block?)?;
+        let first = self.first[side].get_or_init(|| {
+            let mut first = vec![NONE; record.blocks.len()];
+            for step in (0..record.steps.len()).rev() {
+                first[record.steps.block_number(step)] = step as u32;
             }
             first
         });
-        Self { edits, records, first }
+        (first[number] != NONE).then_some(first[number] as usize)
     }
 
     /// Returns the edit of an effect by its blocks; the outcome of a run depends on all steps, its name on none.
     pub(super) fn of(&self, effect: &Effect) -> Vec<usize> {
         let blocks = [effect.old.as_ref(), effect.new.as_ref()];
-        let first = |side: usize| self.first[side].get(blocks[side]?).copied();
-        let steps = match &*effect.code {
-            "program" => return Vec::new(),
-            "outcome" => self.records.map(|record| Some(record.steps.len())),
-            _ => [first(0), first(1)],
-        };
-        self.edits.cause(blocks, steps).into_iter().collect()
+        if effect.code == "program" {
+            return Vec::new();
+        }
+        let cause = self.edits.of(blocks).or_else(|| {
+            self.edits.cause_of_steps(match &*effect.code {
+                "outcome" => self.records.map(|record| Some(record.steps.len())),
+                _ => [self.first(0, blocks[0]), self.first(1, blocks[1])],
+            })
+        });
+        cause.into_iter().collect()
     }
 
     /// Returns the edits of an effect on holes: those of its feeds and tools.
     pub(super) fn of_holes(&self, HoleEffect { effect, steps, tools }: &HoleEffect) -> Vec<usize> {
-        let edit =
-            |side: usize, number: usize| self.edits.of_side(side, self.records[side].blocks.get(number)?);
+        let edit = |side: usize, number: usize| self.edits.of_number(side, self.records[side], number);
         let tools = (0..2).filter_map(|side| edit(side, tools[side]?));
         let feed = |side: usize| {
-            let numbers = steps[side].iter().map(move |step| self.records[side].steps[*step].block_number);
+            let numbers = steps[side].iter().map(move |step| self.records[side].steps.block_number(*step));
             numbers.filter_map(move |number| edit(side, number))
         };
         let edits: BTreeSet<usize> = tools.chain((0..2).flat_map(feed)).collect();

@@ -1,11 +1,15 @@
 //! Equal differences, counted as one effect of an edit.
+use std::borrow::Cow;
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use super::align::Alignment;
+use super::block_location::BlockLocation;
 use super::change::Effect;
 use super::descriptions::{coordinates, describe, point, short};
 use super::differences::{Difference, StepDifference};
 use super::edits::{Causes, Edits};
+use super::effect_groups::{EditSet, Group, Numbers, RepeatedBlocks, block_key};
 use super::entries::CausedEffect;
 use super::hole_groups::name_holes;
 use super::kinds;
@@ -13,51 +17,7 @@ use super::modal_conditions::ModalAspect;
 use super::redundant_commands::is_speed_alone;
 use super::steps::{Step, StepKind, difference, near, with_article};
 use gcode_lang::diag::FindingKind;
-use gcode_lang::motion::{MAX_AXES, Position};
-
-/// Differences with one sentence, or those that one edit makes of moves.
-struct Group {
-    kind: &'static FindingKind,
-    /// The difference without its count.
-    text: String,
-    /// Names of the steps that differ, and the number of each.
-    counts: Vec<(&'static str, usize)>,
-    /// Others have other numbers than the first.
-    varies: bool,
-    numbers: Numbers,
-    /// Numbers of its edits, and whether its blocks are part of them.
-    causes: Vec<usize>,
-    is_direct: bool,
-    /// Numbers of the first blocks in the records.
-    block_numbers: [Option<usize>; 2],
-}
-
-/// Numbers that a group collects.
-#[derive(PartialEq)]
-enum Numbers {
-    None,
-    /// Largest deviation of each axis, and whether all machine positions are unchanged.
-    Shift {
-        most: Position,
-        is_compensated: bool,
-    },
-    /// Ratios of new to old feeds.
-    Factor {
-        smallest: f64,
-        largest: f64,
-    },
-    /// Spindle speeds of the old and the new run, rpm.
-    Speeds {
-        old: f64,
-        new: f64,
-    },
-    /// Moves under another condition by their numbers in the old run, and the first in the new run.
-    Moves {
-        aspect: ModalAspect,
-        old: Vec<usize>,
-        first_new: usize,
-    },
-}
+use gcode_lang::motion::Position;
 
 /// Description of one difference, from which its group begins.
 struct Description {
@@ -71,7 +31,7 @@ struct Description {
 }
 
 impl Description {
-    fn new(kind: &'static FindingKind, step: &Step, text: String) -> Self {
+    fn new(kind: &'static FindingKind, step: &Step<'_>, text: String) -> Self {
         Self { kind, name: step.kind.name(), text, numbers: Numbers::None, block_numbers: None }
     }
 }
@@ -83,81 +43,136 @@ const MOST_SHIFTS: usize = 4;
 pub(super) struct Effects<'a> {
     all: Vec<Group>,
     by_text: BTreeMap<(&'static str, String), usize>,
-    by_blocks: BTreeMap<(&'static str, [Option<usize>; 2]), usize>,
+    /// By kind, and the numbers of the blocks, old and new, from 1.
+    by_blocks: BTreeMap<(u8, u32, u32), u32>,
     alignment: Alignment<'a>,
-    edits: &'a Edits,
+    edits: &'a Edits<'a>,
+    causes: Causes<'a>,
+    /// Effects that are not of steps, and the number of those before these.
+    others: Vec<CausedEffect>,
+    before_steps: Option<usize>,
+    /// The last difference of feeds, and its group.
+    last_feed: Option<([u64; 2], [Option<usize>; 2], usize)>,
+    repeated: [OnceCell<RepeatedBlocks>; 2],
 }
 
 impl<'a> Effects<'a> {
-    /// Returns the effects of differences with their edits. Differences of steps are grouped by their sentences;
-    /// feeds, speeds and unpaired moves by their blocks as well.
-    pub(super) fn of(
-        differences: Vec<Difference>,
-        alignment: Alignment<'a>,
-        edits: &'a Edits,
-    ) -> Vec<CausedEffect> {
-        let causes = Causes::new(edits, alignment.records);
-        let (by_text, by_blocks) = Default::default();
-        let mut groups = Self { all: Vec::new(), by_text, by_blocks, alignment, edits };
-        let mut effects: Vec<CausedEffect> = Vec::new();
-        let mut of_steps = None;
-        for difference in differences {
-            match difference {
-                Difference::Run(effect) => effects.push((causes.of(&effect), effect)),
-                Difference::Holes(holes) => effects.push((causes.of_holes(&holes), holes.effect)),
-                Difference::Step(kind, steps) => {
-                    of_steps = of_steps.or(Some(effects.len()));
-                    groups.add(&kind, steps);
-                }
-            }
+    pub(super) fn new(alignment: Alignment<'a>, edits: &'a Edits<'a>) -> Self {
+        Self {
+            all: Vec::new(),
+            by_text: BTreeMap::new(),
+            by_blocks: BTreeMap::new(),
+            alignment,
+            edits,
+            causes: Causes::new(edits, alignment.records),
+            others: Vec::new(),
+            before_steps: None,
+            last_feed: None,
+            repeated: Default::default(),
         }
-        groups.join_shifts();
-        let effect = |group: &Group| {
-            let effect = Effect::new(group.kind, groups.message(group), groups.blocks(group.block_numbers));
-            (group.causes.clone(), effect)
-        };
-        let index = of_steps.unwrap_or(effects.len());
-        effects.splice(index..index, groups.all.iter().map(effect));
-        effects
     }
 
-    fn add(&mut self, kind: &StepDifference, steps: [Option<usize>; 2]) {
+    /// Adds a difference. Those of steps are grouped by their sentences; feeds, speeds and unpaired moves by their
+    /// blocks as well.
+    pub(super) fn add(&mut self, difference: Difference) {
+        match difference {
+            Difference::Run(effect) => self.others.push((self.causes.of(&effect), effect)),
+            Difference::Holes(holes) => {
+                self.others.push((self.causes.of_holes(&holes), holes.effect));
+            }
+            Difference::Step(kind, steps) => {
+                self.before_steps = self.before_steps.or(Some(self.others.len()));
+                self.add_step(&kind, steps);
+            }
+        }
+    }
+
+    /// Returns the effects with their edits.
+    pub(super) fn finish(mut self) -> Vec<CausedEffect> {
+        self.join_shifts();
+        let groups = std::mem::take(&mut self.all);
+        let effect = |group: Group| {
+            let blocks = self.blocks(group.block_numbers);
+            let effect = Effect::new(group.kind, self.message(&group), blocks);
+            (group.causes.all.into_iter().map(|edit| edit as usize).collect(), effect)
+        };
+        let of_steps: Vec<CausedEffect> = groups.into_iter().map(effect).collect();
+        let index = self.before_steps.unwrap_or(self.others.len());
+        self.others.splice(index..index, of_steps);
+        self.others
+    }
+
+    fn add_step(&mut self, kind: &StepDifference, steps: [Option<usize>; 2]) {
+        let feed = self.feed(kind, steps);
+        if let (Some(feed), Some((rates, blocks, group))) = (feed, self.last_feed)
+            && feed == (rates, blocks)
+        {
+            self.all[group].counts[0].1 += 1;
+            return;
+        }
         let group = self.group_of_difference(kind, steps);
+        let (is_direct, blocks) = (group.is_direct, group.block_numbers);
         let is_speed = matches!(group.numbers, Numbers::Speeds { .. });
         let is_of_block = ["feed", "move-added", "move-lost"].contains(&group.kind.code) || is_speed;
-        let (text, block_numbers) =
-            ((group.kind.code, group.text.clone()), (group.kind.code, group.block_numbers));
+        let has_block_key = is_of_block || group.kind == &kinds::SPINDLE;
+        let block_numbers = has_block_key.then(|| block_key(group.kind, group.block_numbers));
+        let text = (group.kind.code, group.text.clone());
         let of_block = || {
-            let known = *self.by_blocks.get(&block_numbers).filter(|_| is_of_block)?;
+            let known = *self.by_blocks.get(&block_numbers.filter(|_| is_of_block)?)? as usize;
             (!is_speed || self.all[known].numbers == group.numbers).then_some(known)
         };
         let known = self.by_text.get(&text).copied().or_else(of_block);
         let number = known.unwrap_or(self.all.len());
         self.by_text.entry(text).or_insert(number);
-        self.by_blocks.entry(block_numbers).or_insert(number);
+        // Blocks that make one step each have no other difference.
+        if let Some(key) = block_numbers.filter(|_| self.is_repeated(blocks)) {
+            self.by_blocks.entry(key).or_insert(number as u32);
+        }
         match known {
             Some(known) => self.all[known].join(group),
             None => self.all.push(group),
         }
+        // Another one of the same blocks has the same edits, unless these depend on the steps.
+        self.last_feed = feed.filter(|_| is_direct).map(|(rates, blocks)| (rates, blocks, number));
+    }
+
+    /// Returns true if one of two blocks makes several steps, or sets a word of several.
+    fn is_repeated(&self, blocks: [Option<usize>; 2]) -> bool {
+        let repeated = |side: usize| {
+            let record = self.alignment.records[side];
+            self.repeated[side].get_or_init(|| RepeatedBlocks::of(&record.steps, record.blocks.len()))
+        };
+        (0..2).any(|side| blocks[side].is_some_and(|block| repeated(side).contains(block)))
+    }
+
+    /// Returns the rates and the blocks of a difference of feeds.
+    fn feed(
+        &self,
+        kind: &StepDifference,
+        steps: [Option<usize>; 2],
+    ) -> Option<([u64; 2], [Option<usize>; 2])> {
+        let StepDifference::Feed { was, is } = kind else { return None };
+        let side = |side: usize| Some(self.alignment.records[side].steps.editable_at(steps[side]?));
+        Some(([was.to_bits(), is.to_bits()], [side(0), side(1)]))
     }
 
     /// Returns the group of one difference.
     fn group_of_difference(&self, kind: &StepDifference, steps: [Option<usize>; 2]) -> Group {
-        let [old, new] = self.alignment.steps(steps);
-        let Some(step) = old.or(new) else { unreachable!("a difference has a step") };
-        let described = match (kind, old.zip(new)) {
+        let [old, new] = &self.alignment.steps(steps);
+        let Some(step) = old.as_ref().or(new.as_ref()) else { unreachable!("a difference has a step") };
+        let described = match (kind, old.as_ref().zip(new.as_ref())) {
             (StepDifference::Condition(aspect), _) => self.describe_condition(*aspect, step, steps),
             (StepDifference::EndPoint(shift), both) => {
                 let is_compensated =
                     both.is_some_and(|(old, new)| near(&old.at, &new.at, self.alignment.tolerance));
-                self.describe_end_point(shift, new.unwrap_or(step), is_compensated)
+                self.describe_end_point(shift, new.as_ref().unwrap_or(step), is_compensated)
             }
             (StepDifference::MoveKind, Some((old, new))) => {
                 let text = format!("{} instead of {}", new.kind.one(), old.kind.one());
                 Description { name: "move", ..Description::new(&kinds::MOVE_KIND, step, text) }
             }
             (StepDifference::ArcShape(text), _) => {
-                Description::new(&kinds::MOVE_ARC, new.unwrap_or(step), text.clone())
+                Description::new(&kinds::MOVE_ARC, new.as_ref().unwrap_or(step), text.clone())
             }
             (StepDifference::Feed { was, is }, _) => describe_feed(step, *was, *is),
             (StepDifference::Shifted(word), _) => {
@@ -169,10 +184,10 @@ impl<'a> Effects<'a> {
         };
         let Description { kind, name, text, numbers, block_numbers } = described;
         let mut block_numbers =
-            block_numbers.unwrap_or([old, new].map(|step| step.map(|step| step.block_number)));
+            block_numbers.unwrap_or([old, new].map(|step| step.as_ref().map(|step| step.block_number)));
         let is_tool = kind == &kinds::TOOL && old.is_some() && new.is_some();
         if matches!(numbers, Numbers::Factor { .. } | Numbers::Speeds { .. }) || is_tool {
-            block_numbers = [old, new].map(|step| step.map(|step| step.editable_at()));
+            block_numbers = [old, new].map(|step| step.as_ref().map(Step::editable_at));
         }
         let (causes, is_direct) = self.causes_of_difference(&numbers, block_numbers, steps);
         let counts = vec![(name, 1)];
@@ -185,19 +200,26 @@ impl<'a> Effects<'a> {
         numbers: &Numbers,
         block_numbers: [Option<usize>; 2],
         steps: [Option<usize>; 2],
-    ) -> (Vec<usize>, bool) {
-        let blocks = self.blocks(block_numbers);
-        let edit = self.edits.of(blocks);
+    ) -> (EditSet, bool) {
+        let records = self.alignment.records;
+        let edit = self.edits.of_numbers(records, block_numbers);
         if let Numbers::Moves { .. } = numbers {
-            let cause = edit.or_else(|| self.edits.cause(self.alignment.blocks(steps), steps));
+            let of_steps = [0, 1].map(|side| Some(records[side].steps.block_number(steps[side]?)));
+            let cause = edit.or_else(|| self.edits.cause_of_numbers(records, of_steps, steps));
             return (cause.into_iter().collect(), false);
         }
         let is_direct = self.edits.is_single() || edit.is_some();
-        (self.edits.cause(blocks, steps).into_iter().collect(), is_direct)
+        let cause = edit.or_else(|| self.edits.cause_of_numbers(records, block_numbers, steps));
+        (cause.into_iter().collect(), is_direct)
     }
 
     /// Describes a move under another modal condition; its blocks are those that set the condition.
-    fn describe_condition(&self, aspect: ModalAspect, step: &Step, steps: [Option<usize>; 2]) -> Description {
+    fn describe_condition(
+        &self,
+        aspect: ModalAspect,
+        step: &Step<'_>,
+        steps: [Option<usize>; 2],
+    ) -> Description {
         let words = [0, 1].map(|side| Some(self.alignment.records[side].under(steps[side]?).word(aspect)));
         let [before, now] = words.map(|word| word.map_or("", |word| &word.text));
         let name = if aspect == ModalAspect::Cycle { "cycle " } else { "" };
@@ -211,7 +233,7 @@ impl<'a> Effects<'a> {
     }
 
     /// Describes a move that ends at another point.
-    fn describe_end_point(&self, shift: &Position, step: &Step, is_compensated: bool) -> Description {
+    fn describe_end_point(&self, shift: &Position, step: &Step<'_>, is_compensated: bool) -> Description {
         let Alignment { tolerance, .. } = self.alignment;
         let text = coordinates(shift, self.alignment.axes(), tolerance, true);
         let most = Position(shift.0.map(f64::abs));
@@ -222,9 +244,9 @@ impl<'a> Effects<'a> {
     }
 
     /// Describes a command in place of another.
-    fn describe_replacement(&self, kind: &StepDifference, old: &Step, new: &Step) -> Description {
+    fn describe_replacement(&self, kind: &StepDifference, old: &Step<'_>, new: &Step<'_>) -> Description {
         let axes = self.alignment.axes();
-        let text = format!("{} instead of {}", describe(&new.kind, axes), describe(&old.kind, axes));
+        let text = format!("{} instead of {}", describe(new.kind, axes), describe(old.kind, axes));
         let numbers = match kind {
             StepDifference::Speed { was, is } => Numbers::Speeds { old: *was, new: *is },
             _ => Numbers::None,
@@ -233,7 +255,7 @@ impl<'a> Effects<'a> {
     }
 
     /// Describes a move or a command that only one run has.
-    fn describe_unpaired(&self, step: &Step, steps: [Option<usize>; 2]) -> Description {
+    fn describe_unpaired(&self, step: &Step<'_>, steps: [Option<usize>; 2]) -> Description {
         let (verb, kind_of_move) = match steps[0] {
             Some(_) => ("is removed", &kinds::MOVE_LOST),
             None => ("is added", &kinds::MOVE_ADDED),
@@ -246,15 +268,15 @@ impl<'a> Effects<'a> {
         }
     }
 
-    fn blocks(&self, block_numbers: [Option<usize>; 2]) -> [Option<&'a super::record::BlockLocation>; 2] {
-        [0, 1].map(|side| self.alignment.records[side].blocks.get(block_numbers[side]?))
+    fn blocks(&self, block_numbers: [Option<usize>; 2]) -> [Option<Cow<'a, BlockLocation>>; 2] {
+        [0, 1].map(|side| Some(self.alignment.records[side].blocks.location(block_numbers[side]?)))
     }
 
     /// Describes a command of either run; if the spindle turns already, its speed alone.
     fn describe_command(&self, steps: [Option<usize>; 2]) -> String {
         let side = usize::from(steps[0].is_none());
         let (steps, step) = (&self.alignment.records[side].steps, steps[side].unwrap_or(0));
-        match &steps[step].kind {
+        match steps.kind(step) {
             StepKind::Spindle(_, speed) if is_speed_alone(steps, step) => format!("S{speed}"),
             kind => describe(kind, self.alignment.axes()),
         }
@@ -266,7 +288,7 @@ impl<'a> Effects<'a> {
         let shifts = self.all.iter().enumerate().filter(|(_, group)| group.kind == &kinds::MOVE_SHIFTED);
         for (number, group) in shifts {
             let blocks = if group.is_direct { [None, None] } else { group.block_numbers };
-            let edit = group.causes.first().filter(|_| group.is_direct).copied();
+            let edit = group.causes.all.first().filter(|_| group.is_direct).copied();
             alike.entry((edit, blocks)).or_default().push(number);
         }
         let many = alike.into_values().filter(|numbers| MOST_SHIFTS < numbers.len());
@@ -325,7 +347,7 @@ impl<'a> Effects<'a> {
         match aspect {
             ModalAspect::Length => {
                 let offsets =
-                    [&old.steps[moves[0]], &new.steps[first]].map(|step| difference(&step.at, &step.to));
+                    [old.steps.at(moves[0]), new.steps.at(first)].map(|step| difference(&step.at, &step.to));
                 let is_zero = |offset| near(offset, &Position::default(), 1e-9);
                 let alike = match (is_zero(&offsets[0]), near(&offsets[0], &offsets[1], 1e-9)) {
                     (_, false) => "",
@@ -362,51 +384,13 @@ impl<'a> Effects<'a> {
     }
 }
 
-impl Group {
-    fn join(&mut self, other: Self) {
-        self.varies |= self.text != other.text;
-        match (self.is_direct, other.is_direct) {
-            (true, true) => {
-                for edit in other.causes {
-                    if !self.causes.contains(&edit) {
-                        self.causes.push(edit);
-                    }
-                }
-            }
-            (false, true) => (self.causes, self.is_direct) = (other.causes, true),
-            (_, false) => {}
-        }
-        match (&mut self.numbers, other.numbers) {
-            (
-                Numbers::Shift { most, is_compensated },
-                Numbers::Shift { most: others, is_compensated: is_other },
-            ) => {
-                (0..MAX_AXES).for_each(|axis| most[axis] = most[axis].max(others[axis]));
-                *is_compensated &= is_other;
-            }
-            (
-                Numbers::Factor { smallest, largest },
-                Numbers::Factor { smallest: other_smallest, largest: other_largest },
-            ) => (*smallest, *largest) = (smallest.min(other_smallest), largest.max(other_largest)),
-            (Numbers::Moves { old, .. }, Numbers::Moves { old: others, .. }) => old.extend(others),
-            _ => {}
-        }
-        for (what, times) in other.counts {
-            match self.counts.iter_mut().find(|(known, _)| *known == what) {
-                Some((_, count)) => *count += times,
-                None => self.counts.push((what, times)),
-            }
-        }
-    }
-}
-
 /// Returns the kind of a change of a command.
-fn change(step: &Step) -> &'static FindingKind {
+fn change(step: &Step<'_>) -> &'static FindingKind {
     step.kind.change().unwrap_or(&kinds::MOVE_SHIFTED)
 }
 
 /// Describes a move with another feed, mm/min.
-fn describe_feed(step: &Step, old: f64, new: f64) -> Description {
+fn describe_feed(step: &Step<'_>, old: f64, new: f64) -> Description {
     let ratio = new / old;
     let text = format!("feed F{} instead of F{}", short(new), short(old));
     Description {

@@ -1,4 +1,5 @@
 //! End and final state of two runs: outcome, printed lines, variables, offsets and modes.
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use super::change::Effect;
@@ -9,7 +10,7 @@ use super::record::{Record, ResidualEntry};
 pub(super) fn outcome([old, new]: [&Record; 2]) -> Option<Effect> {
     let (was, is) = (&old.ending, &new.ending);
     let message = || format!("{}; before: {}", is.words, was.words);
-    let blocks = [was.stopped.as_ref(), is.stopped.as_ref()];
+    let blocks = [&was.stopped, &is.stopped].map(|stopped| stopped.as_ref().map(Cow::Borrowed));
     (was.words != is.words).then(|| Effect::new(&kinds::OUTCOME, message(), blocks))
 }
 
@@ -66,7 +67,7 @@ fn value(name: &str, entries: [Option<&ResidualEntry>; 2], tolerance: f64) -> Op
         }
         _ => format!("{name} ends as {} instead of {}", shown(is), shown(was)),
     };
-    let blocks = entries.map(|entry| entry?.location.as_ref());
+    let blocks = entries.map(|entry| entry?.location.as_ref().map(Cow::Borrowed));
     (!same).then(|| Effect::new(kind, message(), blocks))
 }
 

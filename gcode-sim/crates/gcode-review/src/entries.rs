@@ -9,7 +9,7 @@ use super::kinds::precedence;
 pub(super) type CausedEffect = (Vec<usize>, Effect);
 
 /// Returns one entry for each edit, and for edits that cause one effect together; in the order of their headlines.
-pub(super) fn entries(effects: Vec<CausedEffect>, edits: &Edits) -> Vec<Change> {
+pub(super) fn entries(effects: Vec<CausedEffect>, edits: &Edits<'_>) -> Vec<Change> {
     let mut joined: Vec<usize> = (0..edits.len()).collect();
     for (causes, _) in &effects {
         for other in causes.iter().skip(1) {
@@ -32,7 +32,7 @@ pub(super) fn entries(effects: Vec<CausedEffect>, edits: &Edits) -> Vec<Change> 
             && is_motion(&change.code)
             && let Some(blocks) = edits.blocks([change.old.as_ref(), change.new.as_ref()])
         {
-            [change.old, change.new] = blocks.clone();
+            [change.old, change.new] = blocks;
         }
         change.also = all.map(|(_, (_, effect))| effect).collect();
         entries.push((number, change));

@@ -1,5 +1,5 @@
 //! Holes, or some of their passes, that are made in a different order.
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::align::Alignment;
 use super::change::{Effect, grouped};
@@ -32,8 +32,13 @@ pub(super) fn hole_order(
     let pairs = partner.iter().enumerate().filter_map(|(hole, other)| Some((hole, (*other)?)));
     let mut all: Vec<SharedPass> = pairs.flat_map(|(hole, other)| of_hole(passes, hole, other)).collect();
     all.sort_unstable_by_key(|pass| pass.steps.0);
-    let linked: BTreeMap<usize, usize> = alignment.pairs().collect();
-    let is_linked = |k: &usize| linked.get(&all[*k].steps.0) == Some(&all[*k].steps.1);
+    let feeds: BTreeSet<(usize, usize)> = all.iter().map(|pass| pass.steps).collect();
+    let linked: BTreeSet<(usize, usize)> = if feeds.is_empty() {
+        BTreeSet::new()
+    } else {
+        alignment.pairs().filter(|pair| feeds.contains(pair)).collect()
+    };
+    let is_linked = |k: &usize| linked.contains(&all[*k].steps);
     let in_place: BTreeSet<usize> = (0..all.len()).filter(is_linked).collect();
     let most = longest_increasing(&all.iter().map(|pass| pass.steps.1).collect::<Vec<_>>());
     let stays = if most.len() <= in_place.len() { in_place } else { most };

@@ -80,6 +80,9 @@ fn pair_by_motion(
     passes: &[Passes; 2],
 ) {
     let [of_old, of_new] = [0, 1].map(|side| hole_of_step(&passes[side]));
+    if of_old.is_empty() || of_new.is_empty() {
+        return;
+    }
     for (i, j) in alignment.pairs() {
         if let (Some(hole), Some(other)) = (of_old.get(&i), of_new.get(&j))
             && partner[*hole].is_none()
@@ -113,7 +116,7 @@ impl HoleComparer<'_> {
                 continue;
             }
             let Some(finish) = last(old, hole).zip(last(new, other)) else { continue };
-            let shift = |(i, j): (usize, usize)| difference(&new.steps[j].to, &old.steps[i].to);
+            let shift = |(i, j): (usize, usize)| difference(&new.steps.at(j).to, &old.steps.at(i).to);
             let is_shifted = |feeds| !near(&shift(feeds), &Position::default(), tolerance);
             let (was, is) = (&self.passes[0].steps[hole], &self.passes[1].steps[other]);
             let is_one_by_one = difference_of.is_displaced() && was.len() == is.len();
@@ -123,7 +126,7 @@ impl HoleComparer<'_> {
                 changed_passes.chain(passes).filter(|feeds| is_shifted(*feeds)).collect();
             let feeds =
                 if is_shifted(finish) { finish } else { other_pass_feeds.first().copied().unwrap_or(finish) };
-            let cause = cause(old.block(feeds.0), new.block(feeds.1));
+            let cause = cause(&old.block(feeds.0), &new.block(feeds.1));
             changed.push(ChangedHole {
                 hole,
                 difference: difference_of,
@@ -150,8 +153,8 @@ impl HoleComparer<'_> {
     /// Returns the blocks of the tool changes before two feeds.
     fn tool_changes(&self, (i, j): (usize, usize)) -> [Option<usize>; 2] {
         let last = |record: &Record, feed: usize| {
-            let mut steps = record.steps[..feed].iter().rev();
-            steps.find(|step| matches!(step.kind, StepKind::Tool(_))).map(Step::editable_at)
+            let is_change = |step: &usize| matches!(record.steps.kind(*step), StepKind::Tool(_));
+            (0..feed).rev().find(is_change).map(|step| record.steps.at(step).editable_at())
         };
         let [old, new] = self.alignment.records;
         [last(old, i), last(new, j)]
@@ -229,7 +232,7 @@ impl HoleComparer<'_> {
             let firsts = self.passes[side].firsts();
             let alone: Vec<usize> = firsts.iter().copied().filter(is_alone).collect();
             for run in consecutive_holes(&alone, &firsts, |hole| {
-                Some(record.steps[last(record, hole)?].block_number)
+                Some(record.steps.block_number(last(record, hole)?))
             }) {
                 let hole = described(&record.holes[run[0]]);
                 let feed = last(record, run[0]);
@@ -260,8 +263,8 @@ impl HoleComparer<'_> {
     /// Returns the rapid of the new revision that ends at the bottom of an old hole.
     fn rapid_to_bottom(&self, hole: usize) -> Option<usize> {
         let [old, new] = self.alignment.records;
-        let feed = &old.steps[last(old, hole)?];
-        let is_there = |step: &Step| step.is_rapid() && near(&step.to, &feed.to, self.alignment.tolerance);
+        let feed = old.steps.at(last(old, hole)?);
+        let is_there = |step: Step<'_>| step.is_rapid() && near(&step.to, &feed.to, self.alignment.tolerance);
         new.steps.iter().position(is_there)
     }
 }

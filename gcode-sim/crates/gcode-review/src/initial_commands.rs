@@ -1,9 +1,10 @@
 //! Commands that the new revision no longer gives before moves of both: modal codes, axis positions and offsets
 //! that it finds as the previous program left them.
-use super::align::{Alignment, StepPair};
+use super::align::Alignment;
 use super::change::{Effect, grouped};
 use super::first_command::{CommandKind, FirstCommand};
 use super::kinds;
+use super::links::StepPair;
 use super::modal_conditions::ModalAspect;
 use gcode_control::{Modal, modal_code};
 
@@ -11,47 +12,103 @@ use gcode_control::{Modal, modal_code};
 pub(super) fn compare(alignment: &Alignment<'_>) -> Vec<Effect> {
     let [old, new] = alignment.records;
     let (Some(was), Some(is)) = (&old.first_commands, &new.first_commands) else { return Vec::new() };
-    let moves = moves_of_both(alignment);
-    let missing = was.iter().filter(|command| is_power_on_default(command)).filter_map(|command| {
-        let later = is.iter().find(|other| (other.what, &other.name) == (command.what, &command.name));
-        let until = later.map_or(usize::MAX, |later| later.moves);
-        let is_relying = |pair: &&SharedMove| {
-            command.moves <= pair.before[0]
-                && pair.before[1] < until
-                && !is_already_reported(command, alignment, pair)
-        };
-        let relying: Vec<&SharedMove> = moves.iter().filter(is_relying).collect();
-        let first = *relying.first()?;
-        Some(((command.what, command.block_number, first.steps), (command, first, relying.len())))
+    let mut commands: Vec<MissingCommand<'_>> = was
+        .iter()
+        .filter(|command| is_power_on_default(command))
+        .map(|command| MissingCommand::new(command, is, alignment))
+        .collect();
+    for_each_shared_move(alignment, |shared| {
+        commands.iter_mut().for_each(|command| command.add(shared, alignment));
     });
-    let effect = |((what, block_number, steps), all): ((CommandKind, usize, _), Vec<_>)| {
-        let message = message(what, &all);
-        Effect::new(&kinds::START, message, [Some(&old.blocks[block_number]), alignment.blocks(steps)[1]])
+    let missing = commands.iter().filter_map(|missing| {
+        let (command, first) = (missing.command, missing.first?);
+        Some(((command.what, command.block_number, first.steps), (command, first, missing.count)))
+    });
+    let effect = |((what, block_number, [_, new_step]), all): ((CommandKind, usize, [usize; 2]), Vec<_>)| {
+        let blocks = [old.blocks.location(block_number), new.block(new_step)];
+        Effect::new(&kinds::START, message(what, &all), blocks.map(Some))
     };
     grouped(missing).into_iter().map(effect).collect()
 }
 
 /// A move that both revisions make.
+#[derive(Clone, Copy)]
 struct SharedMove {
-    steps: [Option<usize>; 2],
+    steps: [usize; 2],
     /// Both end at the same point and are of the same kind.
     is_same: bool,
     /// Numbers of moves before it.
     before: [usize; 2],
 }
 
-fn moves_of_both(alignment: &Alignment<'_>) -> Vec<SharedMove> {
+fn for_each_shared_move(alignment: &Alignment<'_>, mut each: impl FnMut(SharedMove)) {
     let mut before = [0, 0];
-    let mut pairs = Vec::new();
-    for link in alignment.links {
-        let steps = link.sides();
-        let moves = alignment.steps(steps).map(|step| step.is_some_and(|step| step.is_move()));
-        if moves == [true, true] {
-            pairs.push(SharedMove { steps, is_same: matches!(link, StepPair::Same(..)), before });
+    for link in alignment.links.iter() {
+        let sides = link.sides();
+        let is_move =
+            |side: usize| sides[side].is_some_and(|step| alignment.records[side].steps.is_move(step));
+        let moves = [0, 1].map(is_move);
+        if let ([true, true], [Some(i), Some(j)]) = (moves, sides) {
+            each(SharedMove { steps: [i, j], is_same: link.is_same(), before });
         }
         before = [0, 1].map(|side| before[side] + usize::from(moves[side]));
     }
-    pairs
+}
+
+/// A first command of the old revision, and the moves that rely on it in the new one.
+struct MissingCommand<'a> {
+    command: &'a FirstCommand,
+    /// Number of moves of the new revision before the same command.
+    until: usize,
+    /// The modal condition that a mode is.
+    aspect: Option<ModalAspect>,
+    /// Another effect of the block of an axis command is lost.
+    has_other_effect: bool,
+    first: Option<SharedMove>,
+    count: usize,
+}
+
+impl<'a> MissingCommand<'a> {
+    fn new(command: &'a FirstCommand, others: &[FirstCommand], alignment: &Alignment<'_>) -> Self {
+        let later = others.iter().find(|other| (other.what, &other.name) == (command.what, &command.name));
+        let of_group = |aspect: &ModalAspect| format!("{:02}", aspect.row().0) == command.name;
+        let is_mode = command.what == CommandKind::Mode;
+        let steps = &alignment.records[0].steps;
+        let is_of_block = |(_, link): (usize, StepPair)| {
+            link.sides()[0].is_some_and(|i| steps.block_number(i) == command.block_number)
+        };
+        Self {
+            command,
+            until: later.map_or(usize::MAX, |later| later.moves),
+            aspect: ModalAspect::ALL.into_iter().find(|aspect| is_mode && of_group(aspect)),
+            has_other_effect: command.what == CommandKind::Axis
+                && alignment.links.differences().any(is_of_block),
+            first: None,
+            count: 0,
+        }
+    }
+
+    /// Adds a move if it relies on the command.
+    fn add(&mut self, shared: SharedMove, alignment: &Alignment<'_>) {
+        let is_between = self.command.moves <= shared.before[0] && shared.before[1] < self.until;
+        if is_between && !self.is_already_reported(&shared, alignment) {
+            self.first = self.first.or(Some(shared));
+            self.count += 1;
+        }
+    }
+
+    /// Returns true if another difference reports the command: the active code differs, or another effect of its block
+    /// is lost.
+    fn is_already_reported(&self, shared: &SharedMove, alignment: &Alignment<'_>) -> bool {
+        let ([old, new], [i, j]) = (alignment.records, shared.steps);
+        match self.command.what {
+            CommandKind::Mode => self
+                .aspect
+                .is_some_and(|aspect| old.under(i).word(aspect).text != new.under(j).word(aspect).text),
+            CommandKind::Axis => !shared.is_same || self.has_other_effect,
+            CommandKind::Offset => !shared.is_same,
+        }
+    }
 }
 
 /// Returns true unless a modal code differs from that of power-on: without it the moves or the final modes differ.
@@ -61,29 +118,8 @@ fn is_power_on_default(command: &FirstCommand) -> bool {
     command.what != CommandKind::Mode || default.as_ref() == Some(&command.text)
 }
 
-/// Returns true if another difference reports the command: the active code differs, or another effect of its block
-/// is lost.
-fn is_already_reported(command: &FirstCommand, alignment: &Alignment<'_>, pair: &SharedMove) -> bool {
-    let [old, new] = alignment.records;
-    match command.what {
-        CommandKind::Mode => {
-            let of_group = |aspect: &ModalAspect| format!("{:02}", aspect.row().0) == command.name;
-            let [Some(i), Some(j)] = pair.steps else { return false };
-            let aspect = ModalAspect::ALL.into_iter().find(of_group);
-            aspect.is_some_and(|aspect| old.under(i).word(aspect).text != new.under(j).word(aspect).text)
-        }
-        CommandKind::Axis | CommandKind::Offset if !pair.is_same => true,
-        CommandKind::Axis => alignment.links.iter().any(|link| {
-            let is_of_block =
-                link.sides()[0].is_some_and(|i| old.steps[i].block_number == command.block_number);
-            is_of_block && !matches!(link, StepPair::Same(..))
-        }),
-        CommandKind::Offset => false,
-    }
-}
-
 /// Formats the missing commands of one block, each with the first move and the number of moves that rely on it.
-fn message(what: CommandKind, all: &[(&FirstCommand, &SharedMove, usize)]) -> String {
+fn message(what: CommandKind, all: &[(&FirstCommand, SharedMove, usize)]) -> String {
     let names: Vec<&str> = all.iter().map(|(command, ..)| command.text.as_str()).collect();
     let names = match names.as_slice() {
         [before @ .., last] if !before.is_empty() => format!("{} and {last} are", before.join(", ")),

@@ -79,7 +79,7 @@ impl Record {
         let conditions = ModalAspect::ALL.into_iter().filter(|what| self.lacks_condition(*what));
         all.extend(conditions.map(|what| what.row().2));
         all.extend(UNSIMULATED.iter().filter(|(what, ..)| self.lacks_unsimulated(*what)).map(|row| row.3));
-        let is_unclear = self.steps.iter().any(|step| matches!(step.kind, StepKind::Coolant(true, None)));
+        let is_unclear = self.steps.all_kinds().any(|kind| matches!(kind, StepKind::Coolant(true, None)));
         all.extend(is_unclear.then_some("mist or coolant"));
         all.extend(self.lacks_again().then_some("repeated holes"));
         all
@@ -135,7 +135,7 @@ impl Record {
     }
 
     fn lacks_unsimulated(&self, what: UnsimulatedKind) -> bool {
-        !self.steps.iter().any(|step| matches!(&step.kind, StepKind::Silent(one, _) if *one == what))
+        !self.steps.all_kinds().any(|kind| matches!(kind, StepKind::Silent(one, _) if *one == what))
     }
 
     fn lacks_again(&self) -> bool {
@@ -144,10 +144,10 @@ impl Record {
 
     /// Removes steps and renumbers those of the holes.
     fn leave_out(&mut self, is_out: impl Fn(&StepKind) -> bool) {
-        let stays: Vec<bool> = self.steps.iter().map(|step| !is_out(&step.kind)).collect();
+        let stays: Vec<bool> = self.steps.kinds().map(|kind| !is_out(kind)).collect();
         let kept = (0..stays.len()).filter(|step| stays[*step]);
         let now: BTreeMap<usize, usize> = kept.enumerate().map(|(now, before)| (before, now)).collect();
-        self.steps.retain(|step| !is_out(&step.kind));
+        self.steps = self.steps.filtered(|_, kind| !is_out(kind));
         for feeds in &mut self.feeds {
             *feeds = feeds.iter().filter_map(|step| now.get(step).copied()).collect();
         }

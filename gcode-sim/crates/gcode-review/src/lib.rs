@@ -25,11 +25,15 @@
 mod align;
 mod anchor;
 mod arcs;
+mod block_list;
+mod block_location;
 mod change;
+mod common_sequence;
 mod cut_settings;
 mod descriptions;
 mod differences;
 mod edits;
+mod effect_groups;
 mod effects;
 mod end_state;
 mod entries;
@@ -40,32 +44,38 @@ mod holes;
 mod initial_commands;
 pub mod kinds;
 mod legacy_records;
+mod links;
 mod modal_conditions;
 mod pass_changes;
 mod passes;
 mod path;
+mod positions;
 mod program_text;
 mod record;
 mod recorder;
 mod redundant_commands;
 mod reordered_cuts;
+mod runs;
 mod shifted_events;
+mod step_list;
 mod steps;
 mod store;
 mod tool_setup;
 mod uniform_shift;
 
+pub use block_location::BlockLocation;
 pub use change::{Change, Effect};
 pub use holes::Paired;
 pub use path::Leg;
 pub use program_text::{UnexecutedChange, unexecuted};
-pub use record::{BlockLocation, Record, Revision, Totals, alarm_code};
+pub use record::{Record, Revision, Totals, alarm_code};
 pub use store::{AcceptedFile, StoreError};
 
-use self::align::{Alignment, StepPair};
+use self::align::Alignment;
 use self::edits::Edits;
 use self::effects::Effects;
 use self::entries::entries;
+use self::links::{Links, StepPair};
 
 /// Returns the changes: outcome and holes first, then motion, then the final state.
 ///
@@ -90,7 +100,8 @@ pub struct RevisionDiff {
 impl RevisionDiff {
     /// Compares two records with the tolerance of [`changes`].
     pub fn new(old: &Record, new: &Record, tolerance: f64) -> Self {
-        let mut links = align::align_until_stop(&old.steps, &new.steps, (stops(old), stops(new)), tolerance);
+        let stop = (stops(old), stops(new));
+        let mut links = align::align_until_stop(&old.steps, &new.steps, stop, tolerance);
         let [old_steps, new_steps] = truncate_at_stop(old, new, &mut links);
         let (old, new) = (&*old.up_to(old_steps), &*new.up_to(new_steps));
         let records = [old, new];
@@ -101,20 +112,17 @@ impl RevisionDiff {
         let alignment = Alignment { records, links: &links, tolerance };
         let (holes, pairs) = holes::compare(&alignment, is_whole);
         let cuts = reordered_cuts::ReorderedCuts::new(&runs, alignment);
-        let differences = differences::differences(&alignment, holes, &cuts);
         let edits = Edits::new(old, new);
-        let mut changes = entries(Effects::of(differences, alignment, &edits), &edits);
+        let mut effects = Effects::new(alignment, &edits);
+        differences::differences(&alignment, holes, &cuts, |difference| effects.add(difference));
+        let mut changes = entries(effects.finish(), &edits);
         changes.iter_mut().for_each(|change| anchor::set_anchor(change, &alignment));
-        let steps = |is_listed: fn(&StepPair) -> bool| {
-            let sides = || links.iter().filter(|link| is_listed(link)).map(|link| link.sides());
-            [0, 1].map(|side| sides().filter_map(|sides| sides[side]).collect())
-        };
-        let unpaired_steps = steps(|link| link.is_unpaired());
+        let sides = |side: usize| move |(_, link): (usize, StepPair)| link.sides()[side];
         Self {
             changes,
             holes: pairs,
-            steps: steps(|link| !matches!(link, StepPair::Same(..))),
-            unpaired_steps,
+            steps: [0, 1].map(|side| links.differences().filter_map(sides(side)).collect()),
+            unpaired_steps: [0, 1].map(|side| links.unpaired().filter_map(sides(side)).collect()),
         }
     }
 }
@@ -124,15 +132,15 @@ fn stops(record: &Record) -> bool {
 }
 
 /// Removes the links after the point where one run stops, and returns the number of compared steps of each.
-fn truncate_at_stop(old: &Record, new: &Record, links: &mut Vec<StepPair>) -> [usize; 2] {
+fn truncate_at_stop(old: &Record, new: &Record, links: &mut Links) -> [usize; 2] {
     let is_endless = |record: &Record| record.outcome() == "limit";
     let is_lost_behind = stops(new) || is_endless(old);
     let is_added_behind = stops(old) || is_endless(new);
     let mut steps = [old.steps.len(), new.steps.len()];
     while let Some(link) = links.last() {
         match link {
-            StepPair::Lost(i) if is_lost_behind => steps[0] = *i,
-            StepPair::Added(j) if is_added_behind => steps[1] = *j,
+            StepPair::Lost(i) if is_lost_behind => steps[0] = i,
+            StepPair::Added(j) if is_added_behind => steps[1] = j,
             _ => break,
         }
         links.pop();
@@ -143,5 +151,5 @@ fn truncate_at_stop(old: &Record, new: &Record, links: &mut Vec<StepPair>) -> [u
 /// Returns pairs of equal lines of two texts, counted from 0: a longest common sequence, or a long one of texts
 /// that differ too much.
 pub fn common_lines(old: &[String], new: &[String]) -> Vec<(usize, usize)> {
-    align::common(old.len(), new.len(), |i, j| old[i] == new[j])
+    common_sequence::common(old.len(), new.len(), |i, j| old[i] == new[j])
 }

@@ -1,7 +1,8 @@
 //! Passes of a hole that end at another point while the hole does not move with them: pilots, spot drilling.
 use nalgebra::Point3;
 
-use super::align::{Alignment, common};
+use super::align::Alignment;
+use super::common_sequence::common;
 use super::descriptions::{coordinates, deeper};
 use super::passes::Passes;
 use super::record::Record;
@@ -39,7 +40,11 @@ pub(super) fn pass_changes(
     let Alignment { records: [old, new], tolerance, .. } = *alignment;
     let (was, is) = (&passes[0].steps[hole], &passes[1].steps[other]);
     let pairs = paired((was, &passes[0].tools[hole]), (is, &passes[1].tools[other]));
-    let pass = |(i, j): &(usize, usize)| PassPair { before: &old.steps[was[*i]], now: &new.steps[is[*j]] };
+    let pass = |(i, j): &(usize, usize)| PassPair {
+        before: old.steps.at(was[*i]),
+        now: new.steps.at(is[*j]),
+        number: *i,
+    };
     let find = |step: Option<usize>| pairs.iter().find(|(i, _)| Some(was[*i]) == step).map(pass);
     let finish = find(old.feeds[hole].last().copied());
     let deepest = find(deepest(old, hole, tolerance)).or(pairs.last().map(pass));
@@ -60,9 +65,9 @@ pub(super) fn pass_changes(
         let is_with_hole = || {
             near(&shift, &lead_shift, tolerance)
                 || (is_moved || lead_along.abs() > tolerance)
-                    && is_as_far_above((pass.before, lead.before), (pass.now, lead.now), hole_deeper)
+                    && is_as_far_above((&pass.before, &lead.before), (&pass.now, &lead.now), hole_deeper)
         };
-        let is_explained = if std::ptr::eq(pass.before, lead.before) {
+        let is_explained = if pass.number == lead.number {
             is_lead_explained
         } else {
             // A pass of a hole that only gets deeper may stay.
@@ -89,8 +94,10 @@ pub(super) fn pass_changes(
 /// A pass in the old and in the new revision.
 #[derive(Clone, Copy)]
 struct PassPair<'a> {
-    before: &'a Step,
-    now: &'a Step,
+    before: Step<'a>,
+    now: Step<'a>,
+    /// Number of the pass in the old revision, from 0.
+    number: usize,
 }
 
 impl PassPair<'_> {
@@ -105,7 +112,7 @@ impl PassPair<'_> {
 
     /// Splits a displacement into its parts along and across the feed.
     fn parts(self, displacement: &Position) -> (f64, f64) {
-        parts(displacement, self.before)
+        parts(displacement, &self.before)
     }
 }
 
@@ -121,8 +128,8 @@ fn paired((was, tools): (&[usize], &[u32]), (is, tools_now): (&[usize], &[u32]))
 fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
     let (found, feeds) = (&record.holes[hole], &record.feeds[hole]);
     let finish = *feeds.last()?;
-    let feed = &record.steps[finish];
-    let depth = |step: &usize| parts(&difference(&record.steps[*step].to, &feed.to), feed).0;
+    let feed = record.steps.at(finish);
+    let depth = |step: &usize| parts(&difference(&record.steps.at(*step).to, &feed.to), &feed).0;
     let bottom = found.bottom();
     let lowest = |height: f64| height.abs() <= tolerance;
     let others = found.earlier_passes.iter().zip(feeds).take(feeds.len() - 1);
@@ -138,7 +145,7 @@ fn tip(record: &Record, hole: usize, step: usize) -> Option<Point3<f64>> {
 }
 
 /// Splits a displacement into its parts along and across a feed.
-fn parts(displacement: &Position, feed: &Step) -> (f64, f64) {
+fn parts(displacement: &Position, feed: &Step<'_>) -> (f64, f64) {
     let along = dot(displacement, &feed.displacement()) / feed.length().max(f64::MIN_POSITIVE);
     (along, (dot(displacement, displacement) - along * along).max(0.0).sqrt())
 }

@@ -1,5 +1,5 @@
 //! Passes that make each hole and their tools: all passes on its line, repeated ones as well.
-use super::align::common;
+use super::common_sequence::common;
 use super::record::Record;
 use super::steps::StepKind;
 
@@ -27,14 +27,16 @@ impl Passes {
             }
         }
         steps.iter_mut().for_each(|steps| steps.sort_unstable());
-        let in_spindle = record.steps.iter().scan(None, |tool, step| {
-            if let StepKind::Tool(number) = step.kind {
-                *tool = Some(number);
-            }
-            Some(*tool)
+        let changes = record.steps.kinds().enumerate().filter_map(|(step, kind)| match kind {
+            StepKind::Tool(number) => Some((step, *number)),
+            _ => None,
         });
-        let in_spindle: Vec<Option<u32>> = in_spindle.collect();
-        let of = |steps: &Vec<usize>| steps.iter().map(|step| in_spindle[*step]).collect::<Option<_>>();
+        let changes: Vec<(usize, u32)> = if record.holes.is_empty() { Vec::new() } else { changes.collect() };
+        let in_spindle = |step: &usize| {
+            let before = changes.partition_point(|(change, _)| change <= step).checked_sub(1)?;
+            Some(changes[before].1)
+        };
+        let of = |steps: &Vec<usize>| steps.iter().map(in_spindle).collect::<Option<_>>();
         let tools = steps.iter().map(|steps| of(steps).unwrap_or_default()).collect();
         Self { first, repeats, steps, tools }
     }

@@ -1,13 +1,16 @@
 //! Path of the tool on the part, move by move, for drawings.
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use nalgebra::Point3;
 
-use super::record::{BlockLocation, Record};
+use super::block_location::BlockLocation;
+use super::record::Record;
 use super::steps::{Step, StepKind};
 use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};
-use gcode_lang::motion::{MAX_AXES, PlanarArc, Position, StopKind};
+use gcode_inspect::tool_path::for_each_drawn_pose;
+use gcode_lang::motion::{PlanarArc, Position, StopKind};
 
 /// Largest deviation of a curved path from its chords, mm.
 const CHORD: f64 = 0.05;
@@ -23,21 +26,21 @@ pub struct Leg {
     pub feed: Option<f64>,
     /// True for a move that cuts a hole, or leaves one along the path of its cut.
     pub is_of_hole: bool,
-    /// Index of its block in [`Record::blocks`].
+    /// Number of its block in [`Record::block_location`].
     pub block_number: usize,
     /// Points from start to end, mm.
     pub points: Vec<Point3<f64>>,
 }
 
 impl Record {
-    /// Returns the blocks by their index.
-    pub fn blocks(&self) -> &[BlockLocation] {
-        &self.blocks
+    /// Returns a block by its number.
+    pub fn block_location(&self, number: usize) -> Cow<'_, BlockLocation> {
+        self.blocks.location(number)
     }
 
     /// Counts the moves.
     pub fn moves(&self) -> usize {
-        self.steps.iter().filter(|step| step.is_move()).count()
+        self.steps.kinds().filter(|kind| kind.is_move()).count()
     }
 
     /// Returns the first moves, at most `moves` with at most `points` points in all.
@@ -48,10 +51,10 @@ impl Record {
         let mut from = Position::default();
         let mut left = points;
         for (index, step) in self.steps.iter().enumerate() {
-            set_up(&mut setup, &step.kind);
+            set_up(&mut setup, step.kind);
             let to = step.at;
             if step.is_move() {
-                let arc = match &step.kind {
+                let arc = match step.kind {
                     StepKind::Arc(arc, _) => Some(arc),
                     _ => None,
                 };
@@ -62,7 +65,7 @@ impl Record {
                 left -= points_of_move.len();
                 let back =
                     legs.last().is_some_and(|leg| leg.is_of_hole && is_back(&leg.points, &points_of_move));
-                legs.push(leg(index, step, of_holes.contains(&index) || back, points_of_move));
+                legs.push(leg(index, &step, of_holes.contains(&index) || back, points_of_move));
             }
             from = to;
         }
@@ -70,7 +73,7 @@ impl Record {
     }
 }
 
-fn leg(index: usize, step: &Step, is_of_hole: bool, points: Vec<Point3<f64>>) -> Leg {
+fn leg(index: usize, step: &Step<'_>, is_of_hole: bool, points: Vec<Point3<f64>>) -> Leg {
     let (kind, feed) = (step.kind.name(), step.kind.rate());
     Leg { step: index, kind, feed, is_of_hole, block_number: step.block_number, points }
 }
@@ -84,7 +87,7 @@ fn is_back(before: &[Point3<f64>], now: &[Point3<f64>]) -> bool {
 fn set_up(setup: &mut Setup, kind: &StepKind) {
     match kind {
         StepKind::Tool(number) => setup.tool = Some(*number),
-        StepKind::Length(offset) => setup.offset = *offset,
+        StepKind::Length(offset) => setup.offset = **offset,
         StepKind::Stop(StopKind::Message, text, named) => {
             if let HeadMessage::Angle(angle) = HeadMessage::parse(text, named) {
                 setup.head_angle = Some(angle);
@@ -102,19 +105,9 @@ fn move_points(
     to: &Position,
     arc: Option<&PlanarArc>,
 ) -> Vec<Point3<f64>> {
-    let travel = AxisMotion { from, to, arc };
-    let Some(wheel) = &machine.wheel else {
-        let mut points = Vec::new();
-        machine.for_each_pose(&travel, setup, CHORD, |pose| points.push(pose.tip));
-        return points;
-    };
-    let rotary = (0..MAX_AXES).filter(|axis| machine.axes.is_rotary(*axis));
-    let turned: f64 = rotary.map(|axis| (to[axis] - from[axis]).abs()).sum();
-    let sweep = arc.map_or(0.0, |arc| arc.sweep.0.abs());
-    // A chord of 3° is 1.4 µm off a circle of 4 mm, a burr's.
-    let chords = ((turned + sweep) / 3.0).ceil().clamp(1.0, 1000.0) as u32;
-    let at = |part: u32| travel.position(f64::from(part) / f64::from(chords));
-    (0..=chords).map(|part| machine.contact(wheel, &at(part))).collect()
+    let mut points = Vec::new();
+    for_each_drawn_pose(machine, setup, &AxisMotion { from, to, arc }, CHORD, |pose| points.push(pose.tip));
+    points
 }
 
 #[cfg(test)]

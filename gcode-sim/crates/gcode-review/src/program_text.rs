@@ -1,14 +1,16 @@
 //! Texts of two revisions' programs: their blocks, and where these are written differently.
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::align::common;
-use super::record::{BlockLocation, Record, Revision};
-use gcode_lang::source::SourceId;
-use gcode_lang::syntax::parse;
+use super::block_list::{BlockList, ExecutedBlocks};
+use super::block_location::BlockLocation;
+use super::common_sequence::{EqualRun, common_lines};
+use super::record::{Record, Revision};
 
 /// Blocks of both revisions that cause a difference.
 pub(super) type Cause = (BlockLocation, BlockLocation);
@@ -25,125 +27,252 @@ pub(super) fn cause(old: &BlockLocation, new: &BlockLocation) -> Cause {
 /// Returns a block without sequence number, comments and spaces.
 pub(super) fn words(block: &str) -> String {
     let mut depth = 0;
-    let code = block.chars().filter(|c| {
+    let is_code = |c: &char| {
         let is_comment = depth > 0 || *c == '(';
         depth += i32::from(*c == '(') - i32::from(*c == ')');
         !is_comment && !c.is_whitespace()
-    });
-    let code: String = code.collect();
-    let number = code.strip_prefix('N').map(|rest| rest.trim_start_matches(|c: char| c.is_ascii_digit()));
-    number.unwrap_or(&code).to_owned()
-}
-
-/// A block with words.
-pub(super) struct TextBlock {
-    pub location: BlockLocation,
-    /// Without sequence number, comments and spaces.
-    words: String,
-    /// Number of steps before its first execution; `None` if it is not executed.
-    pub reached: Option<usize>,
-    /// Source and offset; `None` for a block known from a record alone.
-    key: Option<(SourceId, u32)>,
-}
-
-impl TextBlock {
-    pub(super) fn new(location: BlockLocation, reached: Option<usize>) -> Self {
-        // The comment of an alarm or a message is its text.
-        let has_message = ["#3000", "#3006"].iter().any(|variable| location.block.contains(variable));
-        let words = if has_message { location.block.clone() } else { words(&location.block) };
-        Self { location, words, reached, key: None }
+    };
+    let mut code: String = if block.contains(['(', ')']) {
+        block.chars().filter(is_code).collect()
+    } else {
+        block.split_whitespace().collect()
+    };
+    if let Some(rest) = code.strip_prefix('N') {
+        let rest = rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        code.drain(..code.len() - rest);
     }
+    code
 }
 
-/// Programs by their names in the order in which they were read; the main program has none.
-pub(super) type Programs = Vec<(String, Vec<TextBlock>)>;
+/// Returns what a block says to the control: its words, or with the text of an alarm or a message.
+pub(super) fn words_and_text(block: &str) -> String {
+    let has_message = ["#3000", "#3006"].iter().any(|variable| block.contains(variable));
+    if has_message { block.to_owned() } else { words(block) }
+}
 
-/// Returns every block of every program; `None` for a record of a file.
-pub(super) fn written(record: &Record) -> Option<Programs> {
-    let sources = record.sources.as_ref()?;
-    let mut programs = Programs::new();
-    for (source, text) in sources.iter() {
-        for program in parse(source, &text.bytes) {
-            let name = program.name.label();
-            let blocks = program.blocks.iter().map(|block| {
-                let location = BlockLocation {
-                    program: name.clone(),
-                    line: sources.line_column(block.span).line,
-                    block: sources.text(block.span).trim().to_owned(),
-                    calls: Vec::new(),
-                };
-                let key = (source, block.span.start);
-                TextBlock {
-                    key: Some(key),
-                    ..TextBlock::new(location, record.executed.get(&key).map(|(reached, _)| *reached))
-                }
-            });
-            let blocks: Vec<TextBlock> = blocks.filter(|block| !block.words.is_empty()).collect();
-            programs.push((if programs.is_empty() { String::new() } else { name }, blocks));
+/// Blocks of one program of a record.
+pub(super) struct ProgramSide<'a> {
+    /// Name of the program; empty for the main program.
+    pub name: String,
+    blocks: SideBlocks<'a>,
+}
+
+enum SideBlocks<'a> {
+    /// All blocks of a program of the memory, by its number.
+    Text(&'a ExecutedBlocks, usize),
+    /// Some blocks, each with the number of steps before its first execution.
+    Named(Vec<(BlockLocation, Option<usize>)>),
+}
+
+impl<'a> ProgramSide<'a> {
+    pub(super) fn named(name: String, blocks: Vec<(BlockLocation, Option<usize>)>) -> Self {
+        Self { name, blocks: SideBlocks::Named(blocks) }
+    }
+
+    fn count(&self) -> usize {
+        match &self.blocks {
+            SideBlocks::Text(blocks, program) => blocks.programs[*program].texts.count(),
+            SideBlocks::Named(all) => all.len(),
         }
     }
-    Some(programs)
+
+    /// Returns the text up to the next block; `None` if a record does not have it.
+    fn up_to_next(&self, index: usize) -> Option<&'a [u8]> {
+        match self.blocks {
+            SideBlocks::Text(blocks, program) => Some(blocks.programs[program].texts.up_to_next(index)),
+            SideBlocks::Named(_) => None,
+        }
+    }
+
+    fn text(&self, index: usize) -> Cow<'_, str> {
+        match &self.blocks {
+            SideBlocks::Text(blocks, program) => {
+                let text = blocks.sources.text(blocks.programs[*program].texts.span(index));
+                Cow::Owned(text.trim().to_owned())
+            }
+            SideBlocks::Named(all) => Cow::Borrowed(&all[index].0.block),
+        }
+    }
+
+    /// Returns program and line of a block.
+    pub(super) fn place(&self, index: usize) -> (&str, u32) {
+        match &self.blocks {
+            SideBlocks::Text(blocks, program) => {
+                let program = &blocks.programs[*program];
+                let (source, start) = (program.texts.source(), program.texts.start(index));
+                (&program.label, blocks.sources.get(source).line_column(start).line)
+            }
+            SideBlocks::Named(all) => (&all[index].0.program, all[index].0.line),
+        }
+    }
+
+    /// Returns a block without the calls that led to it.
+    pub(super) fn location(&self, index: usize) -> BlockLocation {
+        let (program, line) = self.place(index);
+        let (program, block) = (program.to_owned(), self.text(index).into_owned());
+        BlockLocation { program, line, block, calls: Vec::new() }
+    }
+
+    /// Returns the number of steps before the first execution of a block, and whether it was ever executed as a whole;
+    /// `None` if it is not executed.
+    pub(super) fn reached(&self, index: usize) -> Option<(usize, bool)> {
+        match &self.blocks {
+            SideBlocks::Text(blocks, program) => blocks.reached(*program, index),
+            SideBlocks::Named(all) => all[index].1.map(|reached| (reached, true)),
+        }
+    }
 }
 
-/// Returns the blocks that steps and their calls name.
-pub(super) fn executed(record: &Record) -> Programs {
-    let mut found: BTreeMap<(&str, u32), (&BlockLocation, usize)> = BTreeMap::new();
+/// Returns every program with its blocks, in the order in which they were read; `None` for a record of a file. The first
+/// one has no name.
+pub(super) fn written(record: &Record) -> Option<Vec<ProgramSide<'_>>> {
+    let BlockList::Executed(blocks) = &record.blocks else { return None };
+    let side = |number: usize| {
+        let name = if number == 0 { String::new() } else { blocks.programs[number].label.clone() };
+        ProgramSide { name, blocks: SideBlocks::Text(blocks, number) }
+    };
+    Some((0..blocks.programs.len()).map(side).collect())
+}
+
+/// Returns the blocks that steps and their calls name, by program; the main program has no name.
+pub(super) fn executed(record: &Record) -> Vec<ProgramSide<'_>> {
+    let mut found: BTreeMap<(String, u32), (BlockLocation, usize)> = BTreeMap::new();
     let mut is_known = vec![false; record.blocks.len()];
-    let mut main = record.program.as_deref();
-    for (number, step) in record.steps.iter().enumerate() {
-        if std::mem::replace(&mut is_known[step.block_number], true) {
+    let mut main = record.program.clone();
+    for number in 0..record.steps.len() {
+        let block_number = record.steps.block_number(number);
+        if std::mem::replace(&mut is_known[block_number], true) {
             continue;
         }
-        let location = &record.blocks[step.block_number];
-        for block in location.calls.iter().rev().chain([location]) {
-            main = main.or(Some(&block.program));
-            found.entry((&block.program, block.line)).or_insert((block, number));
+        for block in record.blocks.location(block_number).outermost_first() {
+            main.get_or_insert_with(|| block.program.clone());
+            found.entry((block.program.clone(), block.line)).or_insert_with(|| (block.clone(), number));
         }
     }
-    let mut programs: BTreeMap<String, Vec<TextBlock>> = BTreeMap::new();
+    let mut programs: BTreeMap<String, Vec<(BlockLocation, Option<usize>)>> = BTreeMap::new();
     for ((program, _), (block, reached)) in found {
-        let location = BlockLocation { calls: Vec::new(), ..block.clone() };
-        let name = if Some(program) == main { String::new() } else { program.to_owned() };
-        programs.entry(name).or_default().push(TextBlock::new(location, Some(reached)));
+        let name = if Some(&program) == main.as_ref() { String::new() } else { program };
+        let location = BlockLocation { calls: Vec::new(), ..block };
+        programs.entry(name).or_default().push((location, Some(reached)));
     }
-    programs.into_iter().collect()
+    programs.into_iter().map(|(name, blocks)| ProgramSide::named(name, blocks)).collect()
 }
 
-/// Returns the ranges of blocks between equal ones.
-fn between(pairs: Vec<(usize, usize)>, ends: (usize, usize)) -> impl Iterator<Item = [Range<usize>; 2]> {
-    let mut from = (0, 0);
-    pairs.into_iter().chain([ends]).map(move |(i, j)| {
-        let (first_i, first_j) = std::mem::replace(&mut from, (i + 1, j + 1));
-        [first_i..i, first_j..j]
-    })
+/// The passage between the first and the last difference of two programs: blocks with words, by their indices, old and
+/// new.
+struct ChangedPassage<'a> {
+    sides: [&'a ProgramSide<'a>; 2],
+    words: fn(&str) -> String,
+    blocks: [Vec<u32>; 2],
+    hashes: [Vec<u64>; 2],
 }
 
-/// Returns the passages in which two texts differ: block by block if both have the same number of blocks there. A
-/// deletion and an insertion of the same blocks are one gap.
-pub(super) fn gaps(before: &[TextBlock], now: &[TextBlock]) -> Vec<[Range<usize>; 2]> {
-    let pairs = common(before.len(), now.len(), |i, j| before[i].words == now[j].words);
-    let mut gaps: Vec<[Range<usize>; 2]> = Vec::new();
-    for [old, new] in between(pairs, (before.len(), now.len())) {
-        if old.len() == new.len() {
-            gaps.extend(old.zip(new).map(|(i, j)| [i..i + 1, j..j + 1]));
+impl<'a> ChangedPassage<'a> {
+    fn new(sides: [&'a ProgramSide<'a>; 2], words: fn(&str) -> String) -> Self {
+        let mut passage = Self { sides, words, blocks: Default::default(), hashes: Default::default() };
+        let mut from = [0, 0];
+        let mut to = sides.map(ProgramSide::count);
+        while from[0] < to[0] && from[1] < to[1] {
+            match passage.passed(from) {
+                Some([i, j]) => from = [from[0] + i, from[1] + j],
+                None => break,
+            }
+        }
+        while from[0] < to[0] && from[1] < to[1] {
+            match passage.passed([to[0] - 1, to[1] - 1]) {
+                Some([i, j]) => to = [to[0] - i, to[1] - j],
+                None => break,
+            }
+        }
+        for side in 0..2 {
+            for index in from[side]..to[side] {
+                let words = passage.words_of(side, index);
+                if !words.is_empty() {
+                    let mut hasher = DefaultHasher::new();
+                    words.hash(&mut hasher);
+                    passage.blocks[side].push(index as u32);
+                    passage.hashes[side].push(hasher.finish());
+                }
+            }
+        }
+        passage
+    }
+
+    fn words_of(&self, side: usize, index: usize) -> String {
+        (self.words)(&self.sides[side].text(index))
+    }
+
+    /// Returns how many of two blocks are passed: both if they are equal, one that has no words; `None` if they differ.
+    fn passed(&self, [i, j]: [usize; 2]) -> Option<[usize; 2]> {
+        if let (Some(old), Some(new)) = (self.sides[0].up_to_next(i), self.sides[1].up_to_next(j))
+            && old == new
+        {
+            return Some([1, 1]);
+        }
+        let (old, new) = (self.words_of(0, i), self.words_of(1, j));
+        match (old.is_empty(), new.is_empty()) {
+            (true, _) => Some([1, 0]),
+            (_, true) => Some([0, 1]),
+            _ => (old == new).then_some([1, 1]),
+        }
+    }
+
+    fn words(&self, side: usize, index: usize) -> String {
+        self.words_of(side, self.blocks[side][index] as usize)
+    }
+
+    /// Returns the ranges of blocks between equal ones.
+    fn differences(&self) -> Vec<[Range<usize>; 2]> {
+        let runs =
+            common_lines([&self.hashes[0], &self.hashes[1]], |i, j| self.words(0, i) == self.words(1, j));
+        let ends = [self.blocks[0].len(), self.blocks[1].len()];
+        let mut from = [0, 0];
+        let end = EqualRun { old: ends[0], new: ends[1], length: 0 };
+        let ranges = runs.into_iter().chain([end]).map(|EqualRun { old, new, length }| {
+            let [first_old, first_new] = std::mem::replace(&mut from, [old + length, new + length]);
+            [first_old..old, first_new..new]
+        });
+        ranges.filter(|[old, new]| !(old.is_empty() && new.is_empty())).collect()
+    }
+
+    /// Returns the ranges in which the programs differ. A deletion and an insertion of the same blocks are one gap.
+    /// True marks blocks that are moved.
+    fn gaps(&self) -> Vec<([Range<usize>; 2], bool)> {
+        let mut gaps: Vec<_> = self.differences().into_iter().map(|gap| (gap, false)).collect();
+        let text = |side: usize, blocks: &Range<usize>| {
+            blocks.clone().map(|index| self.words(side, index)).collect::<Vec<_>>().join("\n")
+        };
+        let new = gaps.iter().map(|(gap, _)| gap).filter(|gap| gap[0].is_empty());
+        let mut moved: BTreeMap<String, Range<usize>> =
+            new.map(|gap| (text(1, &gap[1]), gap[1].clone())).collect();
+        let mut taken = Vec::new();
+        for (gap, is_moved) in gaps.iter_mut().filter(|(gap, _)| gap[1].is_empty()) {
+            if let Some(range) = moved.remove(&text(0, &gap[0])) {
+                taken.push(range.clone());
+                (gap[1], *is_moved) = (range, true);
+            }
+        }
+        gaps.retain(|(gap, _)| !(gap[0].is_empty() && taken.contains(&gap[1])));
+        gaps
+    }
+
+    fn indices(&self, side: usize, range: &Range<usize>) -> &[u32] {
+        &self.blocks[side][range.clone()]
+    }
+}
+
+/// Passes on the passages in which two programs differ, as the indices of their blocks, old and new: block by block if
+/// both have the same number of blocks there.
+pub(super) fn for_each_gap<'a>(sides: [&'a ProgramSide<'a>; 2], mut each: impl FnMut([&[u32]; 2])) {
+    let passage = ChangedPassage::new(sides, words_and_text);
+    for (gap, is_moved) in passage.gaps() {
+        let [old, new] = [0, 1].map(|side| passage.indices(side, &gap[side]));
+        if old.len() == new.len() && !is_moved {
+            old.chunks(1).zip(new.chunks(1)).for_each(|(old, new)| each([old, new]));
         } else {
-            gaps.push([old, new]);
+            each([old, new]);
         }
     }
-    let text =
-        |blocks: &[TextBlock]| blocks.iter().map(|block| block.words.as_str()).collect::<Vec<_>>().join("\n");
-    let new = gaps.iter().filter(|gap| gap[0].is_empty());
-    let mut moved: BTreeMap<String, Range<usize>> =
-        new.map(|gap| (text(&now[gap[1].clone()]), gap[1].clone())).collect();
-    let mut taken = Vec::new();
-    for gap in gaps.iter_mut().filter(|gap| gap[1].is_empty()) {
-        if let Some(range) = moved.remove(&text(&before[gap[0].clone()])) {
-            taken.push(range.clone());
-            gap[1] = range;
-        }
-    }
-    gaps.retain(|gap| !(gap[0].is_empty() && taken.contains(&gap[1])));
-    gaps
 }
 
 /// An unexecuted changed block, old and new; only one of them if it is added or removed.
@@ -158,33 +287,30 @@ pub struct UnexecutedChange {
 /// Returns the changed blocks of programs of both revisions that no run executed as a whole, in their order: their
 /// effect is unknown.
 pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
-    let [was, is] = [old, new].map(|revision| {
-        let programs = written(&revision.record).unwrap_or_default().into_iter();
-        let programs = programs.map(|(name, blocks)| {
-            let blocks = blocks.into_iter().map(|block| (words(&block.location.block), block));
-            (name, blocks.filter(|(words, _)| !words.is_empty()).collect::<Vec<_>>())
-        });
-        programs.collect::<Vec<_>>()
-    });
-    let idle = |revision: &Revision, blocks: &[(String, TextBlock)]| {
-        let is_done = |block: &TextBlock| {
-            block
-                .key
-                .and_then(|key| revision.record.executed.get(&key))
-                .is_some_and(|(_, is_whole)| *is_whole)
-        };
-        let blocks = blocks.iter().map(|(_, block)| block).filter(|block| !is_done(block));
-        blocks.map(|block| block.location.clone()).collect::<Vec<_>>().into_iter()
+    let [was, is] = [old, new].map(|revision| written(&revision.record).unwrap_or_default());
+    let has_words = |side: &ProgramSide<'_>, index: usize| !words(&side.text(index)).is_empty();
+    let with_words = |side: &ProgramSide<'_>| (0..side.count()).any(|index| has_words(side, index));
+    let is_done =
+        |side: &ProgramSide<'_>, index: usize| side.reached(index).is_some_and(|(_, is_whole)| is_whole);
+    let is_idle = |side: &ProgramSide<'_>| {
+        (0..side.count()).any(|index| !is_done(side, index) && has_words(side, index))
     };
     let mut all = Vec::new();
-    for (name, before) in &was {
-        let Some((_, now)) = is.iter().find(|(other, _)| other == name) else { continue };
-        if !name.is_empty() && (before.is_empty() || now.is_empty()) {
+    for before in &was {
+        let Some(now) = is.iter().find(|other| other.name == before.name) else { continue };
+        let is_compared = before.name.is_empty() || with_words(before) && with_words(now);
+        if !(is_compared && (is_idle(before) || is_idle(now))) {
             continue;
         }
-        let pairs = common(before.len(), now.len(), |i, j| before[i].0 == now[j].0);
-        for [of_old, of_new] in between(pairs, (before.len(), now.len())) {
-            let (mut lost, mut added) = (idle(old, &before[of_old]), idle(new, &now[of_new]));
+        let sides = [before, now];
+        let passage = ChangedPassage::new(sides, words);
+        for gap in passage.differences() {
+            let [mut lost, mut added] = [0, 1].map(|side| {
+                let blocks = passage.indices(side, &gap[side]).iter().map(|index| *index as usize);
+                blocks
+                    .filter(move |index| !is_done(sides[side], *index))
+                    .map(move |index| sides[side].location(index))
+            });
             let changes = std::iter::from_fn(|| match (lost.next(), added.next()) {
                 (None, None) => None,
                 (old, new) => Some(UnexecutedChange { old, new }),
@@ -199,30 +325,39 @@ pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
 mod tests {
     use super::*;
 
-    fn blocks(text: &str) -> Vec<TextBlock> {
+    fn side(text: &str) -> ProgramSide<'static> {
         let block = |(line, block): (usize, &str)| BlockLocation {
             program: "O0001".to_owned(),
             line: line as u32,
             block: block.to_owned(),
             calls: Vec::new(),
         };
-        text.lines().enumerate().map(|line| TextBlock::new(block(line), Some(line.0))).collect()
+        let blocks = text.lines().enumerate().map(|line| (block(line), Some(line.0)));
+        ProgramSide::named(String::new(), blocks.collect())
     }
 
-    fn found(old: &str, new: &str) -> Vec<[Range<usize>; 2]> {
-        gaps(&blocks(old), &blocks(new))
+    /// Returns the first and the last block of each gap, old and new; none of an empty side.
+    fn found(old: &str, new: &str) -> Vec<[Option<(u32, u32)>; 2]> {
+        let mut all = Vec::new();
+        for_each_gap([&side(old), &side(new)], |gap| {
+            all.push(gap.map(|blocks| Some((*blocks.first()?, *blocks.last()?))));
+        });
+        all
     }
 
     #[test]
     fn each_rewritten_block_is_one_gap() {
-        assert_eq!(found("G0\nX1.\nY1.\nM30", "N5 G0\nX2.\nY2. (HERE)\nM30"), [[1..2, 1..2], [2..3, 2..3]]);
-        assert_eq!(found("G0\nX1.\nM30", "G0\nX1. Y1.\nX2.\nM30"), [[1..2, 1..3]]);
-        assert_eq!(found("G0\nM30", "G0\nM0\nM30"), [[1..1, 1..2]]);
+        assert_eq!(
+            found("G0\nX1.\nY1.\nM30", "N5 G0\nX2.\nY2. (HERE)\nM30"),
+            [[Some((1, 1)); 2], [Some((2, 2)); 2]]
+        );
+        assert_eq!(found("G0\nX1.\nM30", "G0\nX1. Y1.\nX2.\nM30"), [[Some((1, 1)), Some((1, 2))]]);
+        assert_eq!(found("G0\nM30", "G0\nM0\nM30"), [[None, Some((1, 1))]]);
     }
 
     #[test]
     fn a_block_that_moves_is_one_gap() {
-        assert_eq!(found("M0\nX1.\nX2.\nM30", "X1.\nX2.\nM0\nM30"), [[0..1, 2..3]]);
+        assert_eq!(found("M0\nX1.\nX2.\nM30", "X1.\nX2.\nM0\nM30"), [[Some((0, 0)), Some((2, 2))]]);
     }
 
     #[test]

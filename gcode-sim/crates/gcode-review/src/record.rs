@@ -6,18 +6,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::block_list::{BlockList, ExecutedBlocks};
+use super::block_location::BlockLocation;
 use super::first_command::FirstCommand;
 use super::kinds;
 use super::modal_conditions::ModalConditions;
-use super::recorder::{ExecutedBlocks, MOST_STEPS, Recorder, SharedRecorder};
-use super::steps::{Step, StepKind};
+use super::recorder::{MOST_STEPS, Recorder, SharedRecorder};
+use super::step_list::StepList;
+use super::steps::StepKind;
 use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue};
 use gcode_inspect::holes::DrilledHole;
 use gcode_lang::alarm::kinds::{LIMIT, PS0076};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Axes, Backtrace, CallChain, MAX_AXES, Position};
 use gcode_lang::program::Library;
-use gcode_lang::source::{Sources, Span};
+use gcode_lang::source::{SourceId, Span};
 use gcode_part::Metal;
 use gcode_session::{Request, Run, SessionError, Simulation};
 
@@ -25,43 +28,24 @@ use gcode_session::{Request, Run, SessionError, Simulation};
 #[derive(Clone, Debug)]
 pub struct Record {
     pub(super) axes: Axes,
-    pub(super) steps: Vec<Step>,
+    pub(super) steps: StepList,
     /// In the order of their first feeds.
     pub(super) holes: Vec<DrilledHole>,
     /// Steps that cut each hole, the finishing one last.
     pub(super) feeds: Vec<Vec<usize>>,
     /// Holes that a stop leaves unfinished: their depth and their tools are unknown.
     pub(super) unfinished: BTreeSet<usize>,
-    /// Blocks by their numbers, such as [`Step::block_number`].
-    pub(super) blocks: Vec<BlockLocation>,
-    /// Modal conditions by their numbers, [`Step::condition`].
+    /// Blocks by the numbers that steps, conditions and first commands name.
+    pub(super) blocks: BlockList,
+    /// Modal conditions by the numbers that steps name.
     pub(super) conditions: Vec<ModalConditions>,
     /// First commands of the program; `None` in accepted results that do not have them.
     pub(super) first_commands: Option<Vec<FirstCommand>>,
     /// Name of the main program as a control shows it.
     pub(super) program: Option<String>,
     pub(super) ending: EndState,
-    /// Texts of the programs; `None` in a record from a file.
-    pub(super) sources: Option<Sources>,
-    /// Executed blocks; empty in a record from a file.
-    pub(super) executed: ExecutedBlocks,
     /// Totals of the run.
     pub totals: Totals,
-}
-
-/// A block by program and line, and the calls that led to it, innermost first.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BlockLocation {
-    /// Name of the program.
-    pub program: String,
-    /// Line in its file, from 1.
-    pub line: u32,
-    /// Text of the block.
-    pub block: String,
-    /// Calls that led to the block, innermost first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub calls: Vec<Self>,
 }
 
 /// Totals of one revision.
@@ -187,21 +171,15 @@ impl<A: Observer, B: Observer> Observer for ObserverPair<A, B> {
 }
 
 fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
-    recorder.forget_used();
+    recorder.finish();
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
     let ending = ending(run, &recorder);
-    let Recorder { mut steps, backtraces, mut conditions, first_commands, executed, .. } = recorder;
-    let mut first_commands: Vec<FirstCommand> = first_commands.into_values().collect();
+    let Recorder { steps, numbers, mut conditions, first_commands, .. } = recorder;
     if conditions.is_empty() {
         conditions.push(ModalConditions::default());
     }
-    let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
-    let named = words.filter_map(|word| word.block_number.as_mut());
-    let named = named.chain(first_commands.iter_mut().map(|command| &mut command.block_number));
-    let of_steps =
-        steps.iter_mut().flat_map(|step| std::iter::once(&mut step.block_number).chain(&mut step.set_by));
-    let blocks = resolve(run, &backtraces, of_steps.chain(named));
+    let memory = run.control.memory();
     Record {
         axes: run.control.settings().axes.clone(),
         totals: Totals {
@@ -211,61 +189,47 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
             seconds: run.control.seconds().0,
         },
         ending,
-        sources: Some(run.control.memory().sources().clone()),
-        executed,
-        first_commands: Some(first_commands),
-        program: Some(run.control.memory().get(run.control.memory().main()).label()),
+        first_commands: Some(first_commands.into_values().collect()),
+        program: Some(memory.get(memory.main()).label()),
         conditions,
         steps,
         holes,
         feeds,
         unfinished: BTreeSet::new(),
-        blocks,
+        blocks: BlockList::Executed(Box::new(ExecutedBlocks::new(numbers, memory))),
     }
 }
 
 /// Finds the step of each pass by its block and its end point.
 fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
     let key = |block: Span, at: &Position| (block.source, block.start, at.0.map(f64::to_bits));
-    let mut steps: BTreeMap<(_, u32, [u64; MAX_AXES]), Vec<usize>> = BTreeMap::new();
-    for (index, step) in recorder.steps.iter().enumerate().rev().filter(|(_, step)| step.is_move()) {
-        steps.entry(key(recorder.backtraces[step.block_number].block, &step.at)).or_default().push(index);
+    let passes = |found: &DrilledHole| {
+        let passes = found.earlier_passes.iter().map(|cut| key(cut.backtrace.block, &cut.axis_position));
+        passes.chain([key(found.backtrace.block, &found.axis_position)]).collect::<Vec<_>>()
+    };
+    let mut steps: BTreeMap<(SourceId, u32, [u64; MAX_AXES]), Vec<usize>> =
+        holes.iter().flat_map(passes).map(|key| (key, Vec::new())).collect();
+    let numbers = if holes.is_empty() { 0 } else { recorder.steps.len() };
+    for number in (0..numbers).rev().filter(|number| recorder.steps.is_move(*number)) {
+        let step = recorder.steps.at(number);
+        let block = recorder.numbers.start_of(step.block_number);
+        if let Some(of_pass) = steps.get_mut(&key(block, &step.at)) {
+            of_pass.push(number);
+        }
     }
     // Steps are in reverse, so that `pop` takes the earliest of equal ones.
     let of = |found: &DrilledHole| {
-        let passes = found.earlier_passes.iter().map(|cut| key(cut.backtrace.block, &cut.axis_position));
-        let all = passes.chain([key(found.backtrace.block, &found.axis_position)]);
-        all.filter_map(|key| steps.get_mut(&key)?.pop()).collect()
+        passes(found).into_iter().filter_map(|key| steps.get_mut(&key)?.pop()).collect()
     };
     holes.iter().map(of).collect()
 }
 
-/// Returns the location of each block once, and renumbers `named`.
-fn resolve<'a>(
-    run: &Run,
-    backtraces: &[Backtrace],
-    named: impl Iterator<Item = &'a mut usize>,
-) -> Vec<BlockLocation> {
-    let mut numbers: BTreeMap<BlockLocation, usize> = BTreeMap::new();
-    let resolved: Vec<usize> = backtraces
-        .iter()
-        .map(|backtrace| {
-            let next = numbers.len();
-            *numbers.entry(BlockLocation::of(run, backtrace)).or_insert(next)
-        })
-        .collect();
-    named.for_each(|number| *number = resolved[*number]);
-    let mut all: Vec<(BlockLocation, usize)> = numbers.into_iter().collect();
-    all.sort_by_key(|(_, number)| *number);
-    all.into_iter().map(|(location, _)| location).collect()
-}
-
 impl Record {
     /// Iterates over the operator stops: number of the step, and its block.
-    pub fn stops(&self) -> impl Iterator<Item = (usize, &BlockLocation)> {
-        let steps = self.steps.iter().enumerate();
-        let stops = steps.filter(|(_, step)| matches!(step.kind, StepKind::Stop(..)));
-        stops.map(|(number, step)| (number, &self.blocks[step.block_number]))
+    pub fn stops(&self) -> impl Iterator<Item = (usize, Cow<'_, BlockLocation>)> {
+        let steps = self.steps.kinds().enumerate();
+        let stops = steps.filter(|(_, kind)| matches!(kind, StepKind::Stop(..)));
+        stops.map(|(number, _)| (number, self.block(number)))
     }
 
     /// Returns the record of the first steps, and of the holes that they begin.
@@ -274,7 +238,7 @@ impl Record {
             return Cow::Borrowed(self);
         }
         let mut first = self.clone();
-        first.steps.truncate(steps);
+        first.steps = first.steps.filtered(|step, _| step < steps);
         let is_cut = |feeds: &Vec<usize>| feeds.iter().any(|step| *step >= steps);
         first.unfinished = (0..self.feeds.len()).filter(|hole| is_cut(&self.feeds[*hole])).collect();
         first.feeds.iter_mut().for_each(|feeds| feeds.retain(|step| *step < steps));
@@ -285,13 +249,13 @@ impl Record {
     }
 
     /// Returns the block of a step.
-    pub(super) fn block(&self, step: usize) -> &BlockLocation {
-        &self.blocks[self.steps[step].block_number]
+    pub(super) fn block(&self, step: usize) -> Cow<'_, BlockLocation> {
+        self.blocks.location(self.steps.block_number(step))
     }
 
     /// Returns the modal conditions of a step.
     pub(super) fn under(&self, step: usize) -> &ModalConditions {
-        &self.conditions[self.steps[step].condition]
+        &self.conditions[self.steps.condition(step)]
     }
 
     /// Returns `end`, `alarm` or `limit`.
@@ -313,20 +277,6 @@ impl Record {
 /// Returns the alarm's code from the text of a run's end: `alarm PS0076 program O0009 is not found`.
 pub fn alarm_code(words: &str) -> Option<&str> {
     words.strip_prefix("alarm ")?.split(' ').next()
-}
-
-impl BlockLocation {
-    /// Locates a block of a run and the calls that led to it.
-    pub fn of(run: &Run, backtrace: &Backtrace) -> Self {
-        let sources = run.control.memory().sources();
-        let at = |span| {
-            let (program, line) = run.locate(span);
-            Self { program, line, block: sources.text(span).trim().to_owned(), calls: Vec::new() }
-        };
-        let chain = std::iter::successors(backtrace.calls.as_deref(), |call| call.outer_calls.as_deref());
-        let calls = chain.map(|call| at(call.calling_block)).collect();
-        Self { calls, ..at(backtrace.block) }
-    }
 }
 
 /// Returns end and final state of a run.

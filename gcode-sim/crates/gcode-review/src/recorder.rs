@@ -3,21 +3,22 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 
+use super::block_list::BlockNumbers;
 use super::first_command::{CommandKind, FirstCommand};
 use super::modal_conditions::ModalConditions;
-use super::steps::{Step, StepKind, UnsimulatedKind, difference};
+use super::step_list::{NewStep, StepList};
+use super::steps::{StepKind, UnsimulatedKind};
 use gcode_control::{
     BlockCommands, Control, Modal, Observer, ResidualKind, ResidualValue, UnsimulatedCodes, Value,
     modal_code, mode_name,
 };
 use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, Position, SpindleDirection};
 use gcode_lang::program::modes::GROUPS;
-use gcode_lang::source::{SourceId, Span};
+use gcode_lang::source::Span;
 
 /// Largest number of recorded steps: a loop that never ends must not fill the memory.
-pub(super) const MOST_STEPS: usize = 1_000_000;
+pub(super) const MOST_STEPS: usize = 5_000_000;
 
 /// Variables that outlive a program.
 const COMMON: RangeInclusive<u32> = 100..=999;
@@ -34,8 +35,10 @@ const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 /// Recorder of a run.
 #[derive(Debug, Default)]
 pub(super) struct Recorder {
-    pub steps: Vec<Step>,
-    pub backtraces: Vec<Backtrace>,
+    pub steps: StepList,
+    /// Steps whose conditions are not known yet, with their blocks.
+    pending: Vec<(NewStep, Span)>,
+    pub numbers: BlockNumbers,
     /// The run has more than [`MOST_STEPS`].
     pub is_truncated: bool,
     pub conditions: Vec<ModalConditions>,
@@ -43,8 +46,6 @@ pub(super) struct Recorder {
     pub written: BTreeMap<String, Backtrace>,
     /// First command of each mode, axis and offset.
     pub first_commands: BTreeMap<(CommandKind, String), FirstCommand>,
-    /// Executed blocks, by source and offset.
-    pub executed: ExecutedBlocks,
     moves: usize,
     block: Option<PendingBlock>,
     at: Position,
@@ -60,12 +61,7 @@ pub(super) struct Recorder {
     seen: Option<(Modal, u32, u32, Option<f64>)>,
     /// Last blocks and their conditions: a move may wait until the blocks after it are read.
     recent: VecDeque<(Span, usize)>,
-    /// Number of steps whose conditions are known.
-    settled: usize,
 }
-
-/// Number of steps before the first execution of each block, and whether it was ever executed as a whole.
-pub(super) type ExecutedBlocks = BTreeMap<(SourceId, u32), (usize, bool)>;
 
 /// A block before its execution.
 #[derive(Debug)]
@@ -81,12 +77,8 @@ struct PendingBlock {
 }
 
 impl Recorder {
-    /// Returns the number of a block and its calls.
-    fn number(&mut self, backtrace: Backtrace) -> usize {
-        if !self.backtraces.last().is_some_and(|last| is_same_block(last, &backtrace)) {
-            self.backtraces.push(backtrace);
-        }
-        self.backtraces.len() - 1
+    fn step_count(&self) -> usize {
+        self.steps.len() + self.pending.len()
     }
 
     /// Records the commands of the next block.
@@ -97,9 +89,7 @@ impl Recorder {
         }
         self.block = next.map(|block| {
             let is_whole = control.is_next_unconditional();
-            let executed =
-                self.executed.entry((block.source, block.start)).or_insert((self.steps.len(), false));
-            executed.1 |= is_whole;
+            self.numbers.reach(control.memory(), block, self.step_count(), is_whole);
             let unsimulated = control.next_unsimulated();
             let tables = if unsimulated.writes { control.residual_values() } else { Vec::new() };
             let mut assigned = control.next_assigned_variables();
@@ -114,7 +104,7 @@ impl Recorder {
     fn begin(&mut self, commands: BlockCommands, backtrace: &Backtrace) {
         let BlockCommands { modes, axes, offsets, valued_letters } = commands;
         for letter in valued_letters {
-            let number = self.number(backtrace.clone());
+            let number = self.numbers.number(backtrace);
             self.set_by.insert(letter, (backtrace.block, number));
         }
         let modes = modes.into_iter();
@@ -123,7 +113,7 @@ impl Recorder {
         let offsets = offsets.into_iter().map(|name| (CommandKind::Offset, name.clone(), name));
         for (what, name, text) in modes.chain(axes).chain(offsets) {
             if !self.first_commands.contains_key(&(what, name.clone())) {
-                let block_number = self.number(backtrace.clone());
+                let block_number = self.numbers.number(backtrace);
                 let first = FirstCommand { what, name: name.clone(), text, moves: self.moves, block_number };
                 self.first_commands.insert((what, name), first);
             }
@@ -148,7 +138,7 @@ impl Recorder {
             (UnsimulatedKind::MCode, unsimulated.m_codes),
         ] {
             for text in texts {
-                self.push(StepKind::Silent(what, text), self.at, backtrace.clone());
+                self.push(StepKind::Silent(what, text), &backtrace);
             }
         }
         for number in assigned {
@@ -158,7 +148,7 @@ impl Recorder {
                 let is_output = OUTPUTS.contains(&number);
                 let what = if is_output { UnsimulatedKind::Signal } else { UnsimulatedKind::Switch };
                 let value = control.variable(number).map_or(0.0, Value::number);
-                self.push(StepKind::Silent(what, format!("#{number}={value}")), self.at, backtrace.clone());
+                self.push(StepKind::Silent(what, format!("#{number}={value}")), &backtrace);
             }
         }
         if !unsimulated.writes {
@@ -183,49 +173,49 @@ impl Recorder {
         let is_speed = before.1 != speed && state.spindle == SpindleDirection::Off;
         let called = is_called.then(|| (UnsimulatedKind::Tool, format!("T{tool}")));
         let set = is_speed.then(|| (UnsimulatedKind::Speed, format!("S{speed}")));
-        let to = difference(&at, &length);
         for (what, text) in called.into_iter().chain(set) {
-            let (kind, block_number) = (StepKind::Silent(what, text), self.number(backtrace.clone()));
-            let step = Step { kind, from: to, to, at, block_number, set_by: None, condition: 0 };
-            self.steps.insert(self.settled, step);
+            let (kind, block_number) = (StepKind::Silent(what, text), self.numbers.number(backtrace));
+            let step = NewStep { kind, at, length, block_number, set_by: None, condition: 0 };
+            self.pending.insert(0, (step, backtrace.block));
         }
     }
 
-    /// Removes T words that a later M06 used, and S words that a later M03 or M04 used.
-    pub(super) fn forget_used(&mut self) {
-        let (mut tool, mut speed) = (String::new(), String::new());
-        let mut stays = vec![true; self.steps.len()];
-        for (step, stays) in self.steps.iter().zip(&mut stays).rev() {
-            match &step.kind {
-                StepKind::Tool(number) => tool = format!("T{number}"),
-                StepKind::Spindle(direction, rate) if *direction != SpindleDirection::Off => {
-                    speed = format!("S{rate}")
-                }
-                StepKind::Silent(UnsimulatedKind::Tool, text) => *stays = std::mem::take(&mut tool) != *text,
-                StepKind::Silent(UnsimulatedKind::Speed, text) => {
-                    *stays = std::mem::take(&mut speed) != *text
-                }
-                StepKind::Rapid
-                | StepKind::Feed(_)
-                | StepKind::Arc(..)
-                | StepKind::Probe(_)
-                | StepKind::Dwell(_)
-                | StepKind::Length(_)
-                | StepKind::Spindle(..)
-                | StepKind::Coolant(..)
-                | StepKind::Auxiliary(_)
-                | StepKind::Stop(..)
-                | StepKind::Silent(..) => {}
-            }
+    /// Ends the record: removes T words that a later M06 used, and S words that a later M03 or M04 used.
+    pub(super) fn finish(&mut self) {
+        let under = self.conditions.len().saturating_sub(1);
+        self.settle(|_| under);
+        let is_word = |kind: &StepKind| {
+            matches!(kind, StepKind::Silent(UnsimulatedKind::Tool | UnsimulatedKind::Speed, _))
+        };
+        if self.steps.all_kinds().any(is_word) {
+            let removed = self.used_words();
+            self.numbers.remove_steps(&removed);
+            self.steps = self.steps.filtered(|number, _| removed.binary_search(&number).is_err());
         }
-        let mut left = vec![0];
-        left.extend(stays.iter().scan(0, |left, stays| {
-            *left += usize::from(*stays);
-            Some(*left)
-        }));
-        self.executed.values_mut().for_each(|(reached, _)| *reached = left[*reached]);
-        let mut stays = stays.into_iter();
-        self.steps.retain(|_| stays.next() == Some(true));
+        self.steps.shrink();
+    }
+
+    /// Returns the numbers of the T and S words that later commands used.
+    fn used_words(&self) -> Vec<usize> {
+        let (mut tool, mut speed) = (String::new(), String::new());
+        let is_used = |kind: &StepKind| {
+            let (known, text) = match kind {
+                StepKind::Tool(number) => {
+                    tool = format!("T{number}");
+                    return false;
+                }
+                StepKind::Spindle(direction, rate) if *direction != SpindleDirection::Off => {
+                    speed = format!("S{rate}");
+                    return false;
+                }
+                StepKind::Silent(UnsimulatedKind::Tool, text) => (&mut tool, text),
+                StepKind::Silent(UnsimulatedKind::Speed, text) => (&mut speed, text),
+                _ => return false,
+            };
+            std::mem::take(known) == *text
+        };
+        let used: Vec<bool> = self.steps.kinds().rev().map(is_used).collect();
+        (0..used.len()).filter(|number| used[used.len() - 1 - number]).collect()
     }
 
     /// Gives the steps of an executed block the conditions that it leaves.
@@ -233,11 +223,12 @@ impl Recorder {
         let state = control.state();
         let now = (state.modal, state.modal_words.h, state.modal_words.d, state.cycle.q);
         if self.seen != Some(now) {
-            let block_number = self.number(control.backtrace());
+            let backtrace = control.backtrace();
+            let block_number = self.numbers.number(&backtrace);
             let before = self.seen.map_or_else(Modal::default, |(modal, ..)| modal);
             let groups = GROUPS.iter().map(|group| group.number());
             for group in groups.filter(|group| before.code(*group) != state.modal.code(*group)) {
-                self.written.insert(mode_name(group), self.backtraces[block_number].clone());
+                self.written.insert(mode_name(group), backtrace.clone());
             }
             let before = self.conditions.last().cloned().unwrap_or_else(ModalConditions::at_power_on);
             let next = before.after_block(state, control.settings().dialect, block_number);
@@ -252,21 +243,29 @@ impl Recorder {
         }
         let this = self.last.as_ref().map(|backtrace| backtrace.block);
         self.recent.extend(this.map(|block| (block, under)));
-        for step in &mut self.steps[self.settled..] {
-            let block = self.backtraces[step.block_number].block;
-            let known = self.recent.iter().rev().find(|(known, _)| *known == block);
-            step.condition = known.map_or(under, |(_, under)| *under);
-        }
-        self.settled = self.steps.len();
+        let recent = std::mem::take(&mut self.recent);
+        self.settle(|block| {
+            let known = recent.iter().rev().find(|(known, _)| *known == block);
+            known.map_or(under, |(_, under)| *under)
+        });
+        self.recent = recent;
     }
 
-    fn push(&mut self, kind: StepKind, from: Position, backtrace: Backtrace) {
-        self.is_truncated |= self.steps.len() >= MOST_STEPS;
+    /// Moves the pending steps to the others, with the conditions of their blocks.
+    fn settle(&mut self, condition: impl Fn(Span) -> usize) {
+        for (step, block) in self.pending.drain(..) {
+            self.steps.push(NewStep { condition: condition(block), ..step });
+        }
+    }
+
+    fn push(&mut self, kind: StepKind, backtrace: &Backtrace) {
+        self.is_truncated |= self.step_count() >= MOST_STEPS;
         if !self.is_truncated {
-            let set_by = self.set_by(&kind, &backtrace);
-            let block_number = self.number(backtrace);
-            let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
-            self.steps.push(Step { kind, from, to, at: self.at, block_number, set_by, condition: 0 });
+            let set_by = self.set_by(&kind, backtrace);
+            let block_number = self.numbers.number(backtrace);
+            let (at, length) = (self.at, self.length);
+            let step = NewStep { kind, at, length, block_number, set_by, condition: 0 };
+            self.pending.push((step, backtrace.block));
         }
     }
 
@@ -296,7 +295,7 @@ impl Recorder {
         self.moves += usize::from(from != to || matches!(kind, StepKind::Arc(..)));
         // A move to the current position has no effect, except a full circle.
         if from != to || matches!(kind, StepKind::Arc(..)) {
-            self.push(kind, from, event.backtrace());
+            self.push(kind, &event.backtrace());
         }
     }
 }
@@ -326,13 +325,11 @@ impl EventSink for SharedRecorder<'_> {
 impl Recorder {
     /// Removes the spindle stop that a tool change causes.
     fn forget_standstill(&mut self, change: &Event<'_>) {
-        let is_of_change = |step: &Step| {
-            let is_off = step.kind == StepKind::Spindle(SpindleDirection::Off, 0.0);
-            is_off && is_same_block(&self.backtraces[step.block_number], &change.backtrace())
+        let number = self.numbers.number(&change.backtrace());
+        let is_of_change = |(step, _): &mut (NewStep, Span)| {
+            step.kind == StepKind::Spindle(SpindleDirection::Off, 0.0) && step.block_number == number
         };
-        if self.steps.last().is_some_and(is_of_change) {
-            self.steps.pop();
-        }
+        self.pending.pop_if(is_of_change);
     }
 
     fn event(&mut self, event: &Event<'_>) {
@@ -349,7 +346,7 @@ impl Recorder {
             EventKind::ToolLength { offset, .. } if *offset == self.length => return,
             EventKind::ToolLength { offset, .. } => {
                 self.length = *offset;
-                StepKind::Length(*offset)
+                StepKind::Length(Box::new(*offset))
             }
             EventKind::PositionUnknown { .. } | EventKind::ToolSelected { .. } => return,
             EventKind::Spindle { direction, speed, .. } => {
@@ -363,16 +360,6 @@ impl Recorder {
                 StepKind::Stop(*kind, text.clone(), variables.clone())
             }
         };
-        self.push(command, self.at, event.backtrace());
+        self.push(command, &event.backtrace());
     }
-}
-
-/// Returns true for one block of one call.
-pub(super) fn is_same_block(a: &Backtrace, b: &Backtrace) -> bool {
-    a.block == b.block
-        && match (&a.calls, &b.calls) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        }
 }

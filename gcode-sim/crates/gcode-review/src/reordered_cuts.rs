@@ -1,12 +1,14 @@
 //! Cuts that a revision makes earlier or later along the same paths.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::align::{Alignment, StepPair};
+use super::align::Alignment;
 use super::change::{Effect, grouped};
 use super::cut_settings::changed_cut_settings;
 use super::descriptions::point;
 use super::kinds;
+use super::links::{Links, StepPair};
 use super::record::Record;
+use super::step_list::StepList;
 use super::steps::{Step, near};
 use gcode_lang::motion::MAX_AXES;
 
@@ -18,12 +20,7 @@ const MOST_ALIKE: usize = 16;
 
 /// Returns runs of reordered moves, each with a cut that is of no hole, on the other side of cuts that both make.
 /// Their steps lose other links.
-pub(super) fn reordered_runs(
-    links: &mut Vec<StepPair>,
-    old: &Record,
-    new: &Record,
-    tolerance: f64,
-) -> Vec<MoveRun> {
+pub(super) fn reordered_runs(links: &mut Links, old: &Record, new: &Record, tolerance: f64) -> Vec<MoveRun> {
     let [was, is] = [(old, 0), (new, 1)].map(|(record, side)| RevisionMoves::new(record, links, side));
     let runs = find(&was, &is, tolerance);
     let (was, is): (BTreeSet<usize>, BTreeSet<usize>) =
@@ -35,61 +32,76 @@ pub(super) fn reordered_runs(
         link => vec![link],
     };
     if !runs.is_empty() {
-        *links = std::mem::take(links).into_iter().flat_map(split).collect();
+        *links = links.iter().flat_map(split).collect();
     }
     runs
 }
 
-/// The moves of one revision.
+/// The moves of one revision that the other does not make at that time.
 struct RevisionMoves<'a> {
-    steps: &'a [Step],
-    moves: Vec<usize>,
-    /// True for each move that the other revision does not make at that time.
-    is_free: Vec<bool>,
-    /// Number of cuts that both make at that time before each.
-    before: Vec<usize>,
-    /// Indices of the feeds of holes.
+    steps: &'a StepList,
+    free: Vec<FreeMove>,
+    /// Feeds of holes.
     holes: Vec<usize>,
 }
 
+/// A move that the other revision does not make at that time.
+struct FreeMove {
+    step: usize,
+    /// Number of moves before it.
+    index: usize,
+    /// Number of cuts before it that both make at that time.
+    before: usize,
+}
+
 impl<'a> RevisionMoves<'a> {
-    fn new(record: &'a Record, links: &[StepPair], side: usize) -> Self {
-        let moves =
-            links.iter().filter_map(|link| Some((link.sides()[side]?, !matches!(link, StepPair::Same(..)))));
-        let (moves, is_free): (Vec<usize>, Vec<bool>) =
-            moves.filter(|(step, _)| record.steps[*step].is_move()).unzip();
-        let cuts = moves.iter().zip(&is_free).scan(0, |cuts, (step, is_free)| {
-            let before = *cuts;
-            *cuts += usize::from(!is_free && record.steps[*step].kind.rate().is_some());
-            Some(before)
-        });
-        let before = cuts.collect();
+    fn new(record: &'a Record, links: &Links, side: usize) -> Self {
+        let steps = &record.steps;
+        let mut all = Self { steps, free: Vec::new(), holes: Vec::new() };
+        if links.differences().next().is_none() {
+            return all;
+        }
+        let (mut index, mut before) = (0, 0);
+        for link in links.iter() {
+            let Some(step) = link.sides()[side].filter(|step| steps.is_move(*step)) else { continue };
+            if link.is_same() {
+                before += usize::from(steps.kind(step).rate().is_some());
+            } else {
+                all.free.push(FreeMove { step, index, before });
+            }
+            index += 1;
+        }
         let feeds: BTreeSet<usize> = record.feeds.iter().flatten().copied().collect();
-        let holes = (0..moves.len()).filter(|index| feeds.contains(&moves[*index])).collect();
-        Self { steps: &record.steps, moves, is_free, before, holes }
+        all.holes = feeds.into_iter().filter(|step| steps.is_move(*step)).collect();
+        all
     }
 
-    fn step(&self, index: usize) -> &'a Step {
-        &self.steps[self.moves[index]]
+    fn step(&self, index: usize) -> Step<'a> {
+        self.steps.at(self.free[index].step)
+    }
+
+    /// Returns true if the free moves between two are all moves between them.
+    fn is_run(&self, first: usize, last: usize) -> bool {
+        self.free[last].index - self.free[first].index == last - first
     }
 
     /// Returns true for a cut that is neither of a hole nor on the line of the nearest one, such as a peck.
     fn is_cut(&self, index: usize) -> bool {
-        let next = self.holes.partition_point(|hole| *hole < index);
+        let next = self.holes.partition_point(|hole| *hole < self.free[index].step);
         let near = [next.checked_sub(1), Some(next)].into_iter().flatten();
         let mut near = near.filter_map(|hole| self.holes.get(hole));
         let step = self.step(index);
-        step.kind.rate().is_some() && !near.any(|hole| step.is_on_line_of(self.step(*hole)))
+        step.kind.rate().is_some() && !near.any(|hole| step.is_on_line_of(&self.steps.at(*hole)))
     }
 
     fn free_cuts(&self) -> impl Iterator<Item = usize> {
-        (0..self.moves.len()).filter(|index| self.is_free[*index] && self.is_cut(*index))
+        (0..self.free.len()).filter(|index| self.is_cut(*index))
     }
 }
 
 fn find(old: &RevisionMoves<'_>, new: &RevisionMoves<'_>, tolerance: f64) -> Vec<MoveRun> {
     let mut alike: BTreeMap<[i64; MAX_AXES], Vec<usize>> = BTreeMap::new();
-    new.free_cuts().for_each(|index| alike.entry(about(new.step(index))).or_default().push(index));
+    new.free_cuts().for_each(|index| alike.entry(about(&new.step(index))).or_default().push(index));
     let (mut known, mut known_now) = (BTreeSet::new(), BTreeSet::new());
     let mut runs = Vec::new();
     for p in old.free_cuts() {
@@ -97,33 +109,37 @@ fn find(old: &RevisionMoves<'_>, new: &RevisionMoves<'_>, tolerance: f64) -> Vec
             continue;
         }
         let is_pair = |p: usize, q: usize| {
-            let is_free = old.is_free[p] && new.is_free[q] && !known.contains(&p) && !known_now.contains(&q);
-            is_free && is_same(old.step(p), new.step(q), tolerance)
+            let is_known = known.contains(&p) || known_now.contains(&q);
+            !is_known && is_same(&old.step(p), &new.step(q), tolerance)
         };
         let run = |q: &usize| {
-            let back = (1..=p.min(*q)).take_while(|n| is_pair(p - n, q - n)).count();
-            let rest = (old.moves.len() - p).min(new.moves.len() - q);
-            let on = (0..rest).take_while(|n| is_pair(p + n, q + n)).count();
+            let is_back = |n: &usize| old.is_run(p - n, p) && new.is_run(q - n, *q) && is_pair(p - n, q - n);
+            let back = (1..=p.min(*q)).take_while(is_back).count();
+            let rest = (old.free.len() - p).min(new.free.len() - q);
+            let is_on = |n: &usize| old.is_run(p, p + n) && new.is_run(*q, q + n) && is_pair(p + n, q + n);
+            let on = (0..rest).take_while(is_on).count();
             (on > 0).then(|| (p - back, q - back, back + on))
         };
-        let candidates = alike.get(&about(old.step(p))).into_iter().flatten();
-        let candidates = candidates.filter(|q| old.before[p] != new.before[**q]);
+        let candidates = alike.get(&about(&old.step(p))).into_iter().flatten();
+        let candidates = candidates.filter(|q| old.free[p].before != new.free[**q].before);
         let longest = candidates.take(MOST_ALIKE).filter_map(run).max_by_key(|(_, _, moves)| *moves);
         let Some((from, from_now, moves)) = longest else { continue };
         known.extend(from..from + moves);
         known_now.extend(from_now..from_now + moves);
-        runs.push(MoveRun((0..moves).map(|n| (old.moves[from + n], new.moves[from_now + n])).collect()));
+        runs.push(MoveRun(
+            (0..moves).map(|n| (old.free[from + n].step, new.free[from_now + n].step)).collect(),
+        ));
     }
     runs
 }
 
 /// Returns true for equal moves; a cut has to start at the same point as well.
-fn is_same(old: &Step, new: &Step, tolerance: f64) -> bool {
+fn is_same(old: &Step<'_>, new: &Step<'_>, tolerance: f64) -> bool {
     old.is_same(new, tolerance) && (old.is_rapid() || near(&old.from, &new.from, tolerance))
 }
 
 /// Returns the end point of a step in hundredths, offset so that round values are not on a limit.
-fn about(step: &Step) -> [i64; MAX_AXES] {
+fn about(step: &Step<'_>) -> [i64; MAX_AXES] {
     std::array::from_fn(|axis| ((step.to[axis] + 0.001_7) * 100.0).floor() as i64)
 }
 
@@ -149,9 +165,9 @@ impl<'a> ReorderedCuts<'a> {
     fn keep_rapids(&mut self) {
         let Alignment { links, tolerance, .. } = self.alignment;
         let mut unpaired = [Vec::new(), Vec::new()];
-        for link in links {
+        for link in links.iter() {
             let sides = link.sides();
-            let Some(step) = self.alignment.step(*link).filter(|_| !self.contains(link)) else { continue };
+            let Some(step) = self.alignment.step(link).filter(|_| !self.contains(&link)) else { continue };
             if !(link.is_unpaired() && step.is_rapid()) {
                 if step.is_move() {
                     unpaired = [Vec::new(), Vec::new()];
@@ -160,8 +176,9 @@ impl<'a> ReorderedCuts<'a> {
             }
             let side = usize::from(sides[0].is_none());
             let others = &self.alignment.records[1 - side].steps;
-            let equal =
-                unpaired[1 - side].iter().position(|other: &usize| others[*other].is_same(step, tolerance));
+            let equal = unpaired[1 - side]
+                .iter()
+                .position(|other: &usize| others.at(*other).is_same(&step, tolerance));
             let number = sides[side].unwrap_or(0);
             match equal {
                 Some(index) => {
@@ -186,8 +203,9 @@ impl<'a> ReorderedCuts<'a> {
     /// it.
     pub(super) fn is_before_run(&self, i: usize, j: usize) -> bool {
         let [old, new] = self.alignment.records;
-        let cut =
-            |steps: &[Step], from: usize| (from..steps.len()).find(|step| steps[*step].kind.rate().is_some());
+        let cut = |steps: &StepList, from: usize| {
+            (from..steps.len()).find(|step| steps.kind(*step).rate().is_some())
+        };
         let cuts = cut(&old.steps, i).zip(cut(&new.steps, j));
         cuts.is_some_and(|cuts| self.runs.iter().any(|run| run.0.contains(&cuts)))
     }
@@ -195,7 +213,7 @@ impl<'a> ReorderedCuts<'a> {
     /// Returns one effect for all runs whose conditions differ alike.
     pub(super) fn effects(&self) -> Vec<Effect> {
         let steps = &self.alignment.records[0].steps;
-        let is_cut = |(i, _): &(usize, usize)| steps[*i].kind.rate().is_some();
+        let is_cut = |(i, _): &(usize, usize)| steps.kind(*i).rate().is_some();
         let cuts = |run: &MoveRun| run.0.iter().copied().filter(is_cut).collect::<Vec<_>>();
         let all: Vec<(usize, usize)> = self.runs.iter().flat_map(cuts).collect();
         let mut with = changed_cut_settings(&self.alignment, &all).into_iter();
@@ -209,11 +227,12 @@ impl<'a> ReorderedCuts<'a> {
 
     fn effect(&self, runs: &[&MoveRun], with: &str) -> Effect {
         let (i, j) = runs[0].0[0];
-        let old = &self.alignment.records[0].steps[i];
-        let is_first = |link: &&StepPair| [StepPair::Lost(i), StepPair::Added(j)].contains(link);
-        let is_later = self.alignment.links.iter().find(is_first) == Some(&StepPair::Lost(i));
+        let old = self.alignment.records[0].steps.at(i);
+        let is_first = |link: &StepPair| [StepPair::Lost(i), StepPair::Added(j)].contains(link);
+        let mut unpaired = self.alignment.links.unpaired().map(|(_, link)| link);
+        let is_later = unpaired.find(is_first) == Some(StepPair::Lost(i));
         let when = if is_later { "later" } else { "earlier" };
-        let one = format!("{} to {}", old.kind.one(), point(old, self.alignment.axes()));
+        let one = format!("{} to {}", old.kind.one(), point(&old, self.alignment.axes()));
         let moves: usize = runs.iter().map(|run| run.0.len()).sum();
         let what = match (runs.len(), moves) {
             (1, 1) => format!("{one} is executed {when} than before"),

@@ -1,7 +1,8 @@
 //! Stops, M codes and other commands that a revision executes earlier or later.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::align::{Alignment, StepPair};
+use super::align::Alignment;
+use super::links::{Links, StepPair};
 use super::reordered_cuts::ReorderedCuts;
 
 /// The lost and the added step of a shifted command, and `earlier` or `later`.
@@ -13,9 +14,7 @@ pub(super) fn shifted_events(alignment: &Alignment<'_>) -> BTreeMap<usize, Optio
     let Alignment { records: [old, new], links, tolerance } = *alignment;
     let mut known = BTreeMap::new();
     let is_command = |link: StepPair| alignment.step(link).is_some_and(|step| !step.is_move());
-    let alone = links.iter().copied().enumerate();
-    let alone: Vec<(usize, StepPair)> =
-        alone.filter(|(_, link)| link.is_unpaired() && is_command(*link)).collect();
+    let alone: Vec<(usize, StepPair)> = links.unpaired().filter(|(_, link)| is_command(*link)).collect();
     if alone.len() > 1000 {
         return known;
     }
@@ -30,7 +29,7 @@ pub(super) fn shifted_events(alignment: &Alignment<'_>) -> BTreeMap<usize, Optio
         };
         let mut others = alone[index + 1..].iter().filter(|(l, _)| !known.contains_key(l)).filter_map(pair);
         let is_same =
-            |(_, (i, j, _)): &(usize, ShiftedEvent)| old.steps[*i].is_same(&new.steps[*j], tolerance);
+            |(_, (i, j, _)): &(usize, ShiftedEvent)| old.steps.at(*i).is_same(&new.steps.at(*j), tolerance);
         if let Some((l, found)) = others.find(is_same) {
             known.extend([(*k, Some(found)), (l, None)]);
         }
@@ -41,11 +40,14 @@ pub(super) fn shifted_events(alignment: &Alignment<'_>) -> BTreeMap<usize, Optio
 /// Removes the commands that are shifted together with the moves after them, and returns their links.
 pub(super) fn take_with_runs(
     shifted: &mut BTreeMap<usize, Option<ShiftedEvent>>,
-    links: &[StepPair],
+    links: &Links,
     cuts: &ReorderedCuts<'_>,
 ) -> Vec<usize> {
     let with = shifted.values().flatten().filter(|(i, j, _)| cuts.is_before_run(*i, *j));
     let steps: BTreeSet<[Option<usize>; 2]> =
         with.flat_map(|(i, j, _)| [[Some(*i), None], [None, Some(*j)]]).collect();
-    shifted.extract_if(.., |k, _| steps.contains(&links[*k].sides())).map(|(k, _)| k).collect()
+    shifted
+        .extract_if(.., |k, _| links.get(*k).is_some_and(|link| steps.contains(&link.sides())))
+        .map(|(k, _)| k)
+        .collect()
 }

@@ -7,9 +7,9 @@ use gcode_lang::diag::FindingKind;
 use gcode_lang::motion::{MAX_AXES, PlanarArc, Position, SpindleDirection, StopKind};
 
 /// A move or a command.
-#[derive(Clone, Debug)]
-pub(super) struct Step {
-    pub kind: StepKind,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step<'a> {
+    pub kind: &'a StepKind,
     /// Axis positions before and after it without the tool length offset: a longer tool is one difference, not one
     /// in every move.
     pub from: Position,
@@ -35,7 +35,7 @@ pub(super) enum StepKind {
     /// Seconds.
     Dwell(f64),
     Tool(u32),
-    Length(Position),
+    Length(Box<Position>),
     Spindle(SpindleDirection, f64),
     /// On or off, and the M code; `None` in files that do not have it.
     Coolant(bool, Option<u32>),
@@ -114,6 +114,10 @@ impl StepKind {
         }
     }
 
+    pub(super) fn is_move(&self) -> bool {
+        matches!(self, Self::Rapid | Self::Feed(_) | Self::Arc(..) | Self::Probe(_))
+    }
+
     /// Returns the feed of a cut, mm/min.
     pub(super) fn rate(&self) -> Option<f64> {
         match self {
@@ -133,23 +137,23 @@ pub(super) fn with_article(name: &str) -> String {
     format!("{} {name}", if name.starts_with('a') { "an" } else { "a" })
 }
 
-impl Step {
+impl Step<'_> {
     /// Returns the block to edit for another tool, speed or feed.
     pub(super) fn editable_at(&self) -> usize {
         self.set_by.unwrap_or(self.block_number)
     }
 
     pub(super) fn is_move(&self) -> bool {
-        self.kind.change().is_none()
+        self.kind.is_move()
     }
 
     pub(super) fn is_rapid(&self) -> bool {
-        self.kind == StepKind::Rapid
+        *self.kind == StepKind::Rapid
     }
 
     /// Returns true for the same action: a move of the same kind to the same point, at any feed.
-    pub(super) fn is_same(&self, other: &Self, tolerance: f64) -> bool {
-        match (&self.kind, &other.kind) {
+    pub(super) fn is_same(&self, other: &Step<'_>, tolerance: f64) -> bool {
+        match (self.kind, other.kind) {
             (StepKind::Rapid, StepKind::Rapid)
             | (StepKind::Feed(_), StepKind::Feed(_))
             | (StepKind::Probe(_), StepKind::Probe(_)) => near(&self.to, &other.to, tolerance),
@@ -170,12 +174,12 @@ impl Step {
     }
 
     /// Returns true for two moves of the same direction and length.
-    pub(super) fn is_parallel(&self, other: &Self, tolerance: f64) -> bool {
+    pub(super) fn is_parallel(&self, other: &Step<'_>, tolerance: f64) -> bool {
         self.is_move() && other.is_move() && near(&self.displacement(), &other.displacement(), tolerance)
     }
 
     /// Returns true if the step ends on the line of `feed`.
-    pub(super) fn is_on_line_of(&self, feed: &Self) -> bool {
+    pub(super) fn is_on_line_of(&self, feed: &Step<'_>) -> bool {
         let (along, aside) = (feed.displacement(), difference(&self.to, &feed.to));
         let part = dot(&aside, &along) / dot(&along, &along).max(f64::MIN_POSITIVE);
         // Rounded end points are this far off an oblique line.
@@ -183,7 +187,7 @@ impl Step {
     }
 
     /// Returns the distance between the end points of two steps, mm and degrees as equal numbers.
-    pub(super) fn distance(&self, other: &Self) -> f64 {
+    pub(super) fn distance(&self, other: &Step<'_>) -> f64 {
         norm(&difference(&self.to, &other.to))
     }
 
@@ -203,8 +207,8 @@ pub(super) const ROUNDED: f64 = 0.0025;
 
 /// Returns true if a move ends on the line of the hole's feed, as far above the bottom as before.
 pub(super) fn is_as_far_above(
-    (old, feed_old): (&Step, &Step),
-    (new, feed_new): (&Step, &Step),
+    (old, feed_old): (&Step<'_>, &Step<'_>),
+    (new, feed_new): (&Step<'_>, &Step<'_>),
     deeper: f64,
 ) -> bool {
     let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);

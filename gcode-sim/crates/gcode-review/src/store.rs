@@ -6,11 +6,14 @@ use nalgebra::{Point3, Unit, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::block_list::BlockList;
+use super::block_location::BlockLocation;
 use super::first_command::FirstCommand;
 use super::legacy_records::present_words;
 use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
-use super::record::{BlockLocation, EndState, Record, Totals};
-use super::steps::{Step, StepKind, UnsimulatedKind, difference};
+use super::record::{EndState, Record, Totals};
+use super::step_list::{NewStep, StepList};
+use super::steps::{Step, StepKind, UnsimulatedKind};
 use gcode_inspect::holes::{DrilledHole, PassCut};
 use gcode_lang::motion::{Axes, Backtrace, PlanarArc, Position, SpindleDirection, StopKind, UnknownAxes};
 use gcode_lang::units::Deg;
@@ -160,7 +163,7 @@ impl Record {
                 steps.push(StepLine::Under { what, code: text, block_number });
             }
             under.clone_from(now);
-            steps.push(self.line(step, &at));
+            steps.push(self.line(&step, &at));
             at = step.at;
         }
         let holes = self.holes.iter().zip(&self.feeds).enumerate().map(|(number, (hole, steps))| Hole {
@@ -172,6 +175,7 @@ impl Record {
             steps: steps.clone(),
             again: (hole.first_on_line != number).then_some(hole.first_on_line),
         });
+        let blocks: Vec<_> = (0..self.blocks.len()).map(|number| self.blocks.location(number)).collect();
         let axes: String = self.axes.iter().map(|(_, letter)| letter).collect();
         let mut text = String::from("{\n");
         let _ = writeln!(text, "\"version\": {VERSION},\n\"axes\": \"{axes}\",");
@@ -179,7 +183,7 @@ impl Record {
             let _ = writeln!(text, "\"program\": {},", json(program)?);
         }
         let _ = writeln!(text, "\"totals\": {},\n\"ending\": {},", json(&self.totals)?, json(&self.ending)?);
-        let _ = writeln!(text, "\"places\": {},", lines(&self.blocks)?);
+        let _ = writeln!(text, "\"places\": {},", lines(&blocks)?);
         if let Some(begun) = &self.first_commands {
             let _ = writeln!(text, "\"begun\": {},", lines(begun)?);
         }
@@ -209,18 +213,18 @@ impl Record {
             length: Position::default(),
             conditions: vec![ModalConditions::default()],
         };
-        let steps = file.steps.into_iter().filter_map(|line| reader.step(line).transpose());
-        let steps = steps.collect::<Result<Vec<_>, _>>()?;
+        let mut steps = StepList::default();
+        for line in file.steps {
+            reader.step(line)?.into_iter().for_each(|step| steps.push(step));
+        }
         let conditions = reader.conditions;
         let named = conditions.iter().flat_map(|condition| &condition.0).filter_map(|word| word.block_number);
         if let Some(block_number) = named.max().filter(|block_number| file.blocks.len() <= *block_number) {
             return Err(StoreError(format!("a mode names block {block_number}, which does not exist")));
         }
-        if let Some(step) = steps.iter().find(|step| file.blocks.len() <= step.block_number) {
-            return Err(StoreError(format!(
-                "a step names block {}, which does not exist",
-                step.block_number
-            )));
+        let mut named = (0..steps.len()).map(|step| steps.block_number(step));
+        if let Some(block_number) = named.find(|block_number| file.blocks.len() <= *block_number) {
+            return Err(StoreError(format!("a step names block {block_number}, which does not exist")));
         }
         let mut feeds = Vec::with_capacity(file.holes.len());
         let mut holes = Vec::with_capacity(file.holes.len());
@@ -250,21 +254,19 @@ impl Record {
             holes,
             feeds,
             unfinished: BTreeSet::new(),
-            blocks,
+            blocks: BlockList::Listed(blocks),
             conditions,
             first_commands: file.begun,
             program: file.program,
             ending,
-            sources: None,
-            executed: BTreeMap::new(),
             totals,
         })
     }
 
-    fn line(&self, step: &Step, before: &Position) -> StepLine {
+    fn line(&self, step: &Step<'_>, before: &Position) -> StepLine {
         let block_number = step.block_number;
         let to = moved(&self.axes, before, &step.at);
-        match &step.kind {
+        match step.kind {
             StepKind::Rapid => StepLine::Rapid { to, block_number },
             StepKind::Feed(f) => StepLine::Feed { to, f: *f, block_number },
             StepKind::Arc(arc, f) => StepLine::Arc {
@@ -322,8 +324,7 @@ struct Steps<'a> {
 
 impl Steps<'_> {
     /// Reads a line; `None` if it is no step.
-    fn step(&mut self, line: StepLine) -> Result<Option<Step>, StoreError> {
-        let before = self.at;
+    fn step(&mut self, line: StepLine) -> Result<Option<NewStep>, StoreError> {
         let (kind, block_number) = match line {
             StepLine::Rapid { to, block_number } => (self.go(&to, StepKind::Rapid)?, block_number),
             StepLine::Feed { to, f, block_number } => (self.go(&to, StepKind::Feed(f))?, block_number),
@@ -337,7 +338,7 @@ impl Steps<'_> {
             StepLine::Tool { number, block_number } => (StepKind::Tool(number), block_number),
             StepLine::Length { offset, block_number } => {
                 self.length = self.put(&offset, Position::default())?;
-                (StepKind::Length(self.length), block_number)
+                (StepKind::Length(Box::new(self.length)), block_number)
             }
             StepLine::Spindle { turning, speed, block_number } => {
                 (StepKind::Spindle(turning, speed), block_number)
@@ -355,12 +356,10 @@ impl Steps<'_> {
                 return Ok(None);
             }
         };
-        let (from, to) = (difference(&before, &self.length), difference(&self.at, &self.length));
-        Ok(Some(Step {
+        Ok(Some(NewStep {
             kind,
-            from,
-            to,
             at: self.at,
+            length: self.length,
             block_number,
             set_by: None,
             condition: self.conditions.len() - 1,
@@ -400,7 +399,7 @@ impl Hole {
             tool: self.tool,
             backtrace: Backtrace::default(),
             axis_position: Position::default(),
-            tool_axis_deviation: Deg::ZERO,
+            is_tool_axis_known: false,
             unknown_axes: UnknownAxes::default(),
             earlier_passes: Vec::new(),
             finishing_cut: PassCut::new(entry, entry - axis * self.depth),

@@ -2,12 +2,13 @@
 //! revisions.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::align::{Alignment, StepPair};
-use super::change::{Effect, grouped};
+use super::align::Alignment;
+use super::block_location::BlockLocation;
+use super::change::Effect;
 use super::descriptions::describe;
 use super::kinds;
 use super::modal_conditions::ModalAspect;
-use super::record::{BlockLocation, Record};
+use super::record::Record;
 use super::steps::{StepKind, UnsimulatedKind, near};
 use gcode_lang::diag::FindingKind;
 use gcode_lang::motion::{Axes, Position, SpindleDirection};
@@ -19,19 +20,31 @@ pub(super) fn relied_on_changes(
     is_free: impl Fn(usize) -> bool,
 ) -> Vec<(usize, Effect)> {
     let Alignment { records: [old, new], links, tolerance } = *alignment;
-    if !(0..links.len()).any(&is_free) {
+    if !links.unpaired().any(|(k, _)| is_free(k)) {
         return Vec::new();
     }
     let is_named = CutState::is_named(old, new);
     let mut states = [CutState::default(), CutState::default()];
-    let mut all = Vec::new();
+    let mut all: Vec<ReliedOnChange> = Vec::new();
+    // The differences of the last cut of both, until a command follows.
+    let mut last: Option<((usize, usize, bool), Vec<usize>)> = None;
     for (k, link) in links.iter().enumerate() {
         let sides = link.sides();
-        for (step, state) in alignment.steps(sides).into_iter().zip(&mut states) {
-            step.into_iter().for_each(|step| state.follow(&step.kind, k, is_named));
+        let kinds = [0, 1].map(|side| Some(alignment.records[side].steps.kind(sides[side]?)));
+        for (kind, state) in kinds.into_iter().zip(&mut states) {
+            let command = kind.filter(|kind| !kind.is_move());
+            command.into_iter().for_each(|kind| state.follow(kind, k, is_named));
+            last = last.filter(|_| command.is_none());
         }
         let [Some(i), Some(j)] = sides else { continue };
-        if old.steps[i].kind.rate().is_none() {
+        if old.steps.kind(i).rate().is_none() {
+            continue;
+        }
+        let under = (old.steps.condition(i), new.steps.condition(j), link.is_same());
+        if let Some((of, known)) = &last
+            && *of == under
+        {
+            known.iter().for_each(|known| all[*known].cuts += 1);
             continue;
         }
         let free = |set_by: LinkPair| set_by.into_iter().flatten().find(|k| is_free(*k));
@@ -39,22 +52,42 @@ pub(super) fn relied_on_changes(
         // At another tilt of the head the same length has another direction.
         let is_same_h =
             old.under(i).word(ModalAspect::Length).text == new.under(j).word(ModalAspect::Length).text;
-        let is_alike = matches!(link, StepPair::Same(..)) && is_same_h;
+        let is_alike = link.is_same() && is_same_h;
         let length = if is_alike { before.length(now, free, &old.axes, tolerance) } else { None };
         let found = [length, before.spindle(now, free), before.coolant(now, free)];
-        let found = found.into_iter().flatten();
-        all.extend(found.map(|(link, kind, text)| ((link, kind), (text, new.block(j)))));
+        let numbers = found.into_iter().flatten().map(|(link, kind, text)| {
+            let known = all.iter().position(|one| (one.link, one.kind) == (link, kind));
+            let number = known.unwrap_or_else(|| {
+                all.push(ReliedOnChange { link, kind, text, first_cut: j, cuts: 0 });
+                all.len() - 1
+            });
+            all[number].cuts += 1;
+            number
+        });
+        last = Some((under, numbers.collect()));
     }
-    let effects = grouped(all).into_iter().map(|((link, kind), cuts)| {
-        let what = alignment.step(links[link]).map(|step| describe(&step.kind, &old.axes));
-        let change = if links[link].sides()[1].is_some() { "is added" } else { "is removed" };
-        let ([whether, before, now], cut) = &cuts[0];
-        let count = if cuts.len() == 1 { String::new() } else { format!(" ({} moves)", cuts.len()) };
-        let (what, cut) = (what.unwrap_or_default(), name(cut));
+    let effects = all.into_iter().filter_map(|ReliedOnChange { link, kind, text, first_cut, cuts }| {
+        let sides = links.get(link)?.sides();
+        let what = alignment.step(links.get(link)?).map(|step| describe(step.kind, &old.axes));
+        let change = if sides[1].is_some() { "is added" } else { "is removed" };
+        let [whether, before, now] = text;
+        let count = if cuts == 1 { String::new() } else { format!(" ({cuts} moves)") };
+        let (what, cut) = (what.unwrap_or_default(), name(&new.block(first_cut)));
         let message = format!("{what} {change}: {whether}{cut} is cut with {now} instead of {before}{count}");
-        (link, Effect::new(kind, message, alignment.blocks(links[link].sides())))
+        Some((link, Effect::new(kind, message, alignment.blocks(sides))))
     });
     effects.collect()
+}
+
+/// A command that changes spindle, coolant or tool length at cuts.
+struct ReliedOnChange {
+    link: usize,
+    kind: &'static FindingKind,
+    /// The machines that have the difference, and the values before and now at the first cut.
+    text: [String; 3],
+    /// Number of the first cut in the new run.
+    first_cut: usize,
+    cuts: usize,
 }
 
 /// Formats a block as `O0100:10 N210`.
@@ -113,8 +146,8 @@ impl SpindleState {
 impl CutState {
     /// Returns true if both records have the M codes of coolant.
     pub(super) fn is_named(old: &Record, new: &Record) -> bool {
-        let mut steps = old.steps.iter().chain(&new.steps);
-        !steps.any(|step| matches!(step.kind, StepKind::Coolant(_, None)))
+        let mut kinds = old.steps.all_kinds().chain(new.steps.all_kinds());
+        !kinds.any(|kind| matches!(kind, StepKind::Coolant(_, None)))
     }
 
     /// Applies a step.
@@ -135,7 +168,7 @@ impl CutState {
                     self.spindles[1].speed = (speed, Some(link));
                 }
             }
-            StepKind::Length(offset) => self.length = (*offset, Some(link)),
+            StepKind::Length(offset) => self.length = (**offset, Some(link)),
             StepKind::Coolant(true, code) => {
                 self.flows.insert(code.filter(|_| is_named), (true, link));
             }
@@ -169,7 +202,7 @@ impl CutState {
     ) -> Option<SetupDifference> {
         let is_other = !near(&self.length.0, &now.length.0, tolerance);
         let link = free(is_other.then_some([self.length.1, now.length.1])?)?;
-        let text = |state: &Self| describe(&StepKind::Length(state.length.0), axes);
+        let text = |state: &Self| describe(&StepKind::Length(Box::new(state.length.0)), axes);
         Some((link, &kinds::TOOL_LENGTH, [String::new(), text(self), text(now)]))
     }
 

@@ -1,6 +1,7 @@
 //! Programs whose moves are all shifted by one displacement: their steps are linked in order, even if a shift by
 //! the pitch of the holes leads each move to the old end point of the next.
-use super::align::{StepPair, align};
+use super::align::{StepRange, align};
+use super::links::{Links, StepPair};
 use super::program_text::words;
 use super::record::Record;
 use super::steps::{Step, difference, near};
@@ -9,38 +10,36 @@ use gcode_lang::motion::{MAX_AXES, Position};
 /// Returns the links of such a program; `None` if `links` leave no move unpaired on either side, or if blocks or
 /// displacements differ. Moves to unchanged machine positions with another tool length may be of any blocks.
 pub(super) fn pair_shifted_program(
-    links: &[StepPair],
+    links: &Links,
     old: &Record,
     new: &Record,
     tolerance: f64,
-) -> Option<Vec<StepPair>> {
-    let is_lost = |link: &StepPair| matches!(link, StepPair::Lost(i) if old.steps[*i].is_move());
-    let is_added = |link: &StepPair| matches!(link, StepPair::Added(j) if new.steps[*j].is_move());
-    if !(links.iter().any(is_lost) && links.iter().any(is_added)) {
+) -> Option<Links> {
+    let is_lost = |(_, link)| matches!(link, StepPair::Lost(i) if old.steps.is_move(i));
+    let is_added = |(_, link)| matches!(link, StepPair::Added(j) if new.steps.is_move(j));
+    if !(links.unpaired().any(is_lost) && links.unpaired().any(is_added)) {
         return None;
     }
-    let pairs: Vec<(usize, usize)> = moves(old).zip(moves(new)).collect();
-    let both = || pairs.iter().map(|(i, j)| (&old.steps[*i], &new.steps[*j]));
-    let is_as_many = moves(old).count() == pairs.len() && moves(new).count() == pairs.len();
-    let is_kind = |(a, b): (&Step, &Step)| std::mem::discriminant(&a.kind) == std::mem::discriminant(&b.kind);
-    if !is_as_many || !both().all(is_kind) {
+    let pairs = || moves(old).zip(moves(new));
+    let both = || pairs().map(|(i, j)| (old.steps.at(i), new.steps.at(j)));
+    let discriminant = |record: &Record, step: usize| std::mem::discriminant(record.steps.kind(step));
+    let mut kinds = pairs().map(|(i, j)| discriminant(old, i) == discriminant(new, j));
+    if moves(old).count() != moves(new).count() || !kinds.all(|is_kind| is_kind) {
         return None;
     }
-    let is_block = |(a, b): (&Step, &Step)| {
-        words(&old.blocks[a.block_number].block) == words(&new.blocks[b.block_number].block)
-    };
+    let block = |record: &Record, step: &Step<'_>| words(&record.blocks.location(step.block_number).block);
     let is_at_once = || both().all(|(a, b)| near(&a.at, &b.at, tolerance));
-    let is_by_the_same = || both().all(is_block) && is_uniform_shift(both(), tolerance);
-    (is_at_once() || is_by_the_same()).then(|| linked(&pairs, old, new, tolerance))
+    let is_by_the_same =
+        || is_uniform_shift(both(), tolerance) && both().all(|(a, b)| block(old, &a) == block(new, &b));
+    (is_at_once() || is_by_the_same()).then(|| linked(pairs(), old, new, tolerance))
 }
 
 fn moves(record: &Record) -> impl Iterator<Item = usize> {
-    let steps = record.steps.iter().enumerate();
-    steps.filter(|(_, step)| step.is_move()).map(|(number, _)| number)
+    (0..record.steps.len()).filter(|step| record.steps.is_move(*step))
 }
 
 /// Returns true if every axis that is displaced has one displacement in all moves.
-fn is_uniform_shift<'a>(both: impl Iterator<Item = (&'a Step, &'a Step)>, tolerance: f64) -> bool {
+fn is_uniform_shift<'a>(both: impl Iterator<Item = (Step<'a>, Step<'a>)>, tolerance: f64) -> bool {
     let mut common = Position::default();
     for (old, new) in both {
         let shift = difference(&new.to, &old.to);
@@ -59,19 +58,17 @@ fn is_uniform_shift<'a>(both: impl Iterator<Item = (&'a Step, &'a Step)>, tolera
 }
 
 /// Links pairs of moves, and aligns the commands between them.
-fn linked(pairs: &[(usize, usize)], old: &Record, new: &Record, tolerance: f64) -> Vec<StepPair> {
-    let mut links = Vec::with_capacity(old.steps.len());
+fn linked(pairs: impl Iterator<Item = (usize, usize)>, old: &Record, new: &Record, tolerance: f64) -> Links {
+    let mut links = Links::default();
     let (mut i, mut j) = (0, 0);
-    for &(to_i, to_j) in pairs.iter().chain([&(old.steps.len(), new.steps.len())]) {
-        let between = align(&old.steps[i..to_i], &new.steps[j..to_j], tolerance);
-        links.extend(between.into_iter().map(|link| match link {
-            StepPair::Same(a, b) => StepPair::Same(i + a, j + b),
-            StepPair::Changed(a, b) => StepPair::Changed(i + a, j + b),
-            StepPair::Lost(a) => StepPair::Lost(i + a),
-            StepPair::Added(b) => StepPair::Added(j + b),
-        }));
-        if let (Some(was), Some(is)) = (old.steps.get(to_i), new.steps.get(to_j)) {
-            let is_same = was.is_same(is, tolerance);
+    let ends = (old.steps.len(), new.steps.len());
+    for (to_i, to_j) in pairs.chain([ends]) {
+        if (i, j) != (to_i, to_j) {
+            let sides = (StepRange::new(&old.steps, i..to_i), StepRange::new(&new.steps, j..to_j));
+            links.append(&align(sides, tolerance), i, j);
+        }
+        if (to_i, to_j) != ends {
+            let is_same = old.steps.at(to_i).is_same(&new.steps.at(to_j), tolerance);
             links.push(if is_same { StepPair::Same(to_i, to_j) } else { StepPair::Changed(to_i, to_j) });
         }
         (i, j) = (to_i + 1, to_j + 1);

@@ -212,9 +212,9 @@ fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<It
         machine.tools.iter().filter(|tool| (1..=settings.tool_offsets).contains(&(tool.number as usize)));
     let offsets = tools.flat_map(move |tool| {
         let unit = if settings.has_diameter_offsets() { 2.0 } else { 1.0 };
-        let variables = settings.offset_variables;
-        let length = variables.length(tool.number).zip(tool.length);
-        let radius = variables.radius(tool.number).zip(tool.radius_offset.map(|radius| radius * unit));
+        let length = settings.length_variable(tool.number).zip(tool.length);
+        let radius =
+            settings.radius_variable(tool.number).zip(tool.radius_offset.map(|radius| radius * unit));
         length.into_iter().chain(radius)
     });
     work.chain(offsets)
@@ -461,8 +461,9 @@ impl Run {
             Some(why) => {
                 finding.note(why).help("check where the step gets its value: a step of 0 makes no progress")
             }
-            None => finding
-                .help("end a wait for an input with --input '#1005=1', a main program's M99 with --cycles 1"),
+            None => finding.help(
+                "end a wait for an input with --input '#1005=1', a main program's M99 P with --cycles 1",
+            ),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Chooses the main program of a case's folder.
 use std::path::{Path, PathBuf};
 
-use crate::cli::{UsageError, input};
+use crate::cli::{UsageError, input, output};
 use gcode_lang::control::Settings;
 use gcode_lang::program::Memory;
 use gcode_lang::syntax::ast::ProgramName;
@@ -38,26 +38,30 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<Vec<MainProgram>
     if let Some(main) = programs.iter().find(is_main) {
         return Ok(vec![MainProgram::of_file(main)]);
     }
-    if let [only] = programs {
-        let mains = mains_of_file(only)?;
-        let of_path = |path| MainProgram { path: Some(path), ..MainProgram::of_file(only) };
-        let has_several = mains.len() > 1;
-        return Ok(match has_several {
-            true => mains.into_iter().map(of_path).collect(),
-            false => vec![MainProgram::of_file(only)],
-        });
-    }
     let candidates = uncalled(programs)?;
-    if let [only] = candidates[..] {
-        return Ok(vec![MainProgram::of_file(only)]);
-    }
     let mut mains = Vec::new();
+    let mut left_out = Vec::new();
     for file in &candidates {
-        if !mains_of_file(file)?.is_empty() {
-            mains.push(MainProgram::of_file(file));
+        match &mains_of_file(file)?[..] {
+            [] => left_out.push(*file),
+            [_] => mains.push(MainProgram::of_file(file)),
+            several => {
+                let of_path =
+                    |path: &String| MainProgram { path: Some(path.clone()), ..MainProgram::of_file(file) };
+                mains.extend(several.iter().map(of_path));
+            }
         }
     }
+    if let ([], [only]) = (&mains[..], &candidates[..]) {
+        return Ok(vec![MainProgram::of_file(only)]);
+    }
     if !mains.is_empty() {
+        for file in left_out {
+            output::print_message(&format!(
+                "note: {}: no program calls it by its number, and it ends no run: it is not a case\n",
+                file.display()
+            ));
+        }
         return Ok(mains);
     }
     let names: Vec<_> = candidates.iter().filter_map(|path| path.file_name()?.to_str()).collect();
@@ -105,7 +109,6 @@ fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::output;
 
     /// Returns the labels of the main programs of a folder with these programs, or the error.
     fn chosen(files: &[(&str, &str)]) -> Result<Vec<String>, String> {
@@ -144,6 +147,8 @@ mod tests {
         assert_eq!(chosen(&[one, two, hole]), labels(&["O1", "O2"]));
         let dump = "%\nO1\nM98 P3\nM30\nO2\nM30\nO3\nM99\n%\n";
         assert_eq!(chosen(&[("ALL-PROG.TXT", dump)]), labels(&["ALL-PROG.O0001", "ALL-PROG.O0002"]));
+        let beside = [("ALL-PROG.TXT", dump), ("x.nc", "O5\nM30\n"), ("y.nc", "O6\nM99\n")];
+        assert_eq!(chosen(&beside), labels(&["ALL-PROG.O0001", "ALL-PROG.O0002", "x"]));
     }
 
     #[test]

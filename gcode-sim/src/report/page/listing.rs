@@ -65,7 +65,7 @@ fn executed<'a>(page: &Page<'_>, side: &ReviewSide<'a>) -> ExecutedLines<'a> {
         spans.map(|span| (span.source, sources.line_column(span).line)).collect();
     let mut marked: BTreeMap<(SourceId, u32), (&str, u64)> = BTreeMap::new();
     for stop in stops(page, side) {
-        if let (Some(mark), Some(line)) = (stop.mark, side.lines.of_location(stop.location)) {
+        if let (Some(mark), Some(line)) = (stop.mark, side.lines.of_location(&stop.location)) {
             marked.entry(line).or_insert((mark, 0)).1 += 1;
         }
     }

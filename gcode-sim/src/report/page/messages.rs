@@ -126,7 +126,7 @@ fn stop_list(side: &ReviewSide<'_>, known: &[Stop<'_>]) -> Markup {
                     @for (number, number_value) in &stop.variables { ", #" (number) " = " (value(*number_value)) }
                     @if let Some(stop) = known.get(number) {
                         @if let Some(mark) = stop.mark { " " strong.mark { (mark) } }
-                        div.place { (chain(stop.location, side.lines)) }
+                        div.place { (chain(&stop.location, side.lines)) }
                     }
                 }
             }

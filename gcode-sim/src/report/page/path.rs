@@ -115,7 +115,7 @@ fn drawn(
     let mut at = Vec::with_capacity(legs.len());
     for leg in &legs {
         at.push(*numbers.entry(leg.block_number).or_insert_with(|| {
-            blocks.push(known.numbers(&record.blocks()[leg.block_number], side.lines));
+            blocks.push(known.numbers(&record.block_location(leg.block_number), side.lines));
             blocks.len() - 1
         }));
     }

@@ -1,10 +1,12 @@
 //! The operator stops of a side, with a mark if the other side makes them differently.
+use std::borrow::Cow;
+
 use super::{Page, ReviewSide};
 use gcode_review::BlockLocation;
 
 /// An operator stop.
 pub(super) struct Stop<'a> {
-    pub location: &'a BlockLocation,
+    pub location: Cow<'a, BlockLocation>,
     /// Difference in the other program, if any.
     pub mark: Option<&'static str>,
 }

@@ -144,7 +144,7 @@ impl VariableMarks {
 }
 
 /// Number of modal groups, #4000 + n, with an unused one for 0.
-const GROUPS: usize = 23;
+const GROUPS: usize = 24;
 
 /// Marks of positions, modes and tables.
 #[derive(Clone, Debug, Default)]
@@ -180,8 +180,9 @@ pub(super) struct MachineMarks {
     pub(super) rest: Marks,
 }
 
-/// Groups that decide where a programmed point is: plane, distance, unit, scaling, work offset, rotation, polar, mirror.
-const COORDINATE_GROUPS: [ModalGroup; 8] = [
+/// Groups that decide where a programmed point is: plane, distance, unit, scaling, work offset, rotation, polar, mirror, dynamic
+/// offset.
+const COORDINATE_GROUPS: [ModalGroup; 9] = [
     ModalGroup::Plane,
     ModalGroup::Distance,
     ModalGroup::Unit,
@@ -190,6 +191,7 @@ const COORDINATE_GROUPS: [ModalGroup; 8] = [
     ModalGroup::Rotation,
     ModalGroup::Polar,
     ModalGroup::Mirror,
+    ModalGroup::DynamicOffset,
 ];
 
 impl MachineMarks {

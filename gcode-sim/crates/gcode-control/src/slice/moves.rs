@@ -90,8 +90,9 @@ impl Slice {
             Some(OneShot::Dwell | OneShot::DataInputEnd | OneShot::CheckReference) => return,
             Some(
                 OneShot::FromReference
-                | OneShot::ToolAxis
+                | OneShot::ToolAxis { .. }
                 | OneShot::CornerArc
+                | OneShot::Engraving
                 | OneShot::CirclePocket(_)
                 | OneShot::BoltHoles(_),
             ) => {
@@ -261,7 +262,8 @@ impl Slice {
             (Some(l @ (1 | 10..=13)), Some(number)) => {
                 self.machine.tool_table |= marks;
                 if is_absolute {
-                    self.set_tools[Register::of_data_input(l) as usize].insert(number);
+                    let table = block.registers.data.table(Register::of_data_input(l));
+                    self.set_tools[table as usize].insert(number);
                 }
             }
             (Some(85), Some(number)) => self.write(block.registers, number, marks),

@@ -5,7 +5,7 @@ use super::super::functions::variable_number;
 use super::super::variables::VariableClass;
 use super::{Block, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
-use gcode_lang::control::{OffsetVariables, Settings};
+use gcode_lang::control::{OffsetMemory, OffsetVariables, Settings};
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Instruction, Operand, OperandSource, Operation, UncommonOp};
 
@@ -202,25 +202,30 @@ impl Slice {
         let [geometry, wear] = [Register::HGeometry, Register::HWear];
         if number == 0 || self.stated.lengths.contains(&number) {
             Marks::NONE
-        } else if !self.is_tool_set(geometry, number) {
+        } else if !self.is_tool_set(&block.registers.data, geometry, number) {
             let value = offsets.length(number).ok();
             self.outside(OutsideValue::ToolLength(number), value, block.flow, block.op)
-        } else if !self.is_tool_set(wear, number) {
+        } else if !self.is_tool_set(&block.registers.data, wear, number) {
             self.outside_variable(block, if is_haas(block) { 2200 } else { 10_000 } + number)
         } else {
             Marks::NONE
         }
     }
 
-    /// Returns the marks of a cutter radius, by its D, as of a length.
+    /// Returns the marks of a cutter radius, by its D, as of a length; memories A and B have one table for both.
     pub(super) fn radius_marks(&mut self, block: &Block<'_>, number: u32) -> Marks {
+        let data = &block.registers.data;
         let [geometry, wear] = [Register::DGeometry, Register::DWear];
-        if number == 0 || self.stated.radii.contains(&number) {
+        let stated = match data.settings.offset_memory {
+            OffsetMemory::A | OffsetMemory::B => &self.stated.lengths,
+            OffsetMemory::C => &self.stated.radii,
+        };
+        if number == 0 || stated.contains(&number) {
             Marks::NONE
-        } else if !self.is_tool_set(geometry, number) {
-            let value = block.registers.data.offset_radius(number);
+        } else if !self.is_tool_set(data, geometry, number) {
+            let value = data.offset_radius(number);
             self.outside(OutsideValue::CutterRadius(number), value, block.flow, block.op)
-        } else if !self.is_tool_set(wear, number) {
+        } else if !self.is_tool_set(data, wear, number) {
             self.outside_variable(block, if is_haas(block) { 2600 } else { 12_000 } + number)
         } else {
             Marks::NONE
@@ -228,8 +233,8 @@ impl Slice {
     }
 
     /// Returns true if a block has set an entry of a table of tool offsets.
-    pub(super) fn is_tool_set(&self, register: Register, number: u32) -> bool {
-        self.set_tools[register as usize].contains(&number)
+    pub(super) fn is_tool_set(&self, data: &ControlData, register: Register, number: u32) -> bool {
+        self.set_tools[data.table(register) as usize].contains(&number)
     }
 
     /// Returns the axes, as bits, whose offset in a work coordinate system is an outside value. G54 is the part's zero unless
@@ -251,7 +256,7 @@ impl Slice {
                     Register::DGeometry => stated.radii.contains(&tool),
                     Register::HWear | Register::DWear => false,
                 };
-                is_stated || self.is_tool_set(register, tool)
+                is_stated || self.is_tool_set(data, register, tool)
             }
             Some(OffsetEntry::Work(system, axis)) => self.set_offsets.axes(system) & axis != 0,
             None => false,
@@ -278,7 +283,7 @@ impl Slice {
                 self.add_to_tables(number, marks);
                 match offset_of(number, &registers.data.settings) {
                     Some(OffsetEntry::Tool(register, tool)) => {
-                        self.set_tools[register as usize].insert(tool);
+                        self.set_tools[registers.data.table(register) as usize].insert(tool);
                     }
                     Some(OffsetEntry::Work(system, axis)) => self.set_offsets.add(system, axis),
                     None => {}

@@ -75,8 +75,18 @@ impl Slice {
         self.follow_m_codes(block, words, &list);
         self.follow_offsets(block, &list, &modes);
         self.follow_axes(block, &list, &modes);
+        self.follow_computed_axes(block, words);
         if let Some(call) = words.call() {
             self.follow_call(block, words, call);
+        }
+    }
+
+    /// Marks all axes with the number in `AX[#510]=40.`: another number is another axis.
+    fn follow_computed_axes(&mut self, block: &Block<'_>, words: &Words) {
+        for axis in words.list.iter().filter_map(|word| words.axis(word.axis?)) {
+            let marks = self.operand_marks(block, axis);
+            self.machine.axes.iter_mut().for_each(|one| *one |= marks);
+            self.further |= marks;
         }
     }
 
@@ -212,6 +222,11 @@ impl Slice {
                 }
                 Some(MCodeEffect::RigidTapping) => self.machine.spindle |= control | marked.marks,
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
+                // The operator's key, and the input, may be any.
+                Some(MCodeEffect::OperatorInput | MCodeEffect::JumpByInput) => {
+                    let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
+                    self.machine.rest |= marks;
+                }
                 // An output may drive anything.
                 Some(MCodeEffect::Output { .. }) => {
                     let output = list.iter().find(|word| word.letter == b'P');
@@ -263,7 +278,10 @@ impl Slice {
                 let mut marks = self.machine.code(b'D') | self.machine.tool_table | control;
                 marks |= self.radius_marks(block, d);
                 let settings = &registers.data.settings;
-                if d != 0 && settings.assumes_radius_offsets() && self.is_tool_set(Register::DGeometry, d) {
+                if d != 0
+                    && settings.assumes_radius_offsets()
+                    && self.is_tool_set(&registers.data, Register::DGeometry, d)
+                {
                     marks |= self.outside(OutsideValue::DiameterOffsets, Some(0.0), block.flow, block.op);
                 }
                 self.machine.radius = marks;

@@ -26,7 +26,7 @@ pub fn tip_view(view: &FluteView) -> Picture {
     let radius = view.outline.first().map_or(0.0, |[_, r]| *r);
     let circles = vec![circle(radius, Pen::Outline), circle(view.tip_radius, Pen::Construction)];
     let axes = [("z", [1.0, 0.0]), ("y", [0.0, 1.0])];
-    picture(view, "Tip view, seen from −x along the axis", Side::MinusX, axes, circles)
+    picture(view, "Tip view, seen from −x along the axis", Side::MINUS_X, axes, circles)
 }
 
 fn faces(point: &FlutePoint, side: Side) -> bool {

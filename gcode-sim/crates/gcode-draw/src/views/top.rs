@@ -108,7 +108,7 @@ pub fn top_view(view: &TopView) -> Picture {
     let part = Scene {
         axes: unit.map(|(name, direction)| Axis { name: name.to_owned(), direction }).into(),
         strokes: view.path.clone(),
-        marks: near.into_iter().filter_map(|hole| mark(hole, view)).collect(),
+        marks: near.into_iter().filter_map(|hole| hole_mark(hole, view)).collect(),
         zone: view.tolerance,
     };
     let mut scene = part.seen_from(view.side);
@@ -118,11 +118,7 @@ pub fn top_view(view: &TopView) -> Picture {
     if view.side == Side::Y {
         scene.strokes.extend(circles(&view.holes));
     }
-    let outline = view.outline.map(|radius| Shape::Circle { centre: [0.0, 0.0], radius });
-    let sides = view.cylinder.into_iter().flat_map(|Cylinder { outer, length, .. }| {
-        [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
-    });
-    scene.strokes.extend(outline.into_iter().chain(sides).map(|shape| Stroke::new(Pen::Outline, shape)));
+    scene.strokes.extend(view.outlines().map(|shape| Stroke::new(Pen::Outline, shape)));
     let hidden = (!far.is_empty()).then(|| match far.len() {
         1 => "1 hole on the far side not drawn".to_owned(),
         count => format!("{count} holes on the far side not drawn"),
@@ -130,7 +126,7 @@ pub fn top_view(view: &TopView) -> Picture {
     let what = format!("Top view, seen from {}", view.side.name());
     let position = view.tolerance.filter(|_| view.purpose == PicturePurpose::Verdict);
     let legend = legend(view, &scene);
-    Picture { title: view.title(what, position, hidden), scene, legend, chart: None }
+    Picture { title: view.title(what, position, hidden), scene, legend, ..Picture::default() }
 }
 
 /// Removes the numbers and dials that would hide the holes of a dense pattern.
@@ -152,7 +148,8 @@ fn faces_reader(hole: &DrawnHole, view: &TopView) -> bool {
     view.cylinder.is_none() || !hole.shown().is_some_and(away)
 }
 
-fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
+/// Returns the mark of a hole on the part.
+pub(super) fn hole_mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
     let shown = hole.shown()?;
     let actual = hole.actual.as_ref().filter(|_| hole.nominal.is_some());
     Some(Mark {
@@ -167,6 +164,15 @@ fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
 }
 
 impl TopView {
+    /// Returns the outline of the part as it is seen.
+    pub(super) fn outlines(&self) -> impl Iterator<Item = Shape> {
+        let outline = self.outline.map(|radius| Shape::Circle { centre: [0.0, 0.0], radius });
+        let sides = self.cylinder.into_iter().flat_map(|Cylinder { outer, length, .. }| {
+            [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
+        });
+        outline.into_iter().chain(sides)
+    }
+
     /// Builds the title block; `more` is its last line.
     pub(super) fn title(&self, view: String, position: Option<f64>, more: Option<String>) -> Title {
         Title {

@@ -18,6 +18,9 @@ const MAX_LEVEL_CHANGE: f64 = 0.01;
 /// Rounding of the height of an arc, mm.
 const LEAD_ROUNDING: f64 = 0.003;
 
+/// Largest difference of two circles that are one, mm.
+const SAME_CIRCLE: f64 = 1e-9;
+
 /// Largest angle between two samples of an arc, degrees.
 const MAX_SAMPLE: f64 = 5.0;
 
@@ -54,6 +57,13 @@ impl PartArc {
         let spoke = self.from - self.centre;
         let (cos, sin) = ((self.sweep * t).cos(), (self.sweep * t).sin());
         self.centre + spoke * cos + self.out.cross(&spoke) * sin + self.out.into_inner() * (self.rise() * t)
+    }
+
+    /// Returns true if the other arc is on the same circle, or above or below it, to rounding.
+    fn is_on_same_circle(&self, other: &Self) -> bool {
+        let aside = other.centre - self.centre;
+        let aside = aside - self.out.into_inner() * aside.dot(&self.out);
+        !self.is_chord && aside.norm() + (other.radius() - self.radius()).abs() < SAME_CIRCLE
     }
 
     /// Returns true if the other arc goes round the same axis in the same sense, with the same radius. Centres given by R
@@ -153,6 +163,12 @@ impl Ring {
         self.centre.coords.dot(&self.out)
     }
 
+    /// Returns the height of the whole run above the deepest full turn.
+    pub(super) fn height(&self) -> f64 {
+        let helix = self.helix.map_or(0.0, |helix| helix.height);
+        helix.max(self.top - self.level())
+    }
+
     /// Returns true if the tool comes down along the circle.
     pub(super) fn is_helix(&self) -> bool {
         self.top - self.level() > MAX_LEVEL_CHANGE
@@ -230,27 +246,33 @@ impl ArcRun {
     pub(super) fn finish(self) -> Option<Ring> {
         let (_, last) = self.arcs.back()?;
         let (out, end) = (last.out, last.to.coords.dot(&last.out));
-        let helix = self.helix(end - self.top, last.sweep.0.signum());
+        let mut helix = self.helix(end - self.top, last.sweep.0.signum());
         if self.turn.is_none() && helix.is_none() {
             return None;
         }
         let (centre, radius, roundness) = self.fit();
+        if let Some(helix) = &mut helix {
+            helix.phase = phase(helix.lead, &(last.to - centre), &out, end);
+        }
         let FullTurn { level, backtrace, axis_position } = self.turn.or(self.helix_turn)?;
         let centre = centre + out.into_inner() * (level - centre.coords.dot(&out));
         Some(Ring { centre, out, radius, roundness, top: self.top, helix, backtrace, axis_position })
     }
 
-    /// Returns the helix of a run that rises in all, or falls; `None` if it is level anywhere, or less than a full turn.
+    /// Returns the helix, without its phase, of a run that rises in all, or falls; `None` if it is level anywhere, or less than a full turn.
     fn helix(&self, rise: f64, sense: f64) -> Option<Helix> {
         let lead = rise * sense * 360.0 / self.swept;
         let is_helix = self.is_uniform && self.full_turn() <= self.swept && MAX_LEVEL_CHANGE < lead.abs();
-        is_helix.then(|| Helix { lead, height: rise.abs(), is_thread: self.turn.is_none() })
+        is_helix.then(|| Helix { lead, phase: 0.0, height: rise.abs(), is_thread: self.turn.is_none() })
     }
 
     /// Returns the least squares circle of the last full turn: centre, radius, and largest minus least distance.
     fn fit(&self) -> (Point3<f64>, f64, f64) {
         let (_, first) = &self.arcs[0];
         let out = first.out;
+        if self.arcs.iter().all(|(_, arc)| first.is_on_same_circle(arc)) {
+            return (first.centre, first.radius(), 0.0);
+        }
         let distance = |centre: &Point3<f64>, p: &Point3<f64>| {
             let spoke = p - centre;
             (spoke - out.into_inner() * spoke.dot(&out)).norm()
@@ -326,4 +348,12 @@ impl HoleExtractor<'_> {
             Unit::try_new(self.axis_direction(z), 1e-9)
         })
     }
+}
+
+/// Returns the height at which a helix crosses a direction that its axis alone gives; a point of it lies at a spoke and a
+/// height.
+fn phase(lead: f64, spoke: &Vector3<f64>, out: &Unit<Vector3<f64>>, height: f64) -> f64 {
+    let begin = out.cross(&[Vector3::x(), Vector3::y(), Vector3::z()][out.iamin()]);
+    let turn = Deg::atan2(begin.cross(spoke).dot(out), begin.dot(spoke)).0;
+    (height - lead * turn / 360.0).rem_euclid(lead.abs())
 }

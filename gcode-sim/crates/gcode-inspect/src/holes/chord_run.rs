@@ -2,6 +2,7 @@
 use nalgebra::{Point3, Unit, Vector2, Vector3};
 
 use super::arc_run::{ArcRun, PartArc, Ring};
+use super::axis_box::directions_across;
 use gcode_lang::motion::{Backtrace, Position};
 use gcode_lang::units::Deg;
 
@@ -117,8 +118,7 @@ fn across(chord: &Vector3<f64>, out: &Unit<Vector3<f64>>) -> Vector3<f64> {
 fn fit(points: &[Point3<f64>], out: &Unit<Vector3<f64>>) -> Option<(Point3<f64>, f64)> {
     let count = points.len() as f64;
     let mean = Point3::from(points.iter().map(|p| p.coords).sum::<Vector3<f64>>() / count);
-    let u = Unit::new_normalize(across(&[Vector3::x(), Vector3::y(), Vector3::z()][out.iamin()], out));
-    let v = out.cross(&u);
+    let [u, v] = directions_across(out);
     let (mut matrix, mut right, mut squares) = (nalgebra::Matrix2::zeros(), Vector2::zeros(), 0.0);
     for p in points {
         let to = p - mean;
@@ -129,7 +129,7 @@ fn fit(points: &[Point3<f64>], out: &Unit<Vector3<f64>>) -> Option<(Point3<f64>,
     }
     let centre = matrix.try_inverse()? * right;
     let radius = (centre.norm_squared() + squares / count).sqrt();
-    Some((mean + u.into_inner() * centre.x + v * centre.y, radius))
+    Some((mean + u * centre.x + v * centre.y, radius))
 }
 
 #[cfg(test)]

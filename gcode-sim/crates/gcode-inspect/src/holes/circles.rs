@@ -6,6 +6,7 @@ use super::arc_run::{PartArc, Ring};
 use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
+use gcode_part::exceeds;
 
 impl Engagement {
     /// Returns the circles of one hole among some rings; `None` without a ring, and if their axes differ in direction. A
@@ -31,7 +32,7 @@ impl Engagement {
         let is_inside = nearest <= widest.radius / 2.0;
         // A circle that leaves a core may be a groove.
         let slack = EXCESS_SLACK + widest.roundness;
-        let reaches_axis = cutter.is_some_and(|cutter| widest.radius <= cutter / 2.0 + slack);
+        let reaches_axis = cutter.is_some_and(|cutter| !exceeds(widest.radius, cutter / 2.0 + slack));
         let is_helix = cutter.is_none() && rings.iter().any(|ring| ring.is_helix());
         let excess = self.excess(&widest.centre, &out, widest.radius, top);
         let is_certain = is_inside || reaches_axis || is_helix;
@@ -80,7 +81,7 @@ impl HoleExtractor<'_> {
         // A turn along a thread cuts no hole.
         let is_thread = |ring: &&Ring| {
             let hole = self.strokes.nominal_of_ring(ring, true);
-            hole.is_some_and(|axis| axis.is_threaded) && self.is_at_nominal_wall(ring, cutter)
+            hole.is_some_and(|axis| axis.thread.is_some()) && self.is_at_nominal_wall(ring, cutter)
         };
         let threads = threads.into_iter().filter(is_thread);
         holes.retain(|circles| !self.is_in_pocket(&circles.widest, cutter));

@@ -49,6 +49,8 @@ pub(super) struct CuttingState {
     pub free_turns: u32,
     /// Run of rigid tapping, in which the spindle keeps its angle at each height; 0 outside.
     pub rigid_run: u32,
+    /// Last M code of the machine builder since M03, M04 or M05: it may have started the spindle.
+    pub builder_code: Option<u32>,
 }
 
 impl CuttingState {

@@ -44,6 +44,8 @@ pub struct MilledCut {
 pub struct Helix {
     /// Height of a turn, mm; negative if it is left-hand.
     pub lead: f64,
+    /// Height at which it crosses the direction from which angles count, from 0 to a turn, mm.
+    pub phase: f64,
     /// Height of the whole helix, mm.
     pub height: f64,
     /// True if it makes no hole: the mill comes up along it, or goes round once.
@@ -64,6 +66,8 @@ pub(super) struct DrillPass {
     pub cut: PassCut,
     /// Direction of the tool out of the part; that of the feed if the tool's is unknown.
     pub axis: Unit<Vector3<f64>>,
+    /// False if that is the direction of the feed.
+    pub is_tool_axis_known: bool,
     /// Direction of the feed, out of the part.
     pub feed_direction: Unit<Vector3<f64>>,
     pub tool: Option<u32>,

@@ -6,9 +6,9 @@ use super::line::CuttingLine;
 use super::metal::{FeedPart, PointInMetal};
 use super::profile::Profile;
 use super::rapids::{PLUNGE_COSINE, format_point};
-use super::tool_lines::{lines, rim};
+use super::tool_lines::{deepest, rim};
 use crate::findings::FEED_BESIDE_HOLE;
-use crate::machine::{AxisMotion, ToolCylinder, ToolKind, tool_name};
+use crate::machine::{AxisMotion, ToolKind, ToolPart, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
 use gcode_part::Collar;
@@ -62,6 +62,11 @@ impl HoleExtractor<'_> {
             return None;
         }
         self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
+    }
+
+    /// Returns the tool with a flat end.
+    fn flat_tool(&self) -> ToolPart {
+        ToolPart::flutes(0.0, f64::INFINITY, self.tool_radius().unwrap_or(0.0))
     }
 
     /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be.
@@ -170,7 +175,7 @@ impl HoleExtractor<'_> {
         }
         // A tool of unknown diameter cuts a nominal hole to its width.
         let mut room: Option<f64> = None;
-        self.metal.around(travel, 0.0, &mut |collar: &Collar| {
+        self.metal.around(travel, &mut |collar: &Collar| {
             let aside = travel.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
             if collar.is_parallel(axis) && aside <= collar.hole_radius {
                 room = Some(room.unwrap_or(0.0).max(collar.hole_radius - aside));
@@ -197,10 +202,7 @@ impl HoleExtractor<'_> {
         }
         let is_plunge = is_along(axis, &(travel[1] - travel[0]));
         // Round the holes of a list the strokes along them are judged as holes.
-        if is_plunge
-            && (self.surface.is_none()
-                || self.metal.is_allowed(travel, axis, self.tool_radius().unwrap_or(0.0)))
-        {
+        if is_plunge && (self.surface.is_none() || self.metal.is_allowed(travel, axis, &self.flat_tool())) {
             return None;
         }
         match self.metal.gouge(travel, FeedPart::Tip) {
@@ -222,13 +224,12 @@ impl HoleExtractor<'_> {
     fn side_gouge(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
         self.pose.axis?;
         self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
-            let base = travel.map(|tip| tip + axis.into_inner() * part.from);
-            if !self.may_cut(part, travel, axis) || self.metal.is_allowed(&base, axis, part.radius) {
+            if !self.may_cut(part, travel, axis) || self.metal.is_allowed(travel, axis, part) {
                 return None;
             }
-            let lines = lines(part, axis, travel, &self.metal).into_iter();
-            let points = lines.filter_map(|line| self.metal.gouge(&line, FeedPart::Side(part.radius)));
-            let at = points.reduce(PointInMetal::deeper)?;
+            let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
+            let cut = |line: &[Point3<f64>; 2]| self.metal.gouge(line, side);
+            let at = deepest(part, axis, travel, &self.metal, cut)?;
             Some(Gouge { at, part: ToolRegion::Side })
         })
     }
@@ -246,9 +247,8 @@ impl HoleExtractor<'_> {
             if !self.may_cut(part, travel, axis) {
                 return None;
             }
-            let lines = lines(part, axis, travel, &self.metal).into_iter();
-            let points = lines.filter_map(|line| self.metal.uncut_above(&line, hole));
-            let at = points.reduce(PointInMetal::deeper)?;
+            let cut = |line: &[Point3<f64>; 2]| self.metal.uncut_above(line, hole);
+            let at = deepest(part, axis, travel, &self.metal, cut)?;
             Some(Gouge { at, part: ToolRegion::Shank })
         })
     }
@@ -264,12 +264,12 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns false if a part of the tool stays outside the metal that is known.
-    fn may_cut(&self, part: &ToolCylinder, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> bool {
+    fn may_cut(&self, part: &ToolPart, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> bool {
         let Some(body) = self.surface else {
             let [from, to] = travel.map(|tip| tip + axis.into_inner() * part.from);
-            return self.metal.is_touched(&from, &to, axis, part.radius);
+            return self.metal.is_touched(&from, &to, axis, part.radius());
         };
-        let part = ToolCylinder { to: self.metal.top_of(part, &travel[0], axis), ..*part };
+        let part = ToolPart { to: self.metal.top_of(part, &travel[0], axis), ..*part };
         part.cuts(&body, (&travel[0], axis), &(travel[1] - travel[0]))
     }
 

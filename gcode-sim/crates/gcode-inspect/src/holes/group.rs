@@ -8,7 +8,6 @@ use super::swallowed::swallowing_passes;
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
-use gcode_lang::units::Deg;
 use gcode_part::{Clusters, Hole, NominalAxes, Origin, PARALLEL_COSINE, PointTree};
 
 /// Largest distance between the lines of two passes of one hole, mm.
@@ -54,8 +53,8 @@ pub struct DrilledHole {
     pub backtrace: Backtrace,
     /// Position of the axes at the bottom.
     pub axis_position: Position,
-    /// Angle between the finishing feed and the tool's axis.
-    pub tool_axis_deviation: Deg,
+    /// False if the axis is that of the finishing feed, since the direction of the tool is unknown.
+    pub is_tool_axis_known: bool,
     /// Extent, feed and spindle of the finishing pass.
     pub finishing_cut: PassCut,
     /// Passes other than the finishing one, in the order of the program.
@@ -281,7 +280,7 @@ fn push_holes<'p>(
             tool: pass.tool,
             backtrace: pass.backtrace.clone(),
             axis_position: pass.axis_position,
-            tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.feed_direction).clamp(-1.0, 1.0)),
+            is_tool_axis_known: pass.is_tool_axis_known,
             finishing_cut: pass.cut,
             finishing_index,
             unknown_axes: pass.unknown_axes,

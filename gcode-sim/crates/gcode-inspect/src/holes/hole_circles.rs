@@ -2,6 +2,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::arc_run::Ring;
+use gcode_part::exceeds;
 
 /// Excess of a path over its circle that is rounding, mm.
 pub(super) const EXCESS_SLACK: f64 = 0.02;
@@ -33,6 +34,6 @@ pub(super) struct PathExcess {
 impl HoleCircles {
     /// Returns true if the whole path stays inside the widest circle.
     pub(super) fn is_whole(&self) -> bool {
-        self.excess.is_none_or(|excess| excess.depth <= EXCESS_SLACK + self.widest.roundness)
+        self.excess.is_none_or(|excess| !exceeds(excess.depth, EXCESS_SLACK + self.widest.roundness))
     }
 }

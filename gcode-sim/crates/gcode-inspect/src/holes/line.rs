@@ -70,6 +70,8 @@ pub(super) struct CuttingLine {
     deepest: StrokeEnd,
     /// Current stroke.
     stroke: Option<PeckStroke>,
+    /// Pass that repeats the line, as far as it has come, and its depth.
+    repeated: Option<(f64, DrillPass)>,
     /// Current depth of the tool.
     depth: f64,
     /// Shift of a boring bar off the wall.
@@ -142,6 +144,7 @@ impl CuttingLine {
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
+            repeated: None,
             depth,
             bar_shift: Vector3::zeros(),
             half_increment: rounding,
@@ -322,23 +325,38 @@ impl CuttingLine {
         again
     }
 
-    /// Ends the current stroke; returns it if it is a full stroke that cuts no deeper.
+    /// Ends the current stroke; returns a repeated pass if the stroke begins a further one. A pass that repeats the line begins
+    /// with a stroke from its start that cuts no deeper, and goes on with strokes that are deeper than its last.
     fn end_stroke(&mut self) -> Option<DrillPass> {
         let PeckStroke { from_depth, mut end } = self.stroke.take()?;
         end.rise = (-from_depth).max(0.0);
         end.rigid_run = self.cutting_state.rigid_run;
-        if end.depth > self.deepest.depth + MIN_DEPTH_GAIN {
-            self.pecks = self.pecks_with_stroke(end.depth);
+        let depth = end.depth;
+        if depth > self.deepest.depth + MIN_DEPTH_GAIN {
+            self.pecks = self.pecks_with_stroke(depth);
             self.deepest = end;
+            self.repeated = None;
             return None;
         }
-        (from_depth <= 2.0 * self.half_increment).then(|| self.drill_pass(&end))
+        let pass = self.drill_pass(&end);
+        match &mut self.repeated {
+            Some((last, repeated)) if depth > *last + MIN_DEPTH_GAIN => {
+                *last = depth;
+                *repeated = DrillPass { cut: PassCut { start: repeated.cut.start, ..pass.cut }, ..pass };
+                None
+            }
+            _ if from_depth <= 2.0 * self.half_increment => {
+                self.repeated.replace((depth, pass)).map(|(_, before)| before)
+            }
+            _ => None,
+        }
     }
 
-    /// Returns the pass of the line, and a repeated one that ends with it.
-    pub(super) fn finish(mut self) -> (DrillPass, Option<DrillPass>) {
-        let again = self.end_stroke();
-        (self.drill_pass(&self.deepest), again)
+    /// Returns the pass of the line, and the repeated ones that end with it.
+    pub(super) fn finish(mut self) -> (DrillPass, impl Iterator<Item = DrillPass>) {
+        let before = self.end_stroke();
+        let last = self.repeated.take().map(|(_, pass)| pass);
+        (self.drill_pass(&self.deepest), before.into_iter().chain(last))
     }
 
     fn drill_pass(&self, end: &StrokeEnd) -> DrillPass {
@@ -354,6 +372,7 @@ impl CuttingLine {
                 milled: None,
             },
             axis: self.tool_axis.unwrap_or(self.out),
+            is_tool_axis_known: self.tool_axis.is_some(),
             feed_direction: self.out,
             tool: self.cutting_state.tool,
             backtrace: end.backtrace.clone(),

@@ -1,15 +1,17 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use super::cutting::CuttingState;
 use super::line::{CuttingLine, ToolExit};
 use super::metal::FeedPart;
+use super::rapids::format_point;
 use super::strokes::{CutKind, MIN_TOOL_COSINE};
+use super::tool_lines::rim;
 use super::unknown_axes::without_assumed;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
-    TOOL_NOT_CHANGED,
+    RAPID_INTO_PART, TOOL_NOT_CHANGED,
 };
 use crate::machine::{HeadKind, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
@@ -18,6 +20,9 @@ use gcode_lang::units::Deg;
 
 /// Largest angle between feed and tool, besides rounding.
 const MAX_FEED_TILT: Deg = Deg(0.05);
+
+/// Distance from the start of a feed outwards at which the metal is as before it, mm.
+const BELOW_SHIFT: f64 = 0.05;
 
 /// Number of feeds beside the part that are kept: the first ones explain a missing hole.
 const MAX_FEEDS_IN_AIR: usize = 100;
@@ -94,16 +99,15 @@ impl HoleExtractor<'_> {
             }
             ToolExit::OnLine | ToolExit::AlongLine => {}
         }
-        // In a known body a feed across the tool is judged by what it removes, and so is one in a pocket.
-        let is_across = line.tool_axis.is_some_and(|axis| axis.dot(&line.out) < MIN_TOOL_COSINE);
-        if surface.is_some() && self.metal.holes.is_some() && (is_across || self.is_pocketing(&line)) {
-            if !is_across {
+        if self.is_milled(&line) {
+            if !line.is_across_tool() {
                 self.report_conditions(&line);
+                self.note_unsized_mill(line.cutting_state.tool);
             }
             return;
         }
         let kind = self.cut_kind(&line, is_feeding);
-        if !matches!(kind, CutKind::Oblique) {
+        if !matches!(kind, CutKind::Oblique) || self.strokes.nominal_of_line(&line).is_some() {
             self.report_feed(&line, tilt);
         }
         // A stroke in a hole that was cut before, as of a mill that goes on sideways, has no retract either.
@@ -112,10 +116,24 @@ impl HoleExtractor<'_> {
         let order = line.order;
         let (pass, repeated) = line.finish();
         self.strokes.push(order, pass, kind);
-        if let Some(repeated) = repeated.filter(|_| has_retract) {
+        for repeated in repeated.filter(|_| has_retract) {
             let order = self.strokes.begin_pass();
             self.strokes.push(order, repeated, kind);
         }
+    }
+
+    /// Records a tool of unknown diameter in a pocket, whose walls it may cut.
+    fn note_unsized_mill(&mut self, tool: Option<u32>) {
+        if self.machine.diameter_of(tool).is_none() && !self.unsized_mills.contains(&tool) {
+            self.unsized_mills.push(tool);
+        }
+    }
+
+    /// Returns true if what a line removes is judged as milling: in a known body a feed across the tool, and one in a pocket.
+    pub(super) fn is_milled(&self, line: &CuttingLine) -> bool {
+        self.surface.is_some()
+            && self.metal.holes.is_some()
+            && (line.is_across_tool() || self.is_pocketing(line))
     }
 
     /// Records a feed without retract, unless it belongs to a milled hole: an error `inside` the part, by its depth, a
@@ -180,12 +198,34 @@ impl HoleExtractor<'_> {
     /// list are open where the tool comes from.
     pub(super) fn report_back_boring(&mut self, line: &CuttingLine) {
         let length = line.cut_depth();
+        self.report_shift_into_wall(line);
         self.findings.add(&BACK_BORED, line.backtrace(), 0, |kind| {
             let message =
                 format!("the tool bores {length:.3} mm backwards, out of the part: not counted as a hole");
             Diagnostic::new(kind, message).help(
                 "check the bore's depth and position in the picture or on the review page: no check covers them",
             )
+        });
+    }
+
+    /// Reports a bar that is shifted back for its feed outwards inside the part. It is wider than the hole that it comes
+    /// through, if its diameter is unknown.
+    fn report_shift_into_wall(&mut self, line: &CuttingLine) {
+        let Some(body) = self.surface.filter(|body| TOUCH_DEPTH < body.depth(&line.start)) else { return };
+        let below = line.start + line.out.into_inner() * BELOW_SHIFT;
+        let radius = self.machine.diameter_of(line.cutting_state.tool).map(|diameter| diameter / 2.0);
+        let is_met = radius.is_none_or(|radius| {
+            let rim = rim(&line.out, &Vector3::zeros(), radius);
+            rim.into_iter().any(|offset| self.metal.uncut(&[below + offset, below + offset]).is_some())
+        });
+        let Some(far) = body.exit(&line.start, &line.out).filter(|_| is_met) else { return };
+        self.findings.add(&RAPID_INTO_PART, line.backtrace(), 0, |kind| {
+            let (height, point) = ((far - line.start).norm(), format_point(&line.start));
+            let message = format!(
+                "the boring bar is shifted into the wall {height:.3} mm above the far side, at {point}"
+            );
+            Diagnostic::new(kind, message)
+                .help("begin the feed outwards beyond the far side: R of G87 lies below the part")
         });
     }
 
@@ -226,7 +266,7 @@ impl HoleExtractor<'_> {
         self.check_spindle(backtrace, line);
         self.check_tool_changed(backtrace, &line.cutting_state);
         if line.is_fed_stopped {
-            self.report_spindle_stopped(backtrace);
+            self.report_spindle_stopped(backtrace, &line.cutting_state);
         }
     }
 

@@ -51,7 +51,7 @@ impl HoleExtractor<'_> {
                         again
                     }
                 };
-                if let Some(pass) = again {
+                if let Some(pass) = again.filter(|_| !self.is_milled(&line)) {
                     let order = self.strokes.begin_pass();
                     self.strokes.push(order, pass, self.cut_kind(&line, false));
                 }

@@ -6,17 +6,17 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::axis_box::Bodies;
 use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
-use crate::machine::{TOUCH_DEPTH, ToolCylinder};
-use gcode_part::{Collar, EntryPlanes, Metal, NearestPoint, PARALLEL_COSINE, Rod, Step, Surface};
+use crate::machine::{TOUCH_DEPTH, ToolPart};
+use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NearestPoint, PARALLEL_COSINE, Step, Surface, Taper};
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
-const MAX_OFFSET: f64 = 0.5;
+pub(super) const MAX_OFFSET: f64 = 0.5;
 
 /// Rounding of a point on a hole's wall, mm.
 const ROUNDING: f64 = 1e-6;
 
 /// Excess of a tool's side over a nominal hole that other checks judge, mm.
-const SIDE_SLACK: f64 = 0.1;
+pub(super) const SIDE_SLACK: f64 = 0.1;
 
 /// Height above a hole up to which the metal goes with it, mm.
 pub(super) const MAX_HEIGHT: f64 = 50.0;
@@ -38,7 +38,7 @@ pub(super) struct KnownMetal {
     /// Nominal holes with the metal round them; `None` without a reference.
     pub holes: Option<Arc<EntryPlanes>>,
     /// Pockets that feeds may mill.
-    pockets: Vec<Surface>,
+    pub pockets: Vec<Surface>,
     pub removed: RemovedMetal,
 }
 
@@ -61,8 +61,11 @@ impl PointInMetal {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum FeedPart {
     Tip,
-    /// A cylinder about the tool's axis of this radius.
-    Side(f64),
+    /// The side of a part of this radius, a cone if it has a slope.
+    Side {
+        radius: f64,
+        slope: f64,
+    },
 }
 
 impl KnownMetal {
@@ -112,9 +115,8 @@ impl KnownMetal {
         radius: f64,
     ) -> bool {
         if let Some(body) = &self.body {
-            let rod =
-                Rod { base: *from, axis: *axis, length: self.removed.height_of_metal(from, axis), radius };
-            return body.touches(&rod, &(to - from));
+            let (length, taper) = (self.removed.height_of_metal(from, axis), Taper::cylinder(radius));
+            return body.touches(&Frustum { base: *from, axis: *axis, length, taper }, &(to - from));
         }
         let Some(holes) = &self.holes else { return false };
         let margin = Vector3::repeat(radius);
@@ -198,75 +200,40 @@ impl KnownMetal {
         if shares.is_empty() {
             return None;
         }
+        let mut take_away = |collar: &Collar, room: &Step| {
+            let pieces = collar.pieces_of_step(from, to, room).into_iter().flatten();
+            pieces.for_each(|piece| shares.take_away(piece));
+        };
         let mut allow = |collar: &Collar| {
+            if let FeedPart::Side { slope, .. } = part {
+                collar.edge_break(slope).iter().for_each(|edge| take_away(collar, edge));
+            }
             for step in &collar.steps {
-                let radius = match part {
-                    FeedPart::Tip => step.radius.max(MAX_OFFSET) + ROUNDING,
-                    FeedPart::Side(_) if collar.has_diameter => step.radius + SIDE_SLACK,
-                    FeedPart::Side(radius) => 2.0 * radius,
+                let Taper { radius, slope } = step.taper;
+                let taper = match part {
+                    FeedPart::Tip if slope == 0.0 => Taper::cylinder(radius.max(MAX_OFFSET) + ROUNDING),
+                    FeedPart::Tip => Taper { radius: radius + MAX_OFFSET, slope },
+                    FeedPart::Side { .. } if collar.has_diameter => {
+                        Taper { radius: radius + SIDE_SLACK, slope }
+                    }
+                    FeedPart::Side { radius, .. } => Taper::cylinder(2.0 * radius),
                 };
-                if let Some(piece) = collar.piece_above(from, to, radius, step.max_depth + TOUCH_DEPTH) {
-                    shares.take_away(piece);
-                }
+                let room = Step { taper, max_depth: step.max_depth + TOUCH_DEPTH };
+                take_away(collar, &room);
             }
         };
-        self.around(travel, MAX_HEIGHT, &mut allow);
+        let margin = match part {
+            FeedPart::Tip => 0.0,
+            FeedPart::Side { radius, .. } => 2.0 * radius,
+        };
+        let near = (margin, MAX_HEIGHT);
+        holes.below(&from.inf(to), &from.sup(to), near, &mut |hole| allow(holes.collar(hole)));
         // Many feeds may have been here: they come last.
         if shares.is_empty() {
             return None;
         }
         self.removed.uncover(travel, true, &mut shares);
         self.deepest(travel, &shares)
-    }
-
-    /// Returns true if a cylinder about the tool's axis stays in one nominal hole, or in one pocket, while its lower end
-    /// moves between two points.
-    pub(super) fn is_allowed(&self, tips: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>, radius: f64) -> bool {
-        let height =
-            self.removed.height_of_metal(&tips[0], axis).max(self.removed.height_of_metal(&tips[1], axis));
-        let is_in_box = self.pockets.iter().any(|pocket| {
-            let Surface::Block { min, max } = pocket else { return false };
-            let across = axis.map(|part| radius * (1.0 - part * part).max(0.0).sqrt() - TOUCH_DEPTH);
-            let up = axis.into_inner() * height;
-            let (low, high) = (tips[0].inf(&tips[1]) - across, tips[0].sup(&tips[1]) + across);
-            (0..3).all(|i| {
-                let (low, high) = (low[i] + up[i].min(0.0), high[i] + up[i].max(0.0));
-                min[i] <= low && high <= max[i] + if up[i] > 0.0 { TOUCH_DEPTH } else { 0.0 }
-            })
-        });
-        is_in_box || self.hole_around(tips, axis, radius).is_some()
-    }
-
-    /// Returns the nominal hole on whose axis the tip makes a stroke.
-    pub(super) fn hole_of_stroke(
-        &self,
-        tips: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-    ) -> Option<&Collar> {
-        self.hole_around(tips, axis, 0.0)
-            .filter(|hole| tips.iter().all(|tip| hole.from_axis(tip) <= MAX_OFFSET))
-    }
-
-    /// Returns the nominal hole in which a cylinder about the tool's axis stays while its lower end moves between two points.
-    fn hole_around(
-        &self,
-        tips: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-        radius: f64,
-    ) -> Option<&Collar> {
-        let mut found = None;
-        self.around(tips, 0.0, &mut |collar| {
-            let aside = tips.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
-            let deepest = tips.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
-            let is_in_step = |step: &Step| {
-                let room = if collar.has_diameter { step.radius + SIDE_SLACK - radius } else { radius };
-                aside <= room && deepest <= step.max_depth + TOUCH_DEPTH
-            };
-            if collar.is_parallel(axis) && collar.steps.iter().any(is_in_step) {
-                found = Some(collar);
-            }
-        });
-        found
     }
 
     /// Returns the tip that is fed through a nominal hole and deeper than any tool has to break through, with its depth
@@ -300,42 +267,27 @@ impl KnownMetal {
     }
 
     /// Returns the upper end of a part of the tool; where its length is unknown, that of the metal.
-    pub(super) fn top_of(&self, part: &ToolCylinder, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> f64 {
+    pub(super) fn top_of(&self, part: &ToolPart, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> f64 {
         match part.is_cutter && part.to <= part.from {
             true => part.from + self.removed.height_of_metal(tip, axis),
             false => part.to,
         }
     }
 
-    /// Returns heights above the tip, within some, at which a part of the tool crosses metal whose lower end is above that of
-    /// the part: one for the body, or enough for each hole near a travel.
+    /// Returns heights above the tip, within some, at which a cylinder crosses metal whose lower end is above its own: one for
+    /// the body, or enough for each hole near a travel.
     pub(super) fn heights(
         &self,
-        [from, to]: &[Point3<f64>; 2],
+        travel: &[Point3<f64>; 2],
         axis: &Unit<Vector3<f64>>,
         radius: f64,
         within: [f64; 2],
     ) -> Vec<f64> {
-        let clip = |[low, high]: [f64; 2]| {
-            let high = high.min(within[1]);
-            (within[0] < low && low < high).then_some([low, high])
-        };
-        if self.body.is_some() {
-            return self
-                .heights_of_body(from, axis)
-                .and_then(clip)
-                .map_or(Vec::new(), |[low, high]| vec![f64::midpoint(low, high)]);
-        }
-        let Some(holes) = &self.holes else { return Vec::new() };
-        let margin = Vector3::repeat(radius);
-        let up = axis.into_inner() * within[1].min(self.removed.height_of_metal(from, axis));
-        let (low, high) = (from.inf(to) - margin, from.sup(to) + margin);
         let mut common: Vec<[f64; 2]> = Vec::new();
-        holes.near(&low.inf(&(low + up)), &high.sup(&(high + up)), &mut |hole| {
-            let rod = holes.collar(hole).rod;
-            let ends =
-                [rod.base, rod.base + rod.axis.into_inner() * rod.length].map(|p| (p - from).dot(axis));
-            let Some([low, high]) = clip([ends[0].min(ends[1]), ends[0].max(ends[1])]) else { return };
+        self.for_each_range(travel, axis, radius, within, &mut |[low, high]| {
+            if low <= within[0] {
+                return;
+            }
             match common.iter_mut().find(|range| low < range[1] && range[0] < high) {
                 Some(range) => *range = [range[0].max(low), range[1].min(high)],
                 None => common.push([low, high]),
@@ -344,18 +296,58 @@ impl KnownMetal {
         common.iter().map(|[low, high]| f64::midpoint(*low, *high)).collect()
     }
 
-    /// Returns the heights above the tip between which a body may have metal, part of a tool or not.
-    fn heights_of_body(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<[f64; 2]> {
-        let [low, high] = self.body?.bounds();
-        let along = |corner: &Vector3<f64>, other: &Vector3<f64>| {
-            (0..3)
-                .filter(|i| axis[*i] != 0.0)
-                .map(|i| (axis[i] * corner[i]).min(axis[i] * other[i]))
-                .sum::<f64>()
+    /// Returns the heights above the tip, within some, at which metal or a pocket near a travel begins or ends, upwards.
+    pub(super) fn levels(
+        &self,
+        travel: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+        within: [f64; 2],
+    ) -> Vec<f64> {
+        let mut levels = Vec::new();
+        self.for_each_range(travel, axis, radius, within, &mut |range| levels.extend(range));
+        let Some((low, high)) =
+            levels.iter().copied().reduce(f64::min).zip(levels.iter().copied().reduce(f64::max))
+        else {
+            return levels;
         };
-        let (low, high) = (low - tip, high - tip);
-        let heights = [along(&low, &high), -along(&-low, &-high)];
-        heights.iter().all(|height| height.is_finite()).then_some(heights)
+        let of_pockets = self.pockets.iter().flat_map(|pocket| heights_of(pocket, &travel[0], axis));
+        levels.extend(of_pockets.filter(|height| low < *height && *height < high));
+        levels.sort_by(f64::total_cmp);
+        levels.dedup_by(|a, b| (*a - *b).abs() < MIN_PIECE);
+        levels
+    }
+
+    /// Calls `each` with the heights above the tip, within some, between which there may be metal: of the body, or of each hole
+    /// near a travel.
+    fn for_each_range(
+        &self,
+        [from, to]: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        radius: f64,
+        within: [f64; 2],
+        each: &mut impl FnMut([f64; 2]),
+    ) {
+        let mut clip = |[low, high]: [f64; 2]| {
+            let range = [low.max(within[0]), high.min(within[1])];
+            if range[0] < range[1] {
+                each(range);
+            }
+        };
+        if let Some(body) = &self.body {
+            clip(heights_of(body, from, axis));
+            return;
+        }
+        let Some(holes) = &self.holes else { return };
+        let margin = Vector3::repeat(radius);
+        let up = axis.into_inner() * within[1].min(self.removed.height_of_metal(from, axis));
+        let (low, high) = (from.inf(to) - margin, from.sup(to) + margin);
+        holes.near(&low.inf(&(low + up)), &high.sup(&(high + up)), &mut |hole| {
+            let rod = holes.collar(hole).rod;
+            let ends =
+                [rod.base, rod.base + rod.axis.into_inner() * rod.length].map(|p| (p - from).dot(axis));
+            clip([ends[0].min(ends[1]), ends[0].max(ends[1])]);
+        });
     }
 
     /// Returns true if all metal on a line is in one pocket.
@@ -374,17 +366,10 @@ impl KnownMetal {
         self.pockets.iter().map(|pocket| pocket.nearest(p).distance).reduce(f64::min)
     }
 
-    /// Calls `each` with the nominal holes whose metal may be nearer to a travel than `margin`.
-    pub(super) fn around<'m>(
-        &'m self,
-        [from, to]: &[Point3<f64>; 2],
-        margin: f64,
-        each: &mut impl FnMut(&'m Collar),
-    ) {
+    /// Calls `each` with the nominal holes whose metal may be near a travel.
+    pub(super) fn around<'m>(&'m self, [from, to]: &[Point3<f64>; 2], each: &mut impl FnMut(&'m Collar)) {
         let Some(holes) = self.holes.as_deref() else { return };
-        let margin = Vector3::repeat(margin);
-        holes
-            .around(&(from.inf(to) - margin), &(from.sup(to) + margin), &mut |hole| each(holes.collar(hole)));
+        holes.around(&from.inf(to), &from.sup(to), &mut |hole| each(holes.collar(hole)));
     }
 
     /// Returns the deepest point of some shares of a travel.
@@ -447,4 +432,14 @@ impl KnownMetal {
         });
         best
     }
+}
+
+/// Returns the heights above the tip between which a body may have metal.
+fn heights_of(body: &Surface, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> [f64; 2] {
+    let [low, high] = body.bounds();
+    let along = |corner: &Vector3<f64>, other: &Vector3<f64>| {
+        (0..3).filter(|i| axis[*i] != 0.0).map(|i| (axis[i] * corner[i]).min(axis[i] * other[i])).sum::<f64>()
+    };
+    let (low, high) = (low - tip, high - tip);
+    [along(&low, &high), -along(&-low, &-high)]
 }

@@ -4,6 +4,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
 use super::chord_run::ChordRun;
+use super::cutting::CuttingState;
 use super::drill_pass::{DrillPass, MilledCut, PassCut};
 use super::hole_circles::HoleCircles;
 use super::per_block::Findings;
@@ -40,6 +41,8 @@ pub(super) struct Engagement {
     spoilt_before: u32,
     /// Axes of unknown position on the part during an arc.
     unknown_axes: UnknownAxes,
+    /// Modal state of the last feed across the tool.
+    cutting_state: CuttingState,
     /// Feeds that make no hole, unless the engagement does.
     pub uncounted: Uncounted,
     /// Errors about them, where the surface is known.
@@ -132,6 +135,7 @@ impl HoleExtractor<'_> {
         }
         let engagement = &mut self.engagement;
         if is_across {
+            engagement.cutting_state = self.cutting_state;
             let highest = begin.max(end);
             engagement.highest_side =
                 if engagement.points.is_empty() { highest } else { engagement.highest_side.max(highest) };
@@ -139,6 +143,8 @@ impl HoleExtractor<'_> {
                 engagement.push_point(*from);
             }
         }
+        // An arc that rises leads out above the approach: the feed may begin at the bottom of a thread.
+        let exit = if arc.is_some() { top.max(engagement.approach_level) } else { top };
         let place = || (event.backtrace(), self.axis_position);
         match arc {
             None if is_across => {
@@ -171,7 +177,8 @@ impl HoleExtractor<'_> {
             engagement.push_point(to);
         }
         engagement.has_descended |= end < top - LEVEL_TOLERANCE;
-        let is_out = end > top + LEVEL_TOLERANCE || engagement.has_descended && end >= top - LEVEL_TOLERANCE;
+        let is_out =
+            end > exit + LEVEL_TOLERANCE || engagement.has_descended && end >= exit - LEVEL_TOLERANCE;
         // A feed out of a circle ends it as a rapid does.
         let is_retract = !is_across && begin < end && !engagement.rings.is_empty();
         if is_out || is_retract && !engagement.is_below(&to, &out) {
@@ -231,7 +238,7 @@ impl HoleExtractor<'_> {
     /// Adds the passes of a hole.
     fn push_circles(&mut self, circles: &HoleCircles) {
         let start = self.engagement.start.unwrap_or(self.pose.tip);
-        let Engagement { approach_level, unknown_axes, .. } = self.engagement;
+        let Engagement { approach_level, unknown_axes, cutting_state, .. } = self.engagement;
         let tool = self.setup.tool;
         if let Some(excess) = &circles.excess {
             let Ring { out, backtrace, .. } = &circles.widest;
@@ -249,6 +256,7 @@ impl HoleExtractor<'_> {
             let pass = DrillPass {
                 cut: PassCut { milled: Some(milled), ..cut },
                 axis: out,
+                is_tool_axis_known: self.pose.axis.is_some(),
                 feed_direction: out,
                 tool,
                 backtrace: ring.backtrace.clone(),
@@ -256,8 +264,8 @@ impl HoleExtractor<'_> {
                 unknown_axes,
             };
             self.check_clamped(&pass.backtrace, self.clamp_state);
-            if self.cutting_state.spindle_direction == SpindleDirection::Off {
-                self.report_spindle_stopped(&pass.backtrace);
+            if cutting_state.spindle_direction == SpindleDirection::Off {
+                self.report_spindle_stopped(&pass.backtrace, &cutting_state);
             }
             let order = self.strokes.begin_pass();
             self.strokes.push(order, pass, CutKind::Drilled);

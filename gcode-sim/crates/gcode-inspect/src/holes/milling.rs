@@ -1,5 +1,5 @@
 //! Feeds across the tool: the tool that mills, its spindle and its feed, where it cuts known metal.
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use nalgebra::Point3;
 
@@ -11,15 +11,10 @@ use crate::machine::tool_name;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, SpindleDirection};
 
-/// Largest number of conditions under which a program mills; further ones are rates that change from block to block.
-const MAX_CONDITIONS: usize = 10_000;
-
-/// Conditions under which tools have milled: each is judged at its first block.
+/// Slowest and fastest rate at which tools have milled in each state of the cut with each selected tool. A rate is judged at
+/// its block unless it lies between them.
 #[derive(Debug, Default)]
-pub(super) struct MillingConditions(BTreeSet<MillingKey>);
-
-/// State of the cut, selected tool and rate.
-type MillingKey = ([u64; 4], Option<u32>, u64);
+pub(super) struct MillingRates(BTreeMap<([u64; 4], Option<u32>), [f64; 2]>);
 
 impl HoleExtractor<'_> {
     /// Checks the tool, its spindle and its rate in a feed that cuts metal across the tool.
@@ -27,8 +22,9 @@ impl HoleExtractor<'_> {
         let Some(rate) = event.kind.rate().filter(|_| self.metal.holes.is_some()) else { return };
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
         let is_stopped = state.spindle_direction == SpindleDirection::Off;
-        let key = (state.key(), state.selected_tool, rate.0.to_bits());
-        let is_known = MAX_CONDITIONS <= self.milling.0.len() || self.milling.0.contains(&key);
+        let key = (state.key(), state.selected_tool);
+        let range = self.milling.0.get(&key).copied();
+        let is_known = range.is_some_and(|[least, most]| least <= rate.0 && rate.0 <= most);
         let is_straight = path.len() == 2;
         let kind = state.tool.and_then(|number| self.machine.find_tool(number)?.kind);
         let wrong_kind = kind.filter(|kind| is_straight && kind.cuts_with_end());
@@ -39,7 +35,7 @@ impl HoleExtractor<'_> {
         let backtrace = event.backtrace();
         // A full circle has its own finding.
         if is_stopped && is_straight {
-            self.report_spindle_stopped(&backtrace);
+            self.report_spindle_stopped(&backtrace, &state);
         }
         if let Some(kind) = wrong_kind {
             let name = tool_name(state.tool);
@@ -49,7 +45,8 @@ impl HoleExtractor<'_> {
             });
         }
         if !is_known {
-            self.milling.0.insert(key);
+            let [least, most] = range.unwrap_or([rate.0; 2]);
+            self.milling.0.insert(key, [least.min(rate.0), most.max(rate.0)]);
             self.check_tool_changed(&backtrace, &state);
             self.cut_conditions.add(&backtrace, &state, false, [rate, rate], PeckExtent::default());
         }

@@ -27,12 +27,14 @@ mod profile;
 mod rapid_paths;
 mod rapids;
 mod removed_metal;
+mod room;
 mod shares;
 pub(crate) mod spindle;
 mod strokes;
 mod swallowed;
 #[cfg(test)]
 mod tests;
+mod thread_walls;
 mod tool_lines;
 pub(crate) mod unknown_axes;
 mod wall_cut;
@@ -58,12 +60,12 @@ use self::feed_law::Gouge;
 use self::line::CuttingLine;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
-use self::milling::MillingConditions;
+use self::milling::MillingRates;
 use self::per_block::Findings;
 use self::profile::Profile;
 use self::strokes::{MilledStrokes, Strokes};
 use self::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolCylinder};
+use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
@@ -122,7 +124,7 @@ pub struct HoleExtractor<'m> {
     axis_position: Position,
     setup: Setup,
     /// Parts of the tool in the spindle; empty if its diameter is unknown.
-    tool_body: Vec<ToolCylinder>,
+    tool_body: Vec<ToolPart>,
     /// Parts of it that cut in a feed; `None` if its diameter is unknown.
     profile: Option<Profile>,
     /// Gouge of the current line.
@@ -134,8 +136,6 @@ pub struct HoleExtractor<'m> {
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
-    /// Last M code of the machine builder since M03, M04 or M05: it may have started the spindle.
-    builder_code: Option<u32>,
     process_limits: ProcessLimits,
     clamp_state: ClampState,
     /// Frame of the part at `axis_position`.
@@ -160,7 +160,7 @@ pub struct HoleExtractor<'m> {
     findings: Findings,
     close_motions: CloseMotions,
     cut_conditions: CutConditionsByBlock,
-    milling: MillingConditions,
+    milling: MillingRates,
     length_mismatches: Vec<LengthMismatch>,
     /// Number of probing moves.
     probe_count: u64,
@@ -197,7 +197,6 @@ impl<'m> HoleExtractor<'m> {
             feeds_in_air: Vec::new(),
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
-            builder_code: None,
             process_limits: ProcessLimits::default(),
             clamp_state: ClampState::default(),
             frame,
@@ -214,7 +213,7 @@ impl<'m> HoleExtractor<'m> {
             findings: Findings::default(),
             close_motions: CloseMotions::default(),
             cut_conditions: CutConditionsByBlock::default(),
-            milling: MillingConditions::default(),
+            milling: MillingRates::default(),
             length_mismatches: Vec::new(),
             probe_count: 0,
             search_budget: SearchBudget::default(),
@@ -353,6 +352,7 @@ impl<'m> HoleExtractor<'m> {
         if (self.pose.tip - before.tip).norm() < 1e-9 {
             return;
         }
+        self.check_thread_wall(event, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
@@ -442,7 +442,7 @@ impl EventSink for HoleExtractor<'_> {
                 self.cutting_state.apply_rigid(*is_rigid);
                 self.has_tool_turned |= self.cutting_state.spindle_direction != SpindleDirection::Off;
                 self.update_spindle_in_hole(before);
-                self.builder_code = None;
+                self.cutting_state.builder_code = None;
             }
             EventKind::Stop { kind: StopKind::Message, text, variables } => {
                 if let Some(angle) = self.operator_head_angle(event, text, variables) {
@@ -451,7 +451,7 @@ impl EventSink for HoleExtractor<'_> {
             }
             EventKind::Auxiliary { code } => {
                 if !self.apply_clamp_code(*code) {
-                    self.builder_code = Some(*code);
+                    self.cutting_state.builder_code = Some(*code);
                 }
             }
             EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}

@@ -1,13 +1,15 @@
 //! Rapids of several axes: any axis may arrive first, unless the rates of the axes or LRP give the path.
+use std::cell::Cell;
+
 use nalgebra::{Point3, Vector3};
 
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
 use super::metal::PointInMetal;
 use super::rapids::{PLUNGE_COSINE, error_if, format_point};
-use super::tool_lines::lines;
+use super::tool_lines::deepest;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
-use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolCylinder, arrivals};
+use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolPart, arrivals};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};
@@ -176,7 +178,7 @@ impl HoleExtractor<'_> {
         let is_clear = match surface {
             Some(body) => path.is_clear_by_planes(&self.tool_body, |p| body.nearest(p)),
             None => {
-                let radius = self.tool_body.iter().map(|part| part.radius).fold(0.0, f64::max);
+                let radius = self.tool_body.iter().map(ToolPart::radius).fold(0.0, f64::max);
                 !is_straight || !self.metal.is_touched(&begin, &pose.tip, &axis, radius)
             }
         };
@@ -194,16 +196,16 @@ impl HoleExtractor<'_> {
             if part.is_cutter && self.tool_radius().is_none() && self.metal.is_solid(&[begin, pose.tip]) {
                 continue;
             }
-            let lines = travels.iter().flatten().flat_map(|travel| lines(part, &axis, travel, &self.metal));
-            let mut is_met = false;
-            for line in lines {
-                is_met |= surface.is_some_and(|body| body.piece(&line[0], &line[1], TOUCH_DEPTH).is_some());
-                if let Some(cut) = self.metal.uncut(&line) {
-                    found = Some(found.map_or(cut, |found| found.deeper(cut)));
-                }
-            }
+            let is_met = Cell::new(false);
+            let cut = |line: &[Point3<f64>; 2]| {
+                let in_body = surface.and_then(|body| body.piece(&line[0], &line[1], TOUCH_DEPTH));
+                is_met.set(is_met.get() || in_body.is_some());
+                self.metal.uncut(line)
+            };
+            let on_travel = |travel| deepest(part, &axis, travel, &self.metal, cut);
+            found = travels.iter().flatten().filter_map(on_travel).reduce(PointInMetal::deeper);
             // Between its ends the side of the tool may touch a round body.
-            if let Some(body) = surface.filter(|_| found.is_none() && !is_met) {
+            if let Some(body) = surface.filter(|_| found.is_none() && !is_met.get()) {
                 let deepest = path.with_tool(*part).deepest(&distance_from(&body), TOUCH_DEPTH, &mut budget);
                 found = match deepest {
                     // What is removed is not followed while an axis rotates.
@@ -233,11 +235,11 @@ impl HoleExtractor<'_> {
     /// Reports a rapid of unknown start at whose end the side of the tool is in metal.
     pub(super) fn check_body_at(&mut self, event: &Event<'_>, tip: &Point3<f64>) {
         let Some(axis) = self.pose.axis else { return };
-        let is_left_out = |part: &ToolCylinder| part.is_cutter && self.tool_radius().is_none();
-        let cut = self.tool_body.iter().filter(|part| !is_left_out(part)).find_map(|part| {
-            let lines = lines(part, &axis, &[*tip, *tip], &self.metal).into_iter();
-            lines.filter_map(|line| self.metal.uncut(&line)).reduce(PointInMetal::deeper)
-        });
+        let is_left_out = |part: &ToolPart| part.is_cutter && self.tool_radius().is_none();
+        let cut =
+            self.tool_body.iter().filter(|part| !is_left_out(part)).find_map(|part| {
+                deepest(part, &axis, &[*tip, *tip], &self.metal, |line| self.metal.uncut(line))
+            });
         if let Some(cut) = cut {
             self.report_side(event, cut, Severity::Error, "");
         }

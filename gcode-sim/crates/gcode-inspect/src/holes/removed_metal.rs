@@ -5,8 +5,8 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::profile::Profile;
 use super::shares::Shares;
-use crate::machine::{TOUCH_DEPTH, ToolCylinder};
-use gcode_part::{shares_between, shares_in_ball};
+use crate::machine::{TOUCH_DEPTH, ToolPart};
+use gcode_part::{shares_between, shares_within};
 
 /// Largest number of sweeps that are kept, for the memory.
 const MAX_SWEEPS: usize = 1_000_000;
@@ -238,13 +238,13 @@ impl Sweep {
 
     /// Returns the shares of a travel between which it is in the volume that a part of the tool sweeps.
     ///
-    /// At the share s of the travel and t of the sweep the travel's point is in the cylinder if
-    /// |q + s·u − t·d|² ≤ r² across the axis, and lies between the ends of the cylinder along it. For a given s the t that
-    /// fulfil this are an interval; if it is not empty, it holds 0 or 1, the t at which an end of the cylinder passes the
-    /// point, or the t at which the axis is nearest to it. So the shares are those that fulfil it on one of five lines
-    /// t = a + b·s.
-    fn covered(&self, part: &ToolCylinder, travel: &[Point3<f64>; 2]) -> Option<[f64; 2]> {
-        let radius = part.radius + TOUCH_DEPTH;
+    /// At the share s of the travel and t of the sweep the travel's point is at the height h = h₀ + s·h₁ − t·h₂ above the tip
+    /// and in the part if |q + s·u − t·d| ≤ r + k·h across the axis, and h lies between the ends of the part. For a given s
+    /// the t that fulfil this are an interval; if it is not empty, it holds 0 or 1, the t at which an end of the part passes
+    /// the point, or the t at which |q + s·u − t·d|² − (r + k·h)² is least. So the shares are those that fulfil it on one of
+    /// five lines t = a + b·s. A sweep steeper than the side of a cone has no such least value.
+    fn covered(&self, part: &ToolPart, travel: &[Point3<f64>; 2]) -> Option<[f64; 2]> {
+        let taper = part.taper.grown(TOUCH_DEPTH);
         let axis = self.axis.into_inner();
         let split = |v: Vector3<f64>| {
             let height = v.dot(&axis);
@@ -252,9 +252,13 @@ impl Sweep {
         };
         let ((q, from), (u, rise), (d, climb)) =
             (split(travel[0] - self.from), split(travel[1] - travel[0]), split(self.to - self.from));
-        let (low, high) = (part.from - TOUCH_DEPTH, part.to + TOUCH_DEPTH);
-        let dd = d.norm_squared();
-        let reach = radius + d.norm() + u.norm();
+        let low = part.from - TOUCH_DEPTH;
+        // A cone is nowhere wider than its upper end.
+        let high = match 0.0 < taper.slope {
+            true => (part.radius() + TOUCH_DEPTH - taper.radius) / taper.slope,
+            false => part.to + TOUCH_DEPTH,
+        };
+        let reach = taper.at(low).max(taper.at(high)) + d.norm() + u.norm();
         if reach * reach < q.norm_squared() {
             return None;
         }
@@ -262,7 +266,8 @@ impl Sweep {
             let shares = shares_between([0.0, 1.0], (a, b), (-NOISE, 1.0 + NOISE))?;
             let heights = (from - climb * a, rise - climb * b);
             let shares = shares_between(shares, heights, (low - NOISE, high + NOISE))?;
-            shares_in_ball(shares, q - d * a, u - d * b, radius)
+            let radius = (taper.at(heights.0), taper.slope * heights.1);
+            shares_within(shares, q - d * a, u - d * b, radius)
         };
         let mut all: Option<[f64; 2]> = None;
         let mut add = |shares: Option<[f64; 2]>| {
@@ -271,8 +276,11 @@ impl Sweep {
         };
         add(on_line(0.0, 0.0));
         add(on_line(1.0, 0.0));
-        if 1e-18 < dd {
-            add(on_line(q.dot(&d) / dd, u.dot(&d) / dd));
+        let narrowing = taper.slope * climb;
+        let curvature = d.norm_squared() - narrowing * narrowing;
+        if 1e-18 < curvature {
+            let least = |q: f64, radius: f64| (q - narrowing * radius) / curvature;
+            add(on_line(least(q.dot(&d), taper.at(from)), least(u.dot(&d), taper.slope * rise)));
         }
         if 1e-9 < climb.abs() {
             for end in [low, high].into_iter().filter(|end| end.is_finite()) {
@@ -288,6 +296,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use gcode_part::Taper;
 
     fn p(x: f64, y: f64, z: f64) -> Point3<f64> {
         Point3::new(x, y, z)
@@ -370,15 +379,22 @@ mod tests {
             travel in prop::array::uniform6(-15.0..15.0f64),
             direction in prop::array::uniform3(-1.0..1.0f64),
             (radius, low, length) in (0.5..5.0f64, 0.0..3.0f64, 0.5..8.0f64),
+            slope in prop::sample::select(vec![0.0, 0.0, 0.6, 1.0, 2.7]),
         ) {
             let axis = Unit::try_new(Vector3::from(direction), 0.1);
             prop_assume!(axis.is_some());
             let axis = axis.unwrap();
             let (from, to) = (p(ends[0], ends[1], ends[2]), p(ends[3], ends[4], ends[5]));
-            let part = ToolCylinder { from: low, to: low + length, radius, is_cutter: true };
+            // A cone has its tip at the lower end and a cylinder on it.
+            let cylinder = ToolPart::flutes(low + length, low + 2.0 * length, slope * length);
+            let cone = ToolPart {
+                taper: Taper { radius: -slope * low, slope },
+                ..ToolPart::flutes(low, low + length, 0.0)
+            };
+            let parts = if slope == 0.0 { vec![ToolPart::flutes(low, low + length, radius)] } else { vec![cone, cylinder] };
             let sweep = Sweep { from, to, axis, profile: 0, previous: NONE };
             let (a, b) = (p(travel[0], travel[1], travel[2]), p(travel[3], travel[4], travel[5]));
-            let covered = sweep.covered(&part, &[a, b]);
+            let covered: Vec<_> = parts.iter().filter_map(|part| sweep.covered(part, &[a, b])).collect();
             for s in 0..=50 {
                 let s = f64::from(s) / 50.0;
                 let q = a + (b - a) * s;
@@ -386,10 +402,14 @@ mod tests {
                     let to_q = q - (from + (to - from) * t);
                     let height = to_q.dot(&axis);
                     let aside = (to_q - axis.into_inner() * height).norm();
-                    (aside - radius).max(low - height).max(height - low - length)
+                    let of_part = |part: &ToolPart| {
+                        let beside = (aside - part.taper.at(height)) / libm::hypot(1.0, part.taper.slope);
+                        beside.max(aside - part.radius()).max(part.from - height).max(height - part.to)
+                    };
+                    parts.iter().map(of_part).fold(f64::INFINITY, f64::min)
                 };
-                let least = (0..=2000).map(|t| excess(f64::from(t) / 2000.0)).fold(f64::INFINITY, f64::min);
-                let is_covered = covered.is_some_and(|[first, last]| first <= s && s <= last);
+                let least = (0..=1000).map(|t| excess(f64::from(t) / 1000.0)).fold(f64::INFINITY, f64::min);
+                let is_covered = covered.iter().any(|[first, last]| *first <= s && s <= *last);
                 prop_assert!(!is_covered || least < TOUCH_DEPTH + 0.02, "{} {}", s, least);
                 prop_assert!(is_covered || least > TOUCH_DEPTH - 1e-6, "{} {}", s, least);
             }

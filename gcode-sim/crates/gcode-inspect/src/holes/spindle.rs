@@ -1,6 +1,7 @@
 //! Spindle while a tool is in the part: stopped before the feed, or stopped or reversed in the hole, as boring and tapping
 //! cycles do.
 use super::HoleExtractor;
+use super::cutting::CuttingState;
 use super::line::{CuttingLine, SpindleInHole};
 use crate::findings::{SPINDLE_IN_HOLE, SPINDLE_STOPPED};
 use crate::machine::{ToolKind, tool_name};
@@ -37,9 +38,9 @@ impl HoleExtractor<'_> {
         line.spindle = line.spindle.max(state);
     }
 
-    /// Reports a feed into the part with the spindle stopped.
-    pub(super) fn report_spindle_stopped(&mut self, place: &Backtrace) {
-        let builder_code = self.builder_code;
+    /// Reports a feed into the part with the spindle stopped, in the state of that feed.
+    pub(super) fn report_spindle_stopped(&mut self, place: &Backtrace, state: &CuttingState) {
+        let builder_code = state.builder_code;
         self.findings.add(&SPINDLE_STOPPED, place, 0, |_| {
             spindle_stopped_finding("the tool feeds into the part with the spindle stopped", builder_code)
                 .help("start the spindle with M03 S… before the feed")

@@ -116,6 +116,10 @@ impl Strokes {
         self.nominal = Arc::clone(axes);
     }
 
+    pub(super) fn nominal_axes(&self) -> &NominalAxes {
+        &self.nominal
+    }
+
     /// Records a feed across the tool at a height along it.
     pub(super) fn note_milling(&mut self, level: f64) {
         self.milled_level = Some(self.milled_level.map_or(level, |lowest| lowest.min(level)));
@@ -148,7 +152,7 @@ impl Strokes {
 
     /// Returns the nominal axis nearest to a circle; of a hole whose entry is above the circle if `is_below`.
     pub(super) fn nominal_of_ring(&self, ring: &Ring, is_below: bool) -> Option<&NominalAxis> {
-        let start = ring.centre + ring.out.into_inner() * (ring.top - ring.level());
+        let start = ring.centre + ring.out.into_inner() * ring.height();
         let pass = [&start, &ring.centre];
         match is_below {
             true => self.nominal.nearest_above(pass, &ring.out, MAX_AXIS_DISTANCE),
@@ -324,6 +328,13 @@ impl MilledStrokes {
     }
 }
 
+impl CuttingLine {
+    /// Returns true for a feed across the tool, as far as its direction is known.
+    pub(super) fn is_across_tool(&self) -> bool {
+        self.tool_axis.is_some_and(|axis| axis.dot(&self.out) < MIN_TOOL_COSINE)
+    }
+}
+
 impl HoleExtractor<'_> {
     /// Returns the kind of a stroke that the tool has left, in feed if `is_feeding`.
     pub(super) fn cut_kind(&self, line: &CuttingLine, is_feeding: bool) -> CutKind {
@@ -332,8 +343,8 @@ impl HoleExtractor<'_> {
         }
         let is_between_rapids = !line.is_reached_by_feed && !is_feeding;
         let along_tool = CutKind::AlongTool { is_between_rapids };
-        if let Some(axis) = line.tool_axis {
-            return if axis.dot(&line.out) < MIN_TOOL_COSINE { CutKind::Oblique } else { along_tool };
+        if line.tool_axis.is_some() {
+            return if line.is_across_tool() { CutKind::Oblique } else { along_tool };
         }
         let tool = line.cutting_state.tool.and_then(|number| self.machine.find_tool(number));
         let is_mill = tool.is_some_and(|tool| tool.kind == Some(ToolKind::EndMill));

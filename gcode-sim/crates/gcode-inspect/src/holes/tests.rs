@@ -65,6 +65,21 @@ rapid Z2; feed Z-3; rapid Z2; feed Z-3; rapid Z2
 0 0 2, 0 0 1, 5
 0 0 2, 0 0 1, 5
 
+the same pecks a second time, without leaving the line
+rapid Z2; feed Z-3; rapid Z2; rapid Z-2.5; feed Z-6; rapid Z2; feed Z-3; rapid Z2; rapid Z-2.5; feed Z-6; rapid Z2
+0 0 2, 0 0 1, 8
+0 0 2, 0 0 1, 8
+
+the same pecks a second time and deeper
+rapid Z2; feed Z-3; rapid Z2; feed Z-6; rapid Z2; feed Z-3; rapid Z2; feed Z-6; rapid Z2; feed Z-9; rapid Z2
+0 0 2, 0 0 1, 11
+
+the same depth three times
+rapid Z2; feed Z-3; rapid Z2; feed Z-3; rapid Z2; feed Z-3; rapid Z2
+0 0 2, 0 0 1, 5
+0 0 2, 0 0 1, 5
+0 0 2, 0 0 1, 5
+
 the same depth a second time, after leaving the line
 rapid Z2; feed Z-3; rapid Z2; rapid X9; rapid X0; feed Z-3; rapid Z2
 0 0 2, 0 0 1, 5

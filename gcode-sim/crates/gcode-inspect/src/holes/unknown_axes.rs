@@ -269,7 +269,8 @@ pub(crate) fn unknown_position_finding(names: &Axes, axes: UnknownAxes, cut: &st
     let message =
         format!("{cut} with {letters} counted from a zero that was set at an unknown position of {letters}");
     Diagnostic::new(&START_UNKNOWN, message)
-        .note("G92 gives the current position new coordinates; G68 and G51 without a centre take it as their centre")
+        .note("G92 gives the current position new coordinates; G68 and G51 without a centre take it as their centre; G53.1 and G43.4 \
+               depend on rotary axes that the machine file may lack")
         .help("command the axis in G90 before that block, or state where the run starts: --start, or [start] in the \
                machine file")
 }

@@ -37,7 +37,7 @@ impl KnownMetal {
 fn wall_radius(collar: &Collar, p: &Point3<f64>) -> Option<f64> {
     let depth = collar.depth(p);
     let steps = collar.steps.iter().filter(|step| depth <= step.max_depth + TOUCH_DEPTH);
-    steps.map(|step| step.radius).reduce(f64::max)
+    steps.map(|step| step.radius(depth)).reduce(f64::max)
 }
 
 impl HoleExtractor<'_> {

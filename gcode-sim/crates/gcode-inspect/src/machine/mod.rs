@@ -30,7 +30,7 @@ pub use random::RandomStream;
 pub use rapid::RapidPath;
 pub(crate) use rapid::arrivals;
 pub use sources::{ErrorSource, Quantity};
-pub(crate) use tool_body::{TOUCH_DEPTH, ToolCylinder};
+pub(crate) use tool_body::{TOUCH_DEPTH, ToolPart};
 pub use tool_shape::ToolKind;
 pub(crate) use tool_shape::{PointShape, tool_name};
 pub use wheel::Wheel;
@@ -229,10 +229,14 @@ impl Machine {
     }
 
     /// Returns the distance from the gauge line to the tip against `axis`, the tool's direction out of the part, mm: the
-    /// length of the tool, or else the length offset. A touched-off offset counts from machine zero and is negative.
+    /// length of the tool, or else the length offset. A touched-off offset counts from machine zero and is negative. An offset
+    /// is along the tool, or, in tool centre point control, along the tool with the head at 0.
     fn tip_distance(&self, setup: &Setup, axis: &Unit<Vector3<f64>>) -> f64 {
         let offset = self.slides.displacement(&setup.offset);
-        let is_touched_off = offset.dot(axis) < -0.5 * offset.norm();
+        let is_along = |axis: &Vector3<f64>| offset.dot(axis).abs() > (1.0 - 1e-9) * offset.norm();
+        let at_zero = self.head.direction(&Position::default(), setup);
+        let basis = at_zero.filter(|zero| !is_along(axis) && is_along(zero)).unwrap_or(*axis);
+        let is_touched_off = offset.dot(&basis) < -0.5 * offset.norm();
         match self.length_of(setup.tool) {
             None if is_touched_off => -offset.norm(),
             _ => self.tool_length(setup),

@@ -36,7 +36,7 @@ impl AxisMotion<'_> {
     }
 
     /// Returns the radius of the arc at its start; 0 without an arc.
-    fn radius(&self) -> f64 {
+    pub(crate) fn radius(&self) -> f64 {
         self.arc.map_or(0.0, |arc| {
             libm::hypot(self.from[arc.plane.0] - arc.centre.0, self.from[arc.plane.1] - arc.centre.1)
         })

@@ -50,7 +50,7 @@ impl ToolKind {
     ];
 
     /// Returns the name in the machine file.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, kind)| *kind == self).map_or("tool", |(name, _)| name)
     }
 

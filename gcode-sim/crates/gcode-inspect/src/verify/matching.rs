@@ -6,8 +6,8 @@ use nalgebra::{Point3, Vector3};
 use super::position::Deviation;
 use super::{Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
-use crate::machine::{Machine, ToolCylinder};
-use gcode_part::{Hole, POINT_LENGTH, Pattern, PointTree, Surface, exceeds};
+use crate::machine::{Machine, ToolPart};
+use gcode_part::{Hole, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds};
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
 const MAX_LINE_DISTANCE: f64 = 5.0;
@@ -277,18 +277,21 @@ fn is_in_air(pass: &ToolPass<'_>, surface: &Surface, machine: &Machine, nominal:
     if surface.value(&surface.deepest_between(&start, &bottom)) <= 0.0 {
         return false;
     }
-    let cuts = |part: ToolCylinder| part.cuts(surface, (&bottom, &pass.axis), &(start - bottom));
+    let cuts = |part: ToolPart| part.cuts(surface, (&bottom, &pass.axis), &(start - bottom));
     let own = machine.diameter_of(pass.tool);
     if let (None, None, Some(diameter)) = (own, milled, nominal) {
         let from = POINT_LENGTH * diameter;
-        return !cuts(ToolCylinder { from, to: from, radius: diameter / 2.0, is_cutter: true });
+        return !cuts(ToolPart::flutes(from, from, diameter / 2.0));
     }
     let Some((own, cut)) = own.zip(pass.diameter).filter(|_| milled.is_none_or(|cut| cut.core.is_none()))
     else {
         return true;
     };
     // A circle cuts wider than its tool.
-    let wider = |part: ToolCylinder| ToolCylinder { radius: part.radius + (cut - own) / 2.0, ..part };
+    let wider = |part: ToolPart| {
+        let taper = Taper { radius: part.taper.radius + (cut - own) / 2.0, ..part.taper };
+        ToolPart { taper, ..part }
+    };
     let mut parts = machine.tool_end(pass.tool).into_iter().map(wider);
     !parts.any(cuts)
 }

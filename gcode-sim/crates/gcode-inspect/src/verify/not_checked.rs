@@ -5,11 +5,10 @@ use super::checks::features::ShapeGap;
 use super::checks::stock::deeper_than_stock;
 use super::{Comparison, HoleInspection};
 use crate::findings::BACK_BORED;
-use crate::holes::HoleExtraction;
+use crate::holes::{DrilledHole, HoleExtraction};
 use crate::machine::{HeadKind, Machine, tool_name};
 use gcode_lang::motion::LengthCompensation;
 use gcode_lang::source::Span;
-use gcode_lang::units::Deg;
 use gcode_part::{Reference, ToolProcess};
 
 /// Motion that no check covers if neither stock nor surface is known.
@@ -70,8 +69,8 @@ pub(super) fn list(
     if extraction.findings.iter().any(|finding| finding.kind == &BACK_BORED) {
         all.push(NotChecked::gap("bores made backwards", "their depth and diameter"));
     }
-    let mut drilled = comparison.matched().map(|(.., drilled)| drilled);
-    if machine.head.kind == HeadKind::Free && drilled.all(|hole| hole.tool_axis_deviation == Deg::ZERO) {
+    let is_unknown = |drilled: &DrilledHole| !drilled.is_tool_axis_known;
+    if machine.head.kind == HeadKind::Free && comparison.matched().any(|(.., drilled)| is_unknown(drilled)) {
         all.push(NotChecked::gap("head angles", "the head is unknown, each axis is taken along its feed"));
     }
     if extraction.assumed_axes != 0 && !extraction.holes.is_empty() {
@@ -135,8 +134,10 @@ fn hole_names(ids: &[&str]) -> String {
 /// Returns the holes of unknown diameter, by their tools.
 fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<NotChecked> {
     let mut by_tool: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
+    let mut unspecified = Vec::new();
     for (pair, nominal, drilled) in comparison.matched() {
-        if nominal.diameter.is_none() && nominal.features.is_empty() {
+        if nominal.widest_diameter().is_none() {
+            unspecified.push(comparison.id(pair.nominal));
             continue;
         }
         for pass in drilled.passes().filter(|pass| pass.diameter.is_none()) {
@@ -158,7 +159,11 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<NotChecked> 
             Some(tool) => NotChecked::gap(what, format!("the machine file has none of T{tool}")),
         }
     };
-    by_tool.into_iter().map(gap).collect()
+    let unspecified = (!unspecified.is_empty()).then(|| {
+        let reason = "the reference has none, and the sides of the tools in it are not compared either";
+        NotChecked::aside(format!("the diameter of {}", hole_names(&unspecified)), reason)
+    });
+    by_tool.into_iter().map(gap).chain(unspecified).collect()
 }
 
 /// Returns the tools whose end the machine file does not describe, with what was taken for it.

@@ -122,7 +122,7 @@ fn manual_head_shift(machine: &Machine, drilled: &DrilledHole, frame: &Frame) ->
     // The axis of an unknown head is that of the feed, unless a message to the operator sets it.
     let set = match machine.head.kind {
         HeadKind::Manual { .. } => true,
-        HeadKind::Free => drilled.tool_axis_deviation != Deg::ZERO,
+        HeadKind::Free => drilled.is_tool_axis_known,
         HeadKind::Fixed(_) | HeadKind::Axis { .. } | HeadKind::Axes { .. } => false,
     };
     let out = frame.rotation * drilled.axis.into_inner();

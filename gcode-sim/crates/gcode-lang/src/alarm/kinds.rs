@@ -100,10 +100,11 @@ crate::finding_kinds! {
     PS1196 = "PS1196", Alarm, "the drilling axis is ambiguous or changes without G80";
     PS1202 = "PS1202", Alarm, "no F in a cutting block of G93 (inverse time feed)";
     PS5010 = "PS5010", Alarm, "the program ends without M02, M30 or M99";
+    PS5044 = "PS5044", Alarm, "a rotation in space in a wrong form";
     PS5074 = "PS5074", Alarm, "an address repeated in one block";
     PS5457 = "PS5457", Alarm, "a tilted plane in a wrong form";
     PS5458 = "PS5458", Alarm, "G53.1 where it is not allowed";
-    PS5459 = "PS5459", Alarm, "a tilted plane that the rotary axes cannot reach";
+    PS5459 = "PS5459", Alarm, "a tilted plane that the rotary axes cannot reach, or parameters that rule out a function";
     SIM0001 = "SIM0001", Alarm, "a function that is not simulated";
     SIM0002 = "SIM0002", Alarm, "G31 ended without a skip signal";
     SIM0003 = "SIM0003", Alarm, "the stylus is deflected too far";

@@ -9,7 +9,7 @@ mod typos;
 use crate::source::{Span, Spanned};
 
 pub use code::AlarmCode;
-pub use typos::remedy;
+pub use typos::{missing_macro_help, remedy};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +45,10 @@ pub enum Alarm {
     ToolAxisCode(&'static str),
     /// No angles of the rotary axes point the tool along Z of the tilted plane.
     ToolAxisUnreachable,
+    /// A function is commanded that the parameters of the machine rule out.
+    MachineParameter(&'static str),
+    /// A rotation in space is commanded in a wrong form; the rule that it breaks.
+    SpaceRotation(&'static str),
     /// A pattern of holes has no canned cycle.
     NoCycle {
         /// Code of the pattern.

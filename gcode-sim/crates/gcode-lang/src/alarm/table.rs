@@ -139,6 +139,8 @@ impl Alarm {
             Self::EndOfRecord => (&PS5010, "the program ends without M02, M30 or M99".into(), None),
             Self::PlaneFormat(what) => (&PS5457, format!("tilted plane: {what}"), None),
             Self::ToolAxisCode(what) => (&PS5458, (*what).into(), Some("command G68.2 before it, then G53.1 in a block of its own")),
+            Self::MachineParameter(what) => (&PS5459, format!("{what} is not allowed"), Some("check the parameters of the five axes")),
+            Self::SpaceRotation(what) => (&PS5044, format!("G68 about I J K: {what}"), Some("write X Y Z, I J K and R; G69 ends both of two rotations")),
             Self::ToolAxisUnreachable => (&PS5459, "no angles of the rotary axes within their stroke point the tool along Z of the plane".into(), Some("check the angles of G68.2, P of G53.1 and the rotary axes of the machine file")),
             Self::RepeatedAddress { letter } => (&PS5074, format!("address {letter} is repeated in the block"), None),
             Self::UserAlarm { text, .. } if text.is_empty() => (&MC3000, "the program raises an alarm without a text".into(), Some("write a text after the number: #3000=1(TEXT)")),

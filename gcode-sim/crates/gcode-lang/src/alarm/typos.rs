@@ -1,4 +1,6 @@
 //! Typing errors behind alarms: a letter O for a zero, a comma for a point, a sign copied from a PDF.
+use std::ops::RangeInclusive;
+
 use super::Alarm;
 use crate::source::{Sources, Span};
 
@@ -26,8 +28,27 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         radius_without_point,
         dwell_with_two_times,
         work_offset_range,
+        protected_program,
     ];
     rules.into_iter().find_map(|rule| rule(alarm, &line)).or_else(|| alarm.row().help)
+}
+
+/// Returns what to do about a missing program that a control protects: it is on the control, and in no folder.
+fn protected_program(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
+    let Alarm::ProgramNotFound { number, read_error: None } = alarm else { return None };
+    missing_macro_help(*number)
+}
+
+/// Program numbers that a control can protect: macros of the machine builder and of the probe's maker.
+const PROTECTED_PROGRAMS: RangeInclusive<u32> = 8000..=9999;
+
+/// Returns what to do about a missing program, if it has the number of a macro on the control.
+pub fn missing_macro_help(number: u32) -> Option<String> {
+    PROTECTED_PROGRAMS.contains(&number).then(|| {
+        format!(
+            "a macro of the control or the probe: save O{number:04} and the macros that it calls from the control to a folder, and give that with --lib or as libraries in gcode.toml; for a run without it, put a stub there (O{number:04} and M99); check lists all that are missing"
+        )
+    })
 }
 
 /// Line of an alarm, without its comments.

@@ -24,7 +24,7 @@ const DIALECTS: &[DialectRow] = &[
         ("PLAIN-IF", "0"), ("VALUE-CONDITIONS", "0"), ("THEN-WORDS", "0"), ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
         ("NEW-WORDS", "1"), ("MORE-FUNCTIONS", "1"), ("G10-PARAMETERS", "1"), ("REPEATS-IN-P", "1"), ("M97-CALLS", "0"),
         ("CYCLE-REPEATS", "K"), ("MOVE-REPEATS", "0"), ("S-POINT", "0"), ("K0-MOVES", "0"), ("HOME-ALL", "0"), ("DWELL-SECONDS", "0"), ("FEED-INCREMENTS", "0"), ("PECK-IJK", "0"),
-        ("TAP-DWELL-R", "1"), ("G84-RIGID", "0"), ("M06-HOMES-Z", "0"), ("M00-STOPS-SPINDLE", "0"),
+        ("TAP-DWELL-R", "1"), ("G84-RIGID", "0"), ("M06-HOMES-Z", "0"), ("M00-STOPS-SPINDLE", "0"), ("TRANSFORM-RETURNS", "0"),
     ] },
     // Four simultaneous axes, so no five-axis codes; 48 additional work coordinate systems, 300 by option.
     DialectRow { dialect: Dialect::Fanuc0iF, base: Some(Dialect::Fanuc31i), settings: &[
@@ -39,7 +39,7 @@ const DIALECTS: &[DialectRow] = &[
         ("PLAIN-IF", "1"), ("VALUE-CONDITIONS", "1"), ("THEN-WORDS", "1"), ("THEN-GOTO", "1"), ("G67-ALARM", "1"),
         ("NEW-WORDS", "0"), ("MORE-FUNCTIONS", "0"), ("G10-PARAMETERS", "0"), ("REPEATS-IN-P", "0"), ("M97-CALLS", "1"),
         ("CYCLE-REPEATS", "L"), ("MOVE-REPEATS", "1"), ("S-POINT", "1"), ("K0-MOVES", "1"), ("HOME-ALL", "1"), ("DWELL-SECONDS", "1"), ("FEED-INCREMENTS", "1"), ("PECK-IJK", "1"),
-        ("TAP-DWELL-R", "0"), ("G84-RIGID", "1"), ("M06-HOMES-Z", "1"), ("M00-STOPS-SPINDLE", "1"),
+        ("TAP-DWELL-R", "0"), ("G84-RIGID", "1"), ("M06-HOMES-Z", "1"), ("M00-STOPS-SPINDLE", "1"), ("TRANSFORM-RETURNS", "1"),
     ] },
 ];
 

@@ -2,8 +2,11 @@
 use std::collections::BTreeMap;
 
 /// Variables that hold such a value: inputs, analogue inputs, settings and parameters of a Haas (Mill Operator's Manual
-/// 96-8210, macro variables), and its tables of tools, timers and pallets.
+/// 96-8210, macro variables), its tables of tools, timers and pallets, and the keys that
+/// the operator presses at M109.
 const RANGES: &[(u32, u32)] = &[
+    // Answers to M109.
+    (500, 599),
     (1032, 1099),
     (1601, 2000),
     (3020, 3025),
@@ -14,6 +17,7 @@ const RANGES: &[(u32, u32)] = &[
     (5401, 6999),
     (7401, 7960),
     (8500, 8599),
+    (10_500, 10_599),
     (11_000, 11_255),
     (13_000, 13_063),
     (20_000, 39_999),
@@ -107,7 +111,7 @@ mod tests {
 
     #[test]
     fn other_variables_and_texts_are_refused() {
-        for key in ["500", "12003", "20255.1", "x", "30057.x"] {
+        for key in ["600", "12003", "20255.1", "x", "30057.x"] {
             assert_eq!(MachineValues::key(key), None, "{key}");
         }
         let mut values = MachineValues::default();

@@ -93,6 +93,23 @@ impl Dialect {
     }
 }
 
+/// Tool offset memory (8136#6 NGW, 8136#7 NDO).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OffsetMemory {
+    /// One value for each number, of H and D alike.
+    A,
+    /// Geometry and wear for each number, of H and D alike.
+    B,
+    /// Geometry and wear, of H and D apart.
+    #[default]
+    C,
+}
+
+impl OffsetMemory {
+    /// All memories with their names on the command line.
+    pub const ALL: [(&'static str, Self); 3] = [("A", Self::A), ("B", Self::B), ("C", Self::C)];
+}
+
 /// Numbering of the tool offset variables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OffsetVariables {
@@ -236,6 +253,8 @@ with_defaults! {
         pub then_takes_words: bool = false,
         /// First and last of each range of common variables beyond those of every control, in ascending order.
         pub extra_commons: Vec<(u32, u32)> = vec![(98_000, 98_499)],
+        /// Tool offset memory.
+        pub offset_memory: OffsetMemory = Default::default(),
         /// Numbering of the tool offset variables.
         pub offset_variables: OffsetVariables = Default::default(),
         /// PRT 6001#1: DPRNT omits the blanks before a number.
@@ -256,6 +275,8 @@ with_defaults! {
         pub starts_up_by_type_b: bool = false,
         /// 19625: number of lookahead blocks in cutter compensation; two of them must move.
         pub lookahead_blocks: usize = 3,
+        /// 5411: factor of G51 for an axis that its words give none.
+        pub scale_factor: f64 = 1.0,
         /// SCR 5400#7: factors of G51 count in 0.001, not 0.00001.
         pub has_coarse_scaling: bool = true,
         /// Block skip switches 1 to 9 that are on.
@@ -286,6 +307,10 @@ with_defaults! {
         pub kinematics: Option<Kinematics> = None,
         /// Rotary axis whose sign P1 and P2 of G53.1 choose.
         pub tool_axis_choice: ToolAxisChoice = Default::default(),
+        /// WKP 19696#5: tool centre point control counts in the work system, which does not turn with the table.
+        pub tip_in_work_system: bool = false,
+        /// 12321: direction to which X of G68.3 is square, 1 to 3 for X, Y and Z, 0 for that of the tool.
+        pub vertical_axis: usize = 0,
         /// Largest deviation of the chords that replace an arc in a plane that is not one of the machine's, mm.
         pub chord_tolerance: f64 = 0.001,
         /// 3410: largest difference between the radii at start and end of an arc, mm.
@@ -356,6 +381,22 @@ impl Settings {
     pub fn rollover_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
         let some = self.rolls_over != [false; MAX_AXES];
         (0..if some { self.axes.len() } else { 0 }).filter(|axis| self.rolls_over[*axis])
+    }
+
+    /// Returns the variable of the geometry offset H of a tool; `None` beyond the last tool.
+    pub fn length_variable(&self, tool: u32) -> Option<u32> {
+        match self.offset_memory {
+            OffsetMemory::A => (tool <= 999).then_some(10_000 + tool),
+            OffsetMemory::B | OffsetMemory::C => self.offset_variables.length(tool),
+        }
+    }
+
+    /// Returns the variable of the geometry offset D of a tool; `None` beyond the last tool, and where D has the offset of H.
+    pub fn radius_variable(&self, tool: u32) -> Option<u32> {
+        match self.offset_memory {
+            OffsetMemory::A | OffsetMemory::B => None,
+            OffsetMemory::C => self.offset_variables.radius(tool),
+        }
     }
 
     /// Returns true if the offsets of D are diameters.

@@ -94,6 +94,7 @@ const ROWS: &[ParameterRow] = &[
     length_row(5115, ParameterAccess::Key("5115", |s| s.g83_clearance)),
     bit_row(5200, 0, ParameterAccess::Key("G84-RIGID", |s| f64::from(s.taps_rigidly))),
     bit_row(5400, 7, ParameterAccess::Key("SCR", |s| f64::from(s.has_coarse_scaling))),
+    number_row(5411, ParameterAccess::Key("5411", |s| s.scale_factor)),
     length_row(5440, ParameterAccess::PerAxis(|s, axis| s.single_direction_overrun[axis], Some(|s, axis, v| { s.single_direction_overrun[axis] = v; Some(()) }))),
     bit_row(6000, 3, ParameterAccess::Key("V15", |s| f64::from(s.series_15_offsets))),
     bit_row(6001, 1, ParameterAccess::Key("PRT", |s| f64::from(s.omits_print_blanks))),
@@ -106,7 +107,9 @@ const ROWS: &[ParameterRow] = &[
     bit_row(6008, 1, ParameterAccess::Key("MCA", |s| f64::from(s.macro_alarm_base == 0))),
     bit_row(6008, 6, ParameterAccess::Key("GMP", |s| f64::from(s.code_calls.allows_nested_calls))),
     bit_row(6008, 7, ParameterAccess::Key("IJK", |s| f64::from(s.reads_ijk_plainly))),
+    number_row(12321, ParameterAccess::Key("12321", |s| s.vertical_axis as f64)),
     number_row(19625, ParameterAccess::Key("19625", |s| s.lookahead_blocks as f64)),
+    bit_row(19696, 5, ParameterAccess::Key("WKP", |s| f64::from(s.tip_in_work_system))),
 ];
 
 /// Parameters that can be written and read back but have no effect on a run.

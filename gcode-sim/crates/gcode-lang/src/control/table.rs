@@ -1,7 +1,10 @@
 //! Named settings: the parameter in the manual, the key on the command line, and how the value is read.
 use super::common_ranges;
 use super::machine_values::MachineValues;
-use super::{ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetVariables, Settings, ToolAxisChoice};
+use super::{
+    ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetMemory, OffsetVariables, Settings,
+    ToolAxisChoice,
+};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
@@ -195,6 +198,7 @@ const DOCUMENTED: &[SettingRow] = &[
     whole!("ALARM-BASE", "the number that #3000=n adds to n", 0, 9000, |s, v| s.macro_alarm_base = v as u16),
     whole!("ALARM-MOST", "the largest n that the manual gives for #3000=n", 1, 4095, |s, v| s.macro_alarm_max = v as u16),
     row!("MORE-COMMONS", "common variables beyond #100 to #199 and #500 to #999", SettingValues::Ranges(common_ranges::PATTERN), |s, v| s.extra_commons = common_ranges::read(v).ok()?),
+    choice!("OFFSET-MEMORY", "the tool offset memory (8136#6, 8136#7): C has H and D apart, B geometry and wear for both, A one value", OffsetMemory::ALL, |s, v| s.offset_memory = v),
     choice!("OFFSET-VARIABLES", "numbering of the tool offset variables", OffsetVariables::ALL, |s, v| s.offset_variables = v),
     switch!("PLAIN-IF", "IF[..] accepts an assignment or words without THEN", allows_plain_if),
     switch!("VALUE-CONDITIONS", "IF[#1] and WHILE[#1] are true unless #1 is 0 or vacant", allows_value_conditions),
@@ -208,6 +212,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("EVR", "5001#4: a changed offset of D applies from the next block", applies_radius_at_once),
     switch!("SUP", "5003#0: cutter compensation starts and ends by type B", starts_up_by_type_b),
     whole!("19625", "blocks of lookahead in cutter compensation", 3, 8, |s, v| s.lookahead_blocks = v),
+    number!("5411", "scale factor of G51 for an axis without P and without its I, J or K; 1 here", -999_999.0, 999_999.0, "a factor", |s, v| s.scale_factor = v),
     switch!("SCR", "5400#7: G51 scales in units of 0.001", has_coarse_scaling),
     row!("ROA", "1008#0: axes that roll over at 360 degrees", SettingValues::Text("^[A-Ca-c+]*$", "letters of rotary axes"), |s, v| roll_over(s, v)?),
     row!("BDT", "the block skip switches that are on", SettingValues::Text("^[1-9]([+][1-9])*$", "switches 1 to 9, as in 1+2"), |s, v| skip_switches(s, v)?),
@@ -219,6 +224,8 @@ const DOCUMENTED: &[SettingRow] = &[
     number!("RAPID", "1420: rapid rate of linear axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
     number!("RAPID-ROTARY", "1420: rapid rate of rotary axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
     choice!("G53.1-P", "the rotary axis of which P1 of G53.1 takes the solution with the plus sign, P2 the other", ToolAxisChoice::ALL, |s, v| s.tool_axis_choice = v),
+    switch!("WKP", "19696#5: X, Y and Z of G43.4 count in the work system, which does not turn with the table", tip_in_work_system),
+    whole!("12321", "the direction to which X of G68.3 is square: 1 to 3 for X, Y, Z, 0 for that of the tool at 0", 0, 3, |s, v| s.vertical_axis = v),
     number!("CHORDS", "largest deviation of the chords that replace an arc in a plane that is not one of the machine's", 1e-6, 1.0, "0.000001 to 1 mm", |s, v| s.chord_tolerance = v),
     number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
     switch!("CIR", "3403#5: an arc without R, I, J and K raises PS0022, otherwise it is a straight cut", alarms_without_centre),
@@ -312,6 +319,9 @@ undocumented_choices! {
     "CODES-BEFORE-CALL" allows_codes_before_call = true, "modal codes, F, S, T, D, H and M before G65, G66 or G66.1 act first; otherwise PS0125";
     "M06-STOPS-SPINDLE" tool_change_stops_spindle = true, "M06 stops the spindle";
     "M00-STOPS-SPINDLE" stop_stops_spindle = false, "M00 and M01 stop the spindle";
+    "TRANSFORM-RETURNS" returns_in_transforms = false, "G27 to G30 and G53 move in G68 and G51.1 as without them; otherwise SIM0001";
+    "PLANE-TURNS" plane_turns_with_axes = false, "a rotary axis that moves after G53.1 takes the plane with it; otherwise the plane stays where G53.1 left it";
+    "G268-TURNS" feature_axes_turn = false, "I, J and K of G268 are about axes that turn with one another, not about those of the work system";
     "M06-HOMES-Z" tool_change_homes_z = false, "M06 sends Z to machine zero before the tool changes";
 }
 

@@ -3,38 +3,20 @@
 //! A loop lowers its blocks once, and a long file never has all of its blocks lowered at the same time.
 use std::collections::BTreeMap;
 
+use super::block_texts::{BlockTexts, ProgramText};
 use super::loops::Loops;
 use super::lowering::{Lowering, lower_case};
 use super::{Op, OpBody, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
-use crate::source::{Bytes, SourceId};
-use crate::syntax::{ast, block_at, sequence_number_at};
+use crate::syntax::{ast, sequence_number_at};
 
 /// Number of operations kept. Most loops are shorter; the operations take a few megabytes at most.
 const KEPT_OPERATIONS: usize = 8192;
 
-/// Text that contains a program.
-#[derive(Clone, Debug)]
-pub(super) struct ProgramText {
-    pub(super) source: SourceId,
-    pub(super) bytes: Bytes,
-    /// Length without the trailer.
-    pub(super) length: usize,
-}
-
-impl ProgramText {
-    pub(super) fn content(&self) -> &[u8] {
-        &self.bytes[..self.length]
-    }
-}
-
 /// Blocks of a program, and the operations of some.
 #[derive(Debug)]
 pub(super) struct Blocks {
-    text: ProgramText,
-    starts: Vec<u32>,
-    /// Trees of the blocks that do not begin their line.
-    separate_trees: BTreeMap<u32, ast::Block>,
+    texts: BlockTexts,
     /// Operations by slot.
     ///
     /// A block's slot is its index modulo the number of slots; blocks with the same slot replace one another,
@@ -48,31 +30,30 @@ pub(super) struct Blocks {
 impl Blocks {
     pub(super) fn new(text: ProgramText, starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>) -> Self {
         Self {
-            text,
-            starts,
-            separate_trees: apart,
+            texts: BlockTexts::new(text, starts, apart),
             ops: Vec::new(),
             index_mask: KEPT_OPERATIONS - 1,
             lowering: Lowering::default(),
         }
     }
 
+    /// Returns the texts of the blocks.
+    pub(super) fn texts(&self) -> &BlockTexts {
+        &self.texts
+    }
+
     /// Returns the tree of a block, read again from the text.
     pub(super) fn tree(&self, index: OpIndex) -> Option<ast::Block> {
-        let start = *self.starts.get(index)?;
-        match self.separate_trees.get(&(index as u32)) {
-            Some(block) => Some(block.clone()),
-            None => block_at(self.text.source, self.text.content(), start),
-        }
+        self.texts.tree(index)
     }
 
     /// Returns the sequence numbers with their blocks, sorted.
     pub(super) fn sequence_numbers(&self) -> Vec<(u32, u32)> {
         let mut numbers = Vec::new();
-        for (index, start) in (0..).zip(&self.starts) {
-            let number = match self.separate_trees.get(&index) {
+        for (index, start) in (0..).zip(self.texts.starts.iter()) {
+            let number = match self.texts.separate_trees.get(&index) {
                 Some(block) => block.number.map(|number| number.node),
-                None => sequence_number_at(self.text.source, self.text.content(), *start),
+                None => sequence_number_at(self.texts.text.source, self.texts.text.content(), *start),
             };
             numbers.extend(number.map(|number| (number, index)));
         }
@@ -82,15 +63,15 @@ impl Blocks {
 
     /// Returns the number of blocks.
     pub(super) fn len(&self) -> usize {
-        self.starts.len()
+        self.texts.starts.len()
     }
 
     /// Calls `each` with every block in order: with its operation if it consists of numbers alone.
     pub(super) fn visit_numbers(&self, mut each: impl FnMut(OpIndex, Option<&Op>)) {
         let mut op = Op::default();
-        for (index, start) in self.starts.iter().enumerate() {
-            let is_numbers = !self.separate_trees.contains_key(&(index as u32))
-                && op.refill(self.text.source, self.text.content(), *start);
+        for (index, start) in self.texts.starts.iter().enumerate() {
+            let is_numbers = !self.texts.separate_trees.contains_key(&(index as u32))
+                && op.refill(self.texts.text.source, self.texts.text.content(), *start);
             each(index, is_numbers.then_some(&op));
         }
     }
@@ -98,10 +79,10 @@ impl Blocks {
     /// Returns the blocks whose new index is not that of the next one.
     pub(super) fn renumbered(&self, new_index: &[u32]) -> Self {
         let is_kept = |index: usize| new_index[index] != new_index[index + 1];
-        let kept = self.starts.iter().enumerate().filter(|(index, _)| is_kept(*index));
+        let kept = self.texts.starts.iter().enumerate().filter(|(index, _)| is_kept(*index));
         let trees =
-            self.separate_trees.iter().map(|(index, tree)| (new_index[*index as usize], tree.clone()));
-        Self::new(self.text.clone(), kept.map(|(_, start)| *start).collect(), trees.collect())
+            self.texts.separate_trees.iter().map(|(index, tree)| (new_index[*index as usize], tree.clone()));
+        Self::new(self.texts.text.clone(), kept.map(|(_, start)| *start).collect(), trees.collect())
     }
 
     /// Returns the operation of a block if it is lowered.
@@ -121,13 +102,13 @@ impl Blocks {
     /// Lowers a block into its slot; `None` after the last block.
     #[inline(never)]
     pub(super) fn lower(&mut self, index: OpIndex, loops: &Loops) -> Option<()> {
-        let start = *self.starts.get(index)?;
+        let start = *self.texts.starts.get(index)?;
         let at = index & self.index_mask;
         if at >= self.ops.len() {
             self.ops.resize_with(at + 1, Op::default);
         }
-        let apart = self.separate_trees.contains_key(&(index as u32));
-        if apart || !self.ops[at].refill(self.text.source, self.text.content(), start) {
+        let apart = self.texts.separate_trees.contains_key(&(index as u32));
+        if apart || !self.ops[at].refill(self.texts.text.source, self.texts.text.content(), start) {
             let op = self.lower_tree(index, loops)?;
             self.ops[at] = op;
         }
@@ -138,7 +119,7 @@ impl Blocks {
     pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.ops.clear();
         self.index_mask = usize::MAX;
-        for index in 0..self.starts.len() {
+        for index in 0..self.texts.starts.len() {
             self.lower(index, loops);
         }
     }
@@ -147,7 +128,7 @@ impl Blocks {
     #[inline(never)]
     fn lower_tree(&mut self, index: OpIndex, loops: &Loops) -> Option<Op> {
         let tree = self.tree(index)?;
-        let small = lower_case(&tree, &self.text.bytes);
+        let small = lower_case(&tree, &self.texts.text.bytes);
         let mut op = self.lowering.lower_block(&tree, small);
         link_loop(&mut op, index, loops);
         Some(op)

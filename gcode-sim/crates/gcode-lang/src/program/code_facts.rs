@@ -334,3 +334,14 @@ pub(super) const PATTERN: CodeFacts = CodeFacts {
     coordinates: NotScaled,
     ..ONE_SHOT
 };
+/// G54.2 and G54.4.
+pub(super) const UNSTATED_OFFSET: CodeFacts = CodeFacts { coordinates: NotTransformed, ..MODAL };
+/// G47 of a Haas.
+pub(super) const ENGRAVING: CodeFacts = CodeFacts {
+    axis_words: PositionInAbsolute,
+    words: CodeWords { own: Letters::of(b"E"), angles: Letters::of(b"I"), ..CodeWords::NONE },
+    lookahead: Refused,
+    coordinates: NotScaled,
+    unsimulated: Unsimulated::Code(Letters::of(b"P")),
+    ..ONE_SHOT
+};

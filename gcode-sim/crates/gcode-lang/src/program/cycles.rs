@@ -50,6 +50,8 @@ pub struct Cycle {
     pub rapids_to_r_first: bool,
     /// True for G73 and G83, which require Q.
     pub needs_q: bool,
+    /// True for G84.2 and G84.3, which turn the spindle themselves.
+    pub is_rigid: bool,
     /// Steps in order.
     pub steps: &'static [CycleStep],
     /// Description in a few words.
@@ -62,7 +64,7 @@ impl Cycle {
         self.steps.iter().any(|step| matches!(step, Peck | HighSpeedPeck | Shift))
     }
 
-    /// Returns true for G84 and G74.
+    /// Returns true for G84 and G74, G84.2 and G84.3.
     pub fn taps(&self) -> bool {
         self.steps.iter().any(|step| matches!(step, RigidForward | RigidReverse))
     }
@@ -75,7 +77,7 @@ use CycleStep::{
 };
 
 const fn row(code: u32, steps: &'static [CycleStep], description: &'static str) -> Cycle {
-    Cycle { code, rapids_to_r_first: true, needs_q: false, steps, description }
+    Cycle { code, rapids_to_r_first: true, needs_q: false, is_rigid: false, steps, description }
 }
 
 /// G73: high-speed peck drilling cycle.
@@ -97,6 +99,11 @@ pub const PECK_DRILLING: Cycle =
 /// G84: tapping cycle.
 #[rustfmt::skip]
 pub const TAPPING: Cycle = row(840, &[RigidForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitialInG98], "tapping cycle");
+/// G84.2: rigid tapping, in the format of the series 15.
+#[rustfmt::skip]
+pub(super) const RIGID_TAPPING: Cycle = Cycle { code: 842, is_rigid: true, description: "rigid tapping cycle", ..TAPPING };
+#[rustfmt::skip]
+pub(super) const LEFT_HANDED_RIGID_TAPPING: Cycle = Cycle { code: 843, is_rigid: true, description: "left-handed rigid tapping cycle", ..LEFT_HANDED_TAPPING };
 pub(super) const BORING_FEED_RETRACT: Cycle =
     row(850, &[FeedToBottom, FeedToR, RapidToInitialInG98], "boring cycle, retract by feed");
 pub(super) const BORING_SPINDLE_STOP: Cycle = row(

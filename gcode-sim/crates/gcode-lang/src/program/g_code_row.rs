@@ -2,8 +2,8 @@
 use super::code_facts::CodeFacts;
 use super::cycles::Cycle;
 use super::modes::{
-    CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalGroup, Motion, Plane, Polar, ReturnTo,
-    Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
+    CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, ModalGroup, Motion, Plane,
+    Polar, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
 };
 use crate::control::Dialect;
 
@@ -48,6 +48,10 @@ pub enum Effect {
     Polar(Polar),
     /// Group 22: mirror image.
     Mirror(Mirror),
+    /// Group 23: G254 and G255 of a Haas.
+    DynamicOffset(DynamicOffset),
+    /// Group 23: G54.2 and G54.4, with P0 to end it.
+    UnstatedOffset(DynamicOffset),
     /// Group 00: effect in its own block only.
     OneShot(OneShot),
     /// Feed and lookahead control without an effect on the path.
@@ -85,6 +89,7 @@ impl Effect {
             Self::Rotation(_) => ModalGroup::Rotation,
             Self::Polar(_) => ModalGroup::Polar,
             Self::Mirror(_) => ModalGroup::Mirror,
+            Self::DynamicOffset(_) | Self::UnstatedOffset(_) => ModalGroup::DynamicOffset,
             Self::OneShot(_)
             | Self::NoEffect
             | Self::LookAhead
@@ -119,6 +124,8 @@ impl Effect {
             | Self::Rotation(_)
             | Self::Polar(_)
             | Self::Mirror(_)
+            | Self::DynamicOffset(_)
+            | Self::UnstatedOffset(_)
             | Self::OneShot(_) => true,
             // The simulator has one state of the spindle mode.
             Self::SpindleMode(_) => true,
@@ -153,8 +160,11 @@ pub enum OneShot {
     MachineCoordinateSystem,
     /// G92: set the work coordinate system.
     SetWorkCoordinateSystem,
-    /// G53.1: rotary axes point the tool along Z of the tilted plane.
-    ToolAxis,
+    /// G53.1, and G253 of a Haas: rotary axes point the tool along Z of the tilted plane.
+    ToolAxis {
+        /// G53.6: the tip stays on the part.
+        keeps_tip: bool,
+    },
     /// G39: corner arc in cutter compensation.
     CornerArc,
     /// G92.1: preset the work coordinate system.
@@ -165,6 +175,8 @@ pub enum OneShot {
     ToolOffset(i8),
     /// G12 and G13 of a Haas.
     CirclePocket(Motion),
+    /// G47 of a Haas.
+    Engraving,
     /// G70 and G71 of a Haas.
     BoltHoles(HolePattern),
 }

@@ -35,6 +35,10 @@ pub enum MCodeEffect {
     },
     /// M78 and M79 of a Haas beside G31: an alarm after the motion.
     SkipAlarm(SkipAlarm),
+    /// M96 of a Haas: jumps to the sequence number P if the input Q is 0.
+    JumpByInput,
+    /// M109 of a Haas: the operator's key into the variable P.
+    OperatorInput,
     /// M96: enables a macro interrupt, whose signal never comes in a run.
     InterruptOn,
     /// M97: disables the macro interrupt.
@@ -103,12 +107,12 @@ pub const M_CODES: &[MCodeRow] = &[
     haas(78, MCodeEffect::SkipAlarm(SkipAlarm::OnSignal), "alarm where the skip signal came"),
     haas(79, MCodeEffect::SkipAlarm(SkipAlarm::OnMiss), "alarm where no skip signal came"),
     fanuc(96, MCodeEffect::InterruptOn, "macro interrupt"),
-    haas(96, MCodeEffect::NotSimulated, "jump by an input"),
+    haas(96, MCodeEffect::JumpByInput, "jump by an input"),
     fanuc(97, MCodeEffect::InterruptOff, "macro interrupt off"),
     haas(97, MCodeEffect::NotSimulated, "local call without P"),
     row(98, MCodeEffect::Call, "subprogram call"),
     row(99, MCodeEffect::Call, "return"),
-    haas(109, MCodeEffect::NotSimulated, "input by the operator"),
+    haas(109, MCodeEffect::OperatorInput, "input by the operator"),
     fanuc(198, MCodeEffect::Call, "call of an external file"),
 ];
 

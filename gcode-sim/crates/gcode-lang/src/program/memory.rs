@@ -233,9 +233,16 @@ impl Memory {
 
     /// Returns the program that contains a span.
     pub fn program_at(&self, span: Span) -> Option<&Program> {
+        self.id_at(span).map(|id| self.get(id))
+    }
+
+    /// Returns the id of the program that contains a span.
+    pub fn id_at(&self, span: Span) -> Option<ProgramId> {
         // Programs are sorted by text, and by offset within it.
         let before = |p: &Program| (p.span.source, p.span.end) < (span.source, span.start);
-        let found = self.programs.get(self.programs.partition_point(before))?;
-        (found.span.source == span.source && found.span.start <= span.start).then_some(found)
+        let index = self.programs.partition_point(before);
+        let found = self.programs.get(index)?;
+        let is_in = found.span.source == span.source && found.span.start <= span.start;
+        is_in.then_some(ProgramId(index as u32))
     }
 }

@@ -4,6 +4,7 @@
 //! and its loops (`outline`). A block is lowered when execution reaches it (`blocks`), a block of numbers
 //! directly from its text (`numbers`), so a long file needs little more memory than its text.
 mod arguments;
+mod block_texts;
 mod blocks;
 mod bytecode;
 pub mod code_facts;
@@ -23,6 +24,7 @@ mod outline;
 mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
+pub use block_texts::BlockTexts;
 pub use bytecode::{
     AssignmentTarget, Bytecode, ComputedSource, Instruction, Operand, OperandSource, Operation, STACK, Slot,
     UncommonOp,
@@ -300,6 +302,11 @@ impl Program {
     /// Returns the number of blocks.
     pub fn block_count(&self) -> usize {
         self.blocks.len()
+    }
+
+    /// Returns the texts of the blocks.
+    pub fn block_texts(&self) -> &BlockTexts {
+        self.blocks.texts()
     }
 
     /// Calls `each` with every block in order: its index, and its operation if it consists of numbers alone.

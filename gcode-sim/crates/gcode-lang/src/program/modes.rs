@@ -37,6 +37,7 @@ groups! {
     InFeed = 20, "in-feed control";
     PolarInterpolation = 21, "polar coordinate interpolation";
     Mirror = 22, "mirror image";
+    DynamicOffset = 23, "dynamic work offset of a Haas";
 }
 
 impl ModalGroup {
@@ -121,7 +122,7 @@ group!(/// Group 06: inch or metric.
 group!(/// Group 07: cutter compensation.
     CutterSide { #[default] Off = 400, Left = 410, Right = 420, });
 group!(/// Group 08: tool length compensation.
-    Length { Plus = 430, Minus = 440, TipByAngles = 434, TipByVector = 435, #[default] Off = 490, });
+    Length { Plus = 430, Minus = 440, TipByAngles = 434, TipByVector = 435, TipOfHaas = 2340, #[default] Off = 490, });
 group!(/// Group 10: return level of canned cycles.
     ReturnTo { #[default] Initial = 980, R = 990, });
 group!(/// Group 11: scaling.
@@ -133,11 +134,13 @@ group!(/// Group 13: spindle speed mode.
 group!(/// Group 15: cutting mode.
     CuttingMode { ExactStop = 610, CornerOverride = 620, Tapping = 630, #[default] Cutting = 640, });
 group!(/// Group 16: coordinate system rotation.
-    Rotation { On = 680, #[default] Off = 690, Tilted = 682, TiltedFurther = 684, });
+    Rotation { On = 680, #[default] Off = 690, Tilted = 682, AlongTool = 683, TiltedFurther = 684, Feature = 2680, });
 group!(/// Group 17: polar coordinates.
     Polar { #[default] Off = 150, On = 160, });
 group!(/// Group 22: mirror image.
     Mirror { #[default] Off = 501, On = 511, });
+group!(/// Group 23: dynamic work offset of a Haas; G54.2 and G54.4 of a Fanuc, whose values nothing states.
+    DynamicOffset { #[default] Off = 2550, On = 2540, Fixture = 542, SettingError = 544, });
 
 /// Group 14: work coordinate system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,7 +2,8 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use super::blocks::{Blocks, ProgramText};
+use super::block_texts::ProgramText;
+use super::blocks::Blocks;
 use super::loops::{LoopRole, Loops};
 use super::lowering::Lowering;
 use super::{OpIndex, OpKind, Program, Statement};

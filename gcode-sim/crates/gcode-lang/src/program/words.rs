@@ -36,6 +36,7 @@ struct UncommonWords {
     /// Switch of `/n` inside the block, and the words left while it is on.
     form_if_skipped: Option<(u8, Words)>,
     punched_value: Option<u64>,
+    comment_length: Option<u32>,
     /// Code of the words, indexed by [`WordOperand::Code`].
     codes: Vec<Bytecode>,
     /// Axis numbers, indexed by [`LoweredWord::axis`].
@@ -132,6 +133,9 @@ impl CallOp {
     }
 }
 
+/// G47 × 10: on a Haas the comment of its block is engraved.
+const ENGRAVING: u32 = 470;
+
 impl Words {
     fn new(list: Vec<LoweredWord>, call: Option<CallOp>) -> Self {
         let uncommon =
@@ -149,6 +153,18 @@ impl Words {
 
     fn uncommon_mut(&mut self) -> &mut UncommonWords {
         self.uncommon.get_or_insert_default()
+    }
+
+    /// Keeps the number of characters in the comment of a block with G47.
+    pub(super) fn keep_text_length(&mut self, length: usize) {
+        if self.list.iter().any(|word| matches!(word.value, WordOperand::G(ENGRAVING, _))) {
+            self.uncommon_mut().comment_length = Some(length as u32);
+        }
+    }
+
+    /// Returns the number of characters in the comment of a block with G47, the text that a Haas engraves.
+    pub fn comment_length(&self) -> Option<u32> {
+        self.uncommon.as_ref()?.comment_length
     }
 
     /// Keeps the sixteen hexadecimal digits in the comment of the block.

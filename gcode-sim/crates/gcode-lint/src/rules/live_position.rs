@@ -10,9 +10,10 @@ use gcode_lang::control::Dialect;
 use gcode_lang::program::code_facts::Timing;
 use gcode_lang::program::{Statement, WordOperand, Words};
 
+use crate::calls::CallSite;
 use crate::literal;
 use crate::prelude::*;
-use crate::variables;
+use crate::variables::{self, VariableRead};
 
 pub(super) static RULE: Rule =
     Rule::new("live-position", Severity::Warning, "a position read while a move may be in progress", find);
@@ -32,8 +33,11 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (block, written) in unit.reached_blocks() {
         let Some(motion) = pending[block].flatten() else { continue };
-        let reads = variables::block_reads(written).into_iter();
-        let mut live = reads.filter(|read| LIVE_VARIABLES.iter().any(|range| range.contains(&read.number)));
+        let reads = variables::block_reads(written);
+        let is_live = |number: u32| {
+            LIVE_VARIABLES.iter().any(|range| range.contains(&number)) && !is_difference(&reads, number)
+        };
+        let mut live = reads.iter().filter(|read| is_live(read.number));
         // One finding per block: a probe reads several axes at once.
         let read = live.next().map(|read| (read.number, "read", Some(read.span)));
         let target = variables::assignment(written).and_then(|(target, _)| literal::variable(target));
@@ -54,6 +58,17 @@ fn limits_lookahead(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> bool 
         && (unit.role != Role::Main || unit.reached_words().any(|(_, words)| limits(words)))
 }
 
+/// Returns true for the position of an axis in machine and in work coordinates that a block reads together: their
+/// difference is an offset, which does not change in a move.
+fn is_difference(reads: &[VariableRead], number: u32) -> bool {
+    let other = match number {
+        5021..=5040 => number + 20,
+        5041..=5060 => number - 20,
+        _ => return false,
+    };
+    reads.iter().any(|read| read.number == other)
+}
+
 const HELP: &str = "insert a block before it that waits for the move: G53, M00 or G31";
 
 /// Returns, for each block, a move that may still be in progress before it; the outer `None` is an unreachable
@@ -61,7 +76,15 @@ const HELP: &str = "insert a block before it that waits for the move: G53, M00 o
 fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<Option<OpIndex>>> {
     let next = |block: OpIndex, before: &Option<OpIndex>| {
         let op = unit.program.ops().get(block);
-        let after = match op.and_then(|op| move_effect(context, op.kind())) {
+        let called = unit.call_in(block);
+        let after = match called {
+            Some(call) => call_effect(context, call),
+            None => op.and_then(|op| move_effect(context, op.kind())),
+        };
+        // A computed jump may lead from elsewhere.
+        let is_computed = unit.program.ops().len() < block;
+        let after = match after {
+            _ if is_computed => None,
             Some(true) => Some(block),
             Some(false) => None,
             None => *before,
@@ -70,6 +93,16 @@ fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Opti
         unit.flow.successors(block).map(|to| (to, after)).chain(skipped).collect()
     };
     unit.flow.propagate([(0, None)], |known, other| *known = known.or(other), next)
+}
+
+/// Returns the effect of a call: that of a program that only moves, or does neither; false if it is unknown.
+fn call_effect(context: &CheckContext<'_>, call: &CallSite) -> Option<bool> {
+    let Some(called) = context.called_unit(call).filter(|_| !call.is_modal) else { return Some(false) };
+    let called = &context.units[called];
+    let effects: Vec<bool> =
+        called.reached_ops().filter_map(|(_, op)| move_effect(context, op.kind())).collect();
+    let is_known = called.calls.is_empty() && effects.iter().all(|is_move| *is_move);
+    if is_known { effects.last().copied() } else { Some(false) }
 }
 
 /// Returns true if a block starts a move, false if it waits for all preceding moves.
@@ -130,6 +163,29 @@ mod tests {
             assert_eq!(lines(&RULE, &format!("O1\n#1=1\nG0 X10.\nG53\n{written}\nM30\n")), NOWHERE);
         }
         assert_eq!(lines(&RULE, "O1\nG0 X10.\n#100=#4001+#3011+#1100\n#3003=1\nM30\n"), NOWHERE);
+    }
+
+    #[test]
+    fn a_difference_of_coordinates_is_an_offset() {
+        assert_eq!(lines(&RULE, "O1\nG0 X10.\n#100=#5021-#5041\n#101=ABS[#5043-#5023]\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nG0 X10.\n#100=#5021-#5042\n#101=#5021-#5041+#5023\nM30\n"), [3, 4]);
+    }
+
+    #[test]
+    fn calls_and_computed_jumps_are_known_or_no_reason() {
+        let called = |block: &str, of_called: &str| {
+            lines(&RULE, &format!("O1\n{block}\n#100=#5041\nM30\nO2\n{of_called}\nM99\n"))
+        };
+        assert_eq!(called("M98 P2", "G0 X5."), [3]);
+        assert_eq!(called("G0 X5.\nM98 P2", "#1=5"), [4]);
+        assert_eq!(called("M98 P2", "G0 X5.\nM00"), NOWHERE);
+        assert_eq!(called("G65 P2 X5.", "#1=5"), NOWHERE, "X is an argument");
+        assert_eq!(called("G0 X5.\nG65 P3", "#1=5"), NOWHERE, "O3 is unknown");
+        assert_eq!(
+            lines(&RULE, "O1\nN1 #100=#5041\nG0 X5.\nGOTO#500\nM30\n"),
+            NOWHERE,
+            "#500 may be another"
+        );
     }
 
     #[test]

@@ -123,7 +123,7 @@ fn is_optional(called: &ProgramUnit<'_>, local: u32) -> bool {
 }
 
 /// Returns the locals that are factors or divisors by themselves in a block, with true for a divisor.
-fn factor_reads(block: &Block) -> Vec<(u32, bool)> {
+pub(super) fn factor_reads(block: &Block) -> Vec<(u32, bool)> {
     let mut found = Vec::new();
     for (expr, _) in block_expressions(block) {
         collect_factors(expr, &mut found);

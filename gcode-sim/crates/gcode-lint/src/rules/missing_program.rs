@@ -1,8 +1,10 @@
 //! Rule: a call of a program that is neither in the file nor in the folders, PS0076, or PS0310 by name.
+//!
+//! A macro that a control protects is probably on the control: its absence here is a warning.
 use gcode_lang::alarm::kinds::{PS0076, PS0310};
+use gcode_lang::alarm::missing_macro_help;
 
 use crate::calls::CalledProgramName;
-use crate::context::MACROS;
 use crate::prelude::*;
 
 pub(super) static RULE: Rule =
@@ -20,36 +22,69 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         }
         reported.push(&call.target);
         let label = call.target.label();
+        let mut severity = RULE.kind.severity;
         let (message, help) = match call.target {
             CalledProgramName::Computed => continue,
             // M98 Q alone starts in this program.
             CalledProgramName::Missing if call.start.is_some() => continue,
-            CalledProgramName::Missing => {
-                (format!("{PS0076}: a call without a program number"), "write the program number after P")
-            }
-            CalledProgramName::Number(number) => (
-                format!("{PS0076}: program {label} is not found"),
-                match MACROS.contains(&number) {
-                    true => {
-                        "a macro of the machine or the probe: save it from the control, and give its folder with --lib"
-                    }
-                    false => "give the folder that holds it with --lib",
-                },
+            CalledProgramName::Missing => (
+                format!("{PS0076}: a call without a program number"),
+                "write the program number after P".to_owned(),
             ),
+            CalledProgramName::Number(number) => {
+                let of_macro = missing_macro_help(number);
+                if of_macro.is_some() {
+                    severity = Severity::Warning;
+                }
+                let help = of_macro.unwrap_or_else(|| "give the folder that holds it with --lib".to_owned());
+                (format!("{PS0076}: program {label} is not found{}", count_text(unit, &call.target)), help)
+            }
             CalledProgramName::Name(_) => (
                 format!("{PS0310}: program {label} is not found"),
-                "give the folder that holds it with --lib, or put it into the same file",
+                "give the folder that holds it with --lib, or put it into the same file".to_owned(),
             ),
         };
-        found.push(unit.finding(&RULE.kind, call.block, message).with_span(call.span).help(help));
+        let finding = unit.finding(&RULE.kind, call.block, message).with_span(call.span);
+        found.push(finding.with_severity(severity).help(help));
     }
     found
 }
 
+/// Returns the number of calls of a program, if there are several.
+fn count_text(unit: &ProgramUnit<'_>, target: &CalledProgramName) -> String {
+    let calls =
+        unit.calls.iter().filter(|call| unit.is_reached[call.block] && call.target == *target).count();
+    if calls == 1 { String::new() } else { format!(" ({calls} calls)") }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::testing::lines;
+    use super::super::testing::{lines, messages};
     use super::RULE;
+    use crate::check;
+    use gcode_lang::control::Settings;
+    use gcode_lang::diag::Severity;
+    use gcode_lang::program::NoLibrary;
+
+    #[test]
+    fn a_macro_of_the_control_is_a_warning() {
+        let severity = |number: u32| {
+            let text = format!("O1\nG65 P{number} X1.\nM30\n");
+            check("O1.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary).findings[0].severity
+        };
+        for (number, expected) in [
+            (7999, Severity::Error),
+            (8000, Severity::Warning),
+            (9810, Severity::Warning),
+            (9999, Severity::Warning),
+            (10000, Severity::Error),
+        ] {
+            assert_eq!(severity(number), expected, "O{number}");
+        }
+        let found = messages(&RULE, "O1\nG65 P9810 X1.\nG65 P9811 Z1.\nG65 P9810 X5.\nM30\n");
+        let expected = ["PS0076: program O9810 is not found (2 calls)", "PS0076: program O9811 is not found"];
+        assert_eq!(found, expected);
+    }
 
     #[test]
     fn a_missing_program_is_reported_once() {

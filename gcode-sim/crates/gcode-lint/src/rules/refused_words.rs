@@ -4,7 +4,7 @@
 use gcode_control::static_plan::StaticPlanner;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Motion;
-use gcode_lang::program::{Words, m_codes};
+use gcode_lang::program::{LoweredWord, Words, m_codes};
 
 use crate::literal;
 use crate::modes::modes_before;
@@ -29,7 +29,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         }
         let Some(modes) = modes_before(context, unit)[block] else { continue };
         let alarm = planner.certain_alarm(words, unit.op(block).span, modes.in_force());
-        if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node)) {
+        if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node, words)) {
             let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
             found.push(if has_builder_code(context, words) {
                 context.unless_optional(finding)
@@ -42,8 +42,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 }
 
 /// Returns true for the alarms that `stray-word` reports.
-fn has_own_rule(alarm: &Alarm) -> bool {
-    matches!(alarm, Alarm::ImproperAddress { letter: 'A'..='C' | 'E' | 'U'..='Z' })
+fn has_own_rule(alarm: &Alarm, words: &Words) -> bool {
+    let is_stray = |word: &LoweredWord| word.comma && !matches!(word.letter, b'R' | b'C');
+    match alarm {
+        Alarm::ImproperAddress { letter: 'A'..='C' | 'E' | 'U'..='Z' } => true,
+        Alarm::CornerWords => words.list.iter().any(is_stray),
+        _ => false,
+    }
 }
 
 /// Returns true if a block has an M code of the machine builder, which may call a macro with the words as arguments.
@@ -93,6 +98,10 @@ mod tests {
             ("M98 P2 D2.0", "PS0007"),
             ("G08 P2", "PS0109"),
             ("S123456 M3", "PS0003"),
+            ("G51 X0 Y0 P0", "PS0142"),
+            ("G10 P1 R50.", "PS1144"),
+            ("G65 P2 I1. I2. I3. I4. I5. I6. I7. I8. I9. I10. I11.", "PS1095"),
+            ("G01 X20. ,R4. ,C4. F300.", "PS0053"),
         ] {
             let found = messages(&RULE, &format!("O1\n{block}\nM30\nO2\nM99\n"));
             assert!(found.len() == 1 && found[0].starts_with(alarm), "{block}: {found:?}");
@@ -123,6 +132,8 @@ mod tests {
             "O1\nG66 P2 A1.\nX5. L3\nG67\nM30\nO2\nM99\n",
             "O1\nM98 P2 L3\nG65 P2 L3 D5.\nM30\nO2\nM99\n",
             "O1\nM88 P1.5 Q2\nM30\n",
+            "O1\nG51 X0 Y0 P#1\nG50\nG10 L#1 P1 R50.\nG10 L10 P#1 R50.\nM30\n",
+            "O1\nG01 X20. ,R4. F300.\nY20. ,C#1\nX0\nM30\n",
             "O1\nG68 X0 Y0 R45.\nG69\nG51 X0 Y0 P2000\nG50\nG54.1 P5\nM30\n",
         ] {
             assert_eq!(messages(&RULE, text), [""; 0], "{text}");

@@ -20,7 +20,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         // Comments and numbers alone have no effect, nor has an end or a jump after an end or an alarm; an
         // unreachable alarm has its own rule.
         let missed: Vec<_> = (block..end).filter(|b| !is_harmless(unit, *b)).collect();
-        if let (Some(first), Some(last)) = (missed.first(), missed.last()) {
+        if let (Some(first), Some(last)) = (missed.first(), missed.last())
+            && !is_started_by_number(unit, block, *first)
+        {
             let line = |block: usize| context.memory.sources().line_column(ops[block].span).line;
             let message = if first == last {
                 "this block is never reached".to_owned()
@@ -33,6 +35,18 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         block = end;
     }
     found
+}
+
+/// Returns true if a number alone on its line precedes the first of some blocks after the end of a program: an operator
+/// searches the number and starts there.
+fn is_started_by_number(unit: &ProgramUnit<'_>, block: OpIndex, first: OpIndex) -> bool {
+    let is_end = |before: OpIndex| {
+        let is_return = matches!(unit.op(before).kind(), OpKind::Words(words) if words.call().is_some());
+        unit.flow.block_successors[before].is_exit && !is_return && !raises_alarm(unit.op(before).kind())
+    };
+    let is_number =
+        |block: OpIndex| unit.op(block).number.is_some() && matches!(unit.op(block).kind(), OpKind::Empty);
+    block.checked_sub(1).is_some_and(is_end) && (block..first).any(is_number)
 }
 
 /// Returns true for a block whose loss is no fault.
@@ -58,6 +72,9 @@ mod tests {
         assert_eq!(lines(&RULE, "O1\nG0 X1.\nM30\nG0 X2.\nM30\n"), [4]);
         assert_eq!(lines(&RULE, "O1\n#1=1\nIF[#1 EQ 2]GOTO 9\nM30\n(REMARK)\nN9 G0 X2.\nM30\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\n#1=1\nGOTO#1\nN1 G0\nM30\nN9 G0 X2.\nM30\n"), NOWHERE, "#1 may be 9");
+        assert_eq!(lines(&RULE, "O1\nG0 X1.\nM02\n\nN6 (FOR T6)\nG0 X2.\nM02\n"), NOWHERE, "N6 is searched");
+        assert_eq!(lines(&RULE, "O1\nG0 X1.\nM02\nN6 G0 X2.\nM02\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\nG0 X1.\nGOTO 7\nN6\nG0 X2.\nN7 M02\n"), [5]);
         assert_eq!(lines(&RULE, "O1\n/M30\nG0 X2.\nM30\n"), NOWHERE, "the switch may be on");
     }
 

@@ -1,6 +1,7 @@
 //! Rule: a local variable that is read before it is set. Its word is ignored, or it counts as 0.
 use std::collections::BTreeMap;
 
+use gcode_lang::alarm::kinds::PS0112;
 use gcode_lang::program::argument_letter;
 use gcode_lang::source::Span;
 
@@ -9,13 +10,17 @@ use crate::prelude::*;
 use crate::unset_reads::{entry_locals, unset_reads};
 use crate::vacancy::{Locals, states};
 
+use super::missing_argument::factor_reads;
+
 pub(super) static RULE: Rule =
-    Rule::new("unset-variable", Severity::Warning, "a local variable that is read before it is set", find);
+    Rule::new("unset-variable", Severity::Error, "a local variable that is read before it is set", find);
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut unset: BTreeMap<(OpIndex, u32), (Span, ValueUse)> = BTreeMap::new();
     match unit.role {
         Role::Resident => {}
+        // Without an end it may be a part of a program, or a macro.
+        Role::Main if !unit.flow.block_successors.iter().any(|block| block.is_exit) => {}
         Role::Main => {
             let states = states(unit, Locals::UNSET);
             unset.extend(unset_reads(unit, &states));
@@ -42,9 +47,16 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             ValueUse::VacancyTest | ValueUse::Comparison => "a vacant variable is compared",
             ValueUse::Computed | ValueUse::Target => "it counts as 0",
         };
+        let is_divisor = factor_reads(&unit.blocks[block]).contains(&(local, true));
+        let (severity, so) = if is_divisor {
+            (Severity::Error, PS0112.to_string())
+        } else {
+            (Severity::Warning, so.to_owned())
+        };
         let message = format!("#{local} is read but never set: {so}");
         let help = format!("set #{local} before it is read, or correct its number");
-        found.push(unit.finding(&RULE.kind, block, message).with_span(span).help(help));
+        let finding = unit.finding(&RULE.kind, block, message).with_severity(severity);
+        found.push(finding.with_span(span).help(help));
     }
     found
 }
@@ -58,9 +70,16 @@ mod tests {
     fn an_unset_variable_is_reported() {
         assert_eq!(lines(&RULE, "O1\n#1=2.\nG0 X#1 Y#2\n#3=#4*2\n#5=#6\nM30\n"), [3, 4, 5]);
         assert_eq!(lines(&RULE, "O1\nIF[#9 EQ #0]THEN #10=#9*2\nM30\n"), [2]);
+        assert_eq!(lines(&RULE, "O1\n#1=#2+1\n#3=#3*2\n#4=1-#4\n#5=#5+#5\nM30\n"), [2, 3, 4, 5]);
         assert_eq!(lines(&RULE, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
         let found = messages(&RULE, "O1\nG0 Y#2\nM30\n");
         assert_eq!(found, ["#2 is read but never set: its word is ignored"]);
+    }
+
+    #[test]
+    fn a_vacant_divisor_is_the_alarm() {
+        let found = messages(&RULE, "O1\n#1=360.\n#2=#1/#3\n#4=#1*#5\nM30\n");
+        assert_eq!(found, ["#3 is read but never set: PS0112", "#5 is read but never set: it counts as 0"]);
     }
 
     #[test]
@@ -77,6 +96,8 @@ mod tests {
             "O1\nIF[#500 EQ 1]GOTO 5\n#1=2.\nN5 X#1\nM30\n",
             "O1\nIF[#9 NE #0]THEN #10=#9*2\nIF[[#9 NE #0] AND [#9 LT 5]]GOTO 5\nN5 M30\n",
             "O1\nIF[[#9 EQ #0] OR [#9 LT 5]]GOTO 5\nN5 M30\n",
+            "O1\n#33=#33+1\n#32=#32-#500*2.\n#31=2.*#500+#31\nM30\n",
+            "O1\nX#2\nIF[#1 LT 0.37]GOTO 9\nN9\n",
         ] {
             assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
         }

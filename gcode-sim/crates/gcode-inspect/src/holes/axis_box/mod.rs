@@ -15,7 +15,7 @@ use std::collections::BinaryHeap;
 use nalgebra::{Point3, Vector3};
 
 pub(super) use self::tool::directions_across;
-use crate::machine::{Machine, Pose, Setup, ToolCylinder};
+use crate::machine::{Machine, Pose, Setup, ToolPart};
 use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
 use gcode_lang::units::Deg;
 use gcode_part::NearestPoint;
@@ -69,7 +69,7 @@ pub(super) struct AxisBox<'m> {
     /// Axes that move together, in the order of the control.
     groups: Vec<Vec<AxisIndex>>,
     /// Part of the tool that is followed; `None` for its tip.
-    tool: Option<ToolCylinder>,
+    tool: Option<ToolPart>,
 }
 
 /// A point of the tool in metal.
@@ -225,9 +225,10 @@ impl<'m> AxisBox<'m> {
         let motion = self.groups.len();
         root.middle[..motion].fill(0.5);
         root.half[..motion].fill(0.5);
-        if let Some(ToolCylinder { from, to, radius, .. }) = self.tool {
-            root.middle[motion] = (from + to) / 2.0;
-            root.half[motion..motion + 3].copy_from_slice(&[(to - from) / 2.0, radius, radius]);
+        if let Some(part) = self.tool {
+            let (half, radius) = ((part.to - part.from) / 2.0, part.radius());
+            root.middle[motion] = part.from + half;
+            root.half[motion..motion + 3].copy_from_slice(&[half, radius, radius]);
         }
         root
     }
@@ -317,8 +318,8 @@ impl<'m> AxisBox<'m> {
         best: &mut Option<DeepPoint>,
     ) -> BoundedCell {
         let (spread, middle) = (self.spread(&cell), self.point(&cell.middle));
-        let [_, u, v] = self.tool.map_or([0.0; 3], |_| self.of_tool(&cell.middle));
-        let is_beside = self.tool.is_some_and(|tool| tool.radius < libm::hypot(u, v));
+        let [height, u, v] = self.tool.map_or([0.0; 3], |_| self.of_tool(&cell.middle));
+        let is_beside = self.tool.is_some_and(|tool| tool.taper.at(height) < libm::hypot(u, v));
         let mut bound = f64::NEG_INFINITY;
         let are_all = bodies(&middle, &spread.reach(), &mut |nearest| {
             let depth = -nearest.distance;
@@ -349,7 +350,7 @@ impl<'m> AxisBox<'m> {
         let mut centres = self.machine.table.rotation_centres();
         let first = centres.next();
         let apart = centres.map(|centre| first.map_or(0.0, |first| (centre - first).norm())).sum::<f64>();
-        let of_tool = self.tool.map_or(0.0, |tool| libm::hypot(tool.to, tool.radius));
+        let of_tool = self.tool.map_or(0.0, |tool| libm::hypot(tool.to, tool.radius()));
         self.machine.max_lever(at, self.setup) + 2.0 * apart + of_tool
     }
 

@@ -75,7 +75,7 @@ fn the_side_of_a_tool_is_searched() {
     };
     let side = |from: [f64; 4], to: [f64; 4]| {
         let line = AxisBox::line(&machine, &setup, &at(from), &at(to));
-        let tool = ToolCylinder { from: 3.0, to: 40.0, radius: 5.0, is_cutter: true };
+        let tool = ToolPart::flutes(3.0, 40.0, 5.0);
         let is_clear = line.is_clear_by_planes(&[tool], |p| block.nearest(p));
         let deepest = line.with_tool(tool).deepest(&bodies, 0.01, &mut SearchBudget::default());
         (is_clear, found(deepest).map(|point| point.depth))

@@ -2,12 +2,12 @@
 use nalgebra::{Point3, Vector3};
 
 use super::{AxisBox, Bodies, Cell, MAX_PARAMETERS};
-use crate::machine::ToolCylinder;
+use crate::machine::ToolPart;
 use gcode_part::NearestPoint;
 
 impl AxisBox<'_> {
     /// Returns the same positions with a part of the tool instead of its tip.
-    pub(in crate::holes) fn with_tool(&self, tool: ToolCylinder) -> Self {
+    pub(in crate::holes) fn with_tool(&self, tool: ToolPart) -> Self {
         Self { tool: Some(tool), ..self.clone() }
     }
 
@@ -20,12 +20,13 @@ impl AxisBox<'_> {
     /// Returns false for a cell beside the tool.
     pub(super) fn is_in_tool(&self, cell: &Cell) -> bool {
         let Some(tool) = self.tool else { return true };
-        let ([_, u, v], [_, half_u, half_v]) = (self.of_tool(&cell.middle), self.of_tool(&cell.half));
-        libm::hypot((u.abs() - half_u).max(0.0), (v.abs() - half_v).max(0.0)) <= tool.radius
+        let ([height, u, v], [half, half_u, half_v]) = (self.of_tool(&cell.middle), self.of_tool(&cell.half));
+        let radius = tool.taper.at(height - half).max(tool.taper.at(height + half));
+        libm::hypot((u.abs() - half_u).max(0.0), (v.abs() - half_v).max(0.0)) <= radius
     }
 
     /// Returns the parameters of the points on the tool's side that face the nearest body, at the same height and at the
-    /// end of the cylinder there; none for the tip.
+    /// ends of the part; none for the tip.
     pub(super) fn deeper_sides(
         &self,
         at: &[f64; MAX_PARAMETERS],
@@ -49,20 +50,22 @@ impl AxisBox<'_> {
         let normal = frame.rotation * body.normal.into_inner();
         let [across, beside] = directions_across(&axis).map(|direction| normal.dot(&direction));
         let length = libm::hypot(across, beside);
-        if 1e-9 < length {
-            side[motion + 1] = -tool.radius * across / length;
-            side[motion + 2] = -tool.radius * beside / length;
-        }
-        let mut ends = [side; 3];
-        (ends[1][motion], ends[2][motion]) = (tool.from, tool.to);
-        ends.into()
+        let side_at = |height: f64| {
+            side[motion] = height;
+            if 1e-9 < length {
+                side[motion + 1] = -tool.taper.at(height) * across / length;
+                side[motion + 2] = -tool.taper.at(height) * beside / length;
+            }
+            side
+        };
+        [at[motion], tool.from, tool.to].map(side_at).into()
     }
 
     /// Returns true if a tangent plane at an end of the motion has every point of the tool on its outer side; false if that
     /// is not certain.
     pub(in crate::holes) fn is_clear_by_planes(
         &self,
-        parts: &[ToolCylinder],
+        parts: &[ToolPart],
         nearest: impl Fn(&Point3<f64>) -> NearestPoint,
     ) -> bool {
         let (Some(corners), Some(axis)) =
@@ -76,8 +79,8 @@ impl AxisBox<'_> {
             let most = libm::sqrt((1.0 - along * along).max(0.0));
             let travel = corners.iter().map(|corner| (corner - p).dot(&normal)).fold(0.0, f64::min);
             parts.iter().all(|part| {
-                let end = (along * part.from).min(along * part.to);
-                0.0 <= distance + travel + end - part.radius * most
+                let end = |height: f64| along * height - part.taper.at(height) * most;
+                0.0 <= distance + travel + end(part.from).min(end(part.to))
             })
         };
         corners.first().into_iter().chain(corners.last()).any(is_outside)

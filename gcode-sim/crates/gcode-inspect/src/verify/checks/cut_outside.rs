@@ -1,6 +1,7 @@
 //! Passes of a hole besides the finishing one lie inside its nominal outline: no later pass restores material.
 use super::*;
 use crate::findings::HOLE_CUT_ASIDE;
+use crate::machine::ToolKind;
 use crate::verify::hole_cuts::{Cut, side};
 use crate::verify::outline::Outline;
 
@@ -22,7 +23,9 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let threads = threads::stated_threads(nominal);
         let thread_bottom = threads.iter().map(|(.., bottom)| *bottom).reduce(f64::max);
         let core = Outline::of_core(nominal, &threads, comparison.tolerances.depth);
-        for (index, cut) in Cut::all(nominal, drilled, machine).iter().enumerate() {
+        let cuts = Cut::all(nominal, drilled, machine);
+        let reamed = reamed_cut(&cuts, drilled.finishing_index);
+        for (index, cut) in cuts.iter().enumerate() {
             if index == drilled.finishing_index {
                 continue;
             }
@@ -33,7 +36,9 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             });
             let outline = if is_threaded { &core } else { &outline };
             let margin = outline.as_ref().zip(cut.shape()).map(|(outline, shape)| outline.margin(&shape));
-            let spare = margin.filter(|margin| margin.is_finite()).map_or(0.0, |margin| margin.max(0.0));
+            let is_reamed = reamed == Some(index);
+            let spare = margin.filter(|margin| margin.is_finite() && !is_reamed);
+            let spare = spare.map_or(0.0, |margin| margin.max(0.0));
             let allowed = spare + comparison.tolerances.position / 2.0;
             if !exceeds(offset, allowed) {
                 continue;
@@ -44,6 +49,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                 comparison.id(pair.nominal)
             );
             let help = match cut.pass.diameter {
+                _ if is_reamed => "correct the point of that pass: a reamer follows the hole that it finds",
                 None => {
                     "correct the point of that pass, or give the tool diameters in the machine file: a smaller tool may \
                      lie inside the finished hole"
@@ -55,6 +61,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             findings.add(Subject::Nominal(pair.nominal), finding.help(help));
         }
     }
+}
+
+/// Returns the pass that makes the hole for a reamer that finishes it: the last one before that goes half as deep.
+fn reamed_cut(cuts: &[Cut<'_>], finishing_index: usize) -> Option<usize> {
+    let reamer = cuts.get(finishing_index).filter(|cut| cut.kind == Some(ToolKind::Reamer))?;
+    let is_spot = |cut: &Cut<'_>| matches!(cut.kind, Some(ToolKind::SpotDrill | ToolKind::Countersink));
+    (0..finishing_index).rfind(|index| reamer.tip / 2.0 <= cuts[*index].tip && !is_spot(&cuts[*index]))
 }
 
 /// Returns the largest distance of a pass from the nominal axis over its own depth, mm; `None` for a pass across it.

@@ -29,6 +29,12 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     for check in [reversed, speed, feed, feed_per_turn, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
+            let finding = match owner_of_length(cut, conditions).filter(|_| finding.kind == &LENGTH_OFFSET) {
+                Some(owner) => finding
+                    .with_severity(Severity::Error)
+                    .note(format!("T{owner} cuts with it too: two tools have two lengths")),
+                None => finding,
+            };
             let index = *known.entry(finding.message.clone()).or_insert(reported.len());
             if index == reported.len() {
                 reported.push((finding.with_backtrace(cut.backtrace.clone()), 0));
@@ -40,6 +46,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let note = (count != 1).then(|| format!("in {count} cuts; this is the first"));
         findings.add(Subject::Motion, note.into_iter().fold(finding, Diagnostic::note));
     }
+}
+
+/// Returns the tool of the same number as the length offset of a cut, if it cuts with that offset too and is another one.
+fn owner_of_length(cut: &CutConditions, all: &[CutConditions]) -> Option<u32> {
+    let LengthCompensation::Plus(h) = cut.compensation else { return None };
+    let is_owner = |other: &CutConditions| other.tool == Some(h) && other.compensation == cut.compensation;
+    (cut.tool.is_some_and(|tool| tool != h) && all.iter().any(is_owner)).then_some(h)
 }
 
 /// Reports a tool that turns against its hand. A thread has the hand of the spindle, which another check compares with the

@@ -4,10 +4,7 @@ use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH,
 use crate::machine::{PointShape, ToolKind};
 use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
-use gcode_part::{Feature, FeatureKind, POINT_LENGTH};
-
-/// Largest width by which a spot drill may break the edge of a hole, mm in diameter.
-const MAX_EDGE_BREAK: f64 = 1.0;
+use gcode_part::{Feature, FeatureKind, MAX_EDGE_BREAK, POINT_LENGTH};
 
 /// What the end of a tool leaves open, by the tool's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -326,7 +323,7 @@ impl Judgement<'_> {
         let cones = self.nominal.features.iter().filter(|feature| feature.kind == FeatureKind::Countersink);
         let slack = self.comparison.tolerances.depth;
         let widths = cones.filter_map(|cone| Some(2.0 * slack * Deg(cone.angle? / 2.0).tan()));
-        widths.fold(MAX_EDGE_BREAK, f64::min)
+        widths.fold(2.0 * MAX_EDGE_BREAK, f64::min)
     }
 
     /// Reports a cut that makes no feature and goes deeper than `bottom`, the deepest tip that makes one.

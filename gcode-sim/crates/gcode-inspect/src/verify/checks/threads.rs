@@ -16,6 +16,9 @@ const PITCH_TOLERANCE: f64 = 0.005;
 /// Largest deviation of a milled turn from the pitch, mm.
 const LEAD_TOLERANCE: f64 = 1e-3;
 
+/// Largest distance along the axis between two passes of one thread, mm.
+const MAX_STEP: f64 = 0.05;
+
 /// Turns that a comb mill makes at most: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
 
@@ -37,6 +40,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
             WideCut::SpotDrill(tool) => judged.gaps.push(ShapeGap::SpotDrill(tool)),
         }
     }
+    findings.extend(out_of_step(id, &judged.near));
     let made_by = assign(&nominal.features, &judged.near, judged.comparison.tolerances);
     for (feature, cut) in nominal.features.iter().zip(made_by).filter(|(one, _)| one.kind == FeatureKind::Tap)
     {
@@ -213,6 +217,29 @@ fn milled_pitch(id: &str, nominal: f64, cut: &Cut<'_>, helix: &Helix) -> Option<
     );
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help(format!("command a turn of {nominal} mm, or correct the pitch")))
+}
+
+/// Reports passes along a thread that cut beside each other.
+fn out_of_step(id: &str, cuts: &[Cut<'_>]) -> Option<Diagnostic> {
+    let helices = || cuts.iter().filter_map(|cut| Some((cut, cut.thread?)));
+    let (first, one) = helices().next()?;
+    helices().skip(1).find_map(|(cut, helix)| {
+        let lead = one.lead.abs();
+        let off = (helix.phase - one.phase).rem_euclid(lead);
+        let off = off.min(lead - off);
+        // Another lead has its own finding.
+        let is_alike = !exceeds((helix.lead - one.lead).abs(), LEAD_TOLERANCE);
+        if !is_alike || !exceeds(off, MAX_STEP) {
+            return None;
+        }
+        let message = format!(
+            "hole {id}: {} follows the thread {off:.3} mm beside the pass of {}, limit {MAX_STEP}",
+            cut.name(),
+            first.name()
+        );
+        let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
+        Some(finding.help("begin each pass at the same angle, or higher by its part of the pitch"))
+    })
 }
 
 /// Judgement of a milled thread that begins below the entry.

@@ -110,6 +110,9 @@ impl Lowering {
             }
             (None, false) => {
                 let mut lowered = self.lower_words(&block.items, &skips)?;
+                if let Some(comment) = block.comments.first() {
+                    lowered.keep_text_length(comment.text.len());
+                }
                 if let Some(value) = block.comments.first().and_then(|comment| sixteen_digits(&comment.text))
                 {
                     lowered.set_punched_value(value);

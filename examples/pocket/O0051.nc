@@ -1,0 +1,5 @@
+%
+O0051 (SETS A VARIABLE)
+#100=1
+M30
+%

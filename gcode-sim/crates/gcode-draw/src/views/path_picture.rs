@@ -1,0 +1,391 @@
+//! The picture of a tool path: one or several views with frames, the holes on top, and a legend.
+use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale, stock_outline};
+use super::path_view::{Arrangement, ColorBy, PathPlace, PathView, RunKind, StandardView};
+use super::top::{TopView, hole_mark};
+use super::view_frames::{Frames, PlacedView, ViewBox};
+use crate::measure::plain;
+use crate::picture::{LegendItem, Picture, Sample};
+use crate::scene::{Mark, Pen, Point, Scene, Shape, Sign, Stroke, Style, Tint};
+use crate::side::Projection;
+use nalgebra::Vector3;
+
+/// Largest number of tools or programs in the legend.
+const MAX_CLASSES: usize = 8;
+/// Largest number of places with a symbol.
+const MAX_PLACES: usize = 40;
+/// Distance at which places share one symbol, in parts of the extent of the views.
+const SAME_PLACE: f64 = 0.012;
+/// Cosine of the largest angle between a hole and the line of sight at which the hole is drawn: 60°.
+const FACING: f64 = 0.5;
+
+/// Builds the picture of a tool path with the holes of a top view.
+pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) -> Picture {
+    let frames = Frames::of(ViewBox::of(arrangement.top, view, path), arrangement);
+    let (letter, sign) = arrangement.top.axis_of_coordinate(2).unwrap_or(('z', 1.0));
+    let axis = ['x', 'y', 'z'].iter().position(|name| *name == letter).unwrap_or(2);
+    let height_name = if sign < 0.0 { format!("−{letter}") } else { letter.to_string() };
+    let tools = tool_order(path);
+    let shades = ShadeScale::of(path, arrangement.color_by, |point| point[axis] * sign);
+    let drawer = PathDrawer {
+        path,
+        color_by: arrangement.color_by,
+        shades,
+        height: (axis, sign),
+        tool_order: &tools,
+        extent: frames.extent,
+    };
+    let mut notes = path.notes.clone();
+    let mut scene = Scene { zone: view.tolerance, ..Scene::default() };
+    let feed_points = path.runs.iter().filter(|run| run.kind == RunKind::Feed).map(|run| run.points.len());
+    let is_swept_drawn = feed_points.sum::<usize>() <= MAX_SWEPT_POINTS;
+    if !is_swept_drawn && path.tools.iter().any(|tool| tool.diameter.is_some()) {
+        notes.push("swept width not drawn: too many moves".to_owned());
+    }
+    let (mut is_cut, mut labelled) = (false, vec![false; view.holes.len()]);
+    for (index, placed) in frames.views.iter().enumerate() {
+        if placed.kind == StandardView::Top && is_swept_drawn {
+            scene.strokes.extend(drawer.swept(placed));
+        }
+        if placed.kind == StandardView::Top {
+            let outlines = view.outlines().map(|shape| shape.map(|point| placed.moved(point)));
+            scene.strokes.extend(outlines.map(|shape| Stroke::new(Pen::Outline, shape)));
+        }
+        scene.strokes.extend(path.stock.iter().flat_map(|stock| stock_outline(stock, placed)));
+        scene.strokes.extend(frames.strokes(placed));
+        let (rapids, cut) = drawer.rapids(placed);
+        is_cut |= cut;
+        scene.strokes.extend(rapids);
+        scene.strokes.extend(drawer.feeds(placed));
+        scene.strokes.extend(zeros(path, placed, index == 0));
+        scene.strokes.extend(places(path, placed, frames.extent, index == 0));
+        scene.marks.extend(marks(view, placed, &mut labelled));
+    }
+    if is_cut {
+        notes.push("rapids beyond the frame are cut off".to_owned());
+    }
+    if MAX_PLACES < path.places.len() {
+        notes.push(format!("the first {MAX_PLACES} of {} stops are marked", path.places.len()));
+    }
+    let legend = legend(view, &drawer, &scene, arrangement, &height_name);
+    let mut title = view.title(title_of(arrangement), view.tolerance, None);
+    title.lines.extend(notes);
+    Picture { title, scene, legend, ..Picture::default() }
+}
+
+/// Returns the names of the views, and the direction of a single one.
+fn title_of(arrangement: &Arrangement) -> String {
+    match arrangement.views[..] {
+        [view] => {
+            let side = view.side(arrangement.top).name();
+            format!(
+                "{} view, seen from {}{side}",
+                view.name(),
+                if view == StandardView::Isometric { "the " } else { "" }
+            )
+        }
+        _ => {
+            let names: Vec<String> =
+                arrangement.views.iter().map(|view| view.name().to_lowercase()).collect();
+            let top = arrangement.top.name();
+            format!("Views: {}; top seen from {top}", names.join(", "))
+        }
+    }
+}
+
+/// Numbers the tools in the order of their first feeds.
+fn tool_order(path: &PathView) -> Vec<Option<usize>> {
+    let mut order: Vec<Option<usize>> = vec![None; path.tools.len()];
+    let mut next = 0;
+    for run in path.runs.iter().filter(|run| run.kind == RunKind::Feed) {
+        if let Some(place @ None) = order.get_mut(run.tool) {
+            *place = Some(next);
+            next += 1;
+        }
+    }
+    order
+}
+
+fn zeros(path: &PathView, view: &PlacedView, is_named: bool) -> Vec<Stroke> {
+    let seen = path.zeros.iter().filter(|(_, at)| is_inside(view, view.side.project(*at)));
+    let stroke = |(name, at): &(String, [f64; 3])| Stroke {
+        caption: is_named.then(|| name.clone()),
+        ..Stroke::new(Pen::Edge, Shape::Zero(view.project(*at)))
+    };
+    seen.map(stroke).collect()
+}
+
+fn is_inside(view: &PlacedView, at: Point) -> bool {
+    let [low, high] = view.frame;
+    (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis])
+}
+
+/// Draws the places of the path. Those near each other share a symbol, and one outside the frame lies on its edge.
+fn places(path: &PathView, view: &PlacedView, extent: f64, is_named: bool) -> Vec<Stroke> {
+    struct Group {
+        at: Point,
+        sign: Sign,
+        labels: Vec<String>,
+    }
+    let mut groups: Vec<Group> = Vec::new();
+    let [low, high] = view.frame;
+    for PathPlace { sign, at, label } in path.places.iter().take(MAX_PLACES) {
+        let seen = view.side.project(*at);
+        let at = [seen[0].clamp(low[0], high[0]), seen[1].clamp(low[1], high[1])];
+        let label = if at == seen { label.clone() } else { format!("{label} (outside)") };
+        let near =
+            |group: &&mut Group| libm::hypot(group.at[0] - at[0], group.at[1] - at[1]) < SAME_PLACE * extent;
+        match groups.iter_mut().find(near) {
+            Some(group) => {
+                if group.sign < *sign {
+                    (group.sign, group.at) = (*sign, at);
+                }
+                if !group.labels.contains(&label) {
+                    group.labels.push(label);
+                }
+            }
+            None => groups.push(Group { at, sign: *sign, labels: vec![label] }),
+        }
+    }
+    let stroke = |Group { at, sign, labels }: Group| Stroke {
+        caption: is_named.then(|| labels.join(", ")),
+        ..Stroke::new(Pen::Edge, Shape::Sign { at: view.moved(at), sign })
+    };
+    groups.into_iter().map(stroke).collect()
+}
+
+/// Returns the marks of the holes: all in the top view, in others those that face the reader. Each has its label in the first view that shows it.
+fn marks(view: &TopView, placed: &PlacedView, labelled: &mut [bool]) -> Vec<Mark> {
+    let towards = placed.side.towards();
+    let mut marks = Vec::new();
+    for (index, hole) in view.holes.iter().enumerate() {
+        let Some(shown) = hole.shown() else { continue };
+        let facing = Vector3::from(shown.axis).dot(&towards).abs();
+        match placed.kind {
+            StandardView::Top => {}
+            StandardView::Isometric => continue,
+            StandardView::Front | StandardView::Right if facing < FACING => continue,
+            StandardView::Front | StandardView::Right => {}
+        }
+        let Some(mark) = hole_mark(hole, view) else { continue };
+        let mut mark = mark.seen_from(placed.side);
+        mark.position = placed.moved(mark.position);
+        mark.actual = mark.actual.map(|at| placed.moved(at));
+        if std::mem::replace(&mut labelled[index], true) {
+            mark.label.clear();
+            mark.deviation = None;
+        }
+        marks.push(mark);
+    }
+    marks
+}
+
+fn legend(
+    view: &TopView,
+    drawer: &PathDrawer<'_>,
+    scene: &Scene,
+    arrangement: &Arrangement,
+    height_name: &str,
+) -> Vec<LegendItem> {
+    let path = drawer.path;
+    let mut items = view.status_legend(&scene.marks);
+    if let Some(scale) = drawer.shades {
+        items.push(match (arrangement.color_by, scale.is_flat()) {
+            (ColorBy::Feed, false) => {
+                LegendItem::new(Sample::Shades(scale.low, scale.high), "feed rate, mm/min")
+            }
+            (ColorBy::Feed, true) => {
+                LegendItem::new(Sample::Nothing, format!("all feeds: F{}", plain(scale.low)))
+            }
+            (_, false) => LegendItem::new(
+                Sample::Shades(scale.low, scale.high),
+                format!("{height_name} of the feeds, mm"),
+            ),
+            (_, true) => {
+                LegendItem::new(Sample::Nothing, format!("all feeds: {height_name} {} mm", number(scale.low)))
+            }
+        });
+    }
+    items.extend(tool_lines(drawer));
+    if arrangement.color_by == ColorBy::Program {
+        let mut used: Vec<usize> =
+            path.runs.iter().filter(|run| run.kind == RunKind::Feed).map(|run| run.program).collect();
+        used.sort_unstable();
+        used.dedup();
+        let style = |class: usize| Style { tint: Some(Tint::Class(class)), pattern: 0, width: None };
+        let line = |program: usize| {
+            let name = path.programs.get(program).map_or("", String::as_str);
+            LegendItem::new(Sample::Line(Pen::Feed, style(program)), name)
+        };
+        items.extend(used.iter().take(MAX_CLASSES).map(|program| line(*program)));
+        items.extend(more(used.len(), "program"));
+    }
+    let has_pen = |pen: Pen| scene.strokes.iter().any(|stroke| stroke.pen == pen);
+    let has_tint = |tint: Tint| {
+        scene.strokes.iter().any(|stroke| stroke.style.is_some_and(|style| style.tint == Some(tint)))
+    };
+    let has_sign = |of: Sign| {
+        scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Sign { sign, .. } if sign == of))
+    };
+    let has_zero = scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Zero(_)));
+    let pale = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(0.6) };
+    let outline = if path.stock.is_some() { "stock" } else { "part outline" };
+    let others = [
+        (has_pen(Pen::Rapid), Sample::Pen(Pen::Rapid), "rapid"),
+        (has_pen(Pen::Probe), Sample::Pen(Pen::Probe), "probing move"),
+        (has_tint(Tint::Pale), Sample::Line(Pen::Feed, pale), "swept by the cutter"),
+        (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), outline),
+        (has_zero, Sample::Zero, "work zero"),
+        (has_sign(Sign::Start), Sample::Sign(Sign::Start), "start"),
+        (has_sign(Sign::End), Sample::Sign(Sign::End), "end"),
+        (has_sign(Sign::Stop), Sample::Sign(Sign::Stop), "stop"),
+        (has_sign(Sign::Alarm), Sample::Sign(Sign::Alarm), "alarm"),
+    ];
+    let drawn = others.into_iter().filter(|(is_drawn, ..)| *is_drawn);
+    items.extend(drawn.map(|(_, sample, text)| LegendItem::new(sample, text)));
+    let plane_views = arrangement.views.iter().filter(|view| **view != StandardView::Isometric).count();
+    if 1 < plane_views {
+        let words = match arrangement.projection {
+            Projection::Third => "third-angle projection",
+            Projection::First => "first-angle projection",
+        };
+        items.push(LegendItem::new(Sample::Projection(arrangement.projection), words));
+    }
+    items
+}
+
+/// Returns a line for each tool that feeds.
+fn tool_lines(drawer: &PathDrawer<'_>) -> Vec<LegendItem> {
+    let path = drawer.path;
+    let mut cutting: Vec<(usize, usize)> =
+        drawer.tool_order.iter().enumerate().filter_map(|(tool, order)| Some(((*order)?, tool))).collect();
+    cutting.sort_unstable();
+    let line = |tool: usize| {
+        let run = path.runs.iter().find(|run| run.kind == RunKind::Feed && run.tool == tool)?;
+        let mut style = drawer.style(run);
+        if drawer.color_by != ColorBy::Tool {
+            style.tint = Some(match drawer.color_by {
+                ColorBy::Program => Tint::Class(4),
+                _ => Tint::Shade(0.25),
+            });
+        }
+        Some(LegendItem::new(Sample::Line(Pen::Feed, style), path.tools[tool].name.clone()))
+    };
+    let lines = cutting.iter().take(MAX_CLASSES).filter_map(|(_, tool)| line(*tool));
+    lines.chain(more(cutting.len(), "tool")).collect()
+}
+
+fn more(count: usize, what: &str) -> Option<LegendItem> {
+    let more = count.checked_sub(MAX_CLASSES).filter(|more| 0 < *more)?;
+    let plural = if more == 1 { "" } else { "s" };
+    Some(LegendItem::new(Sample::Nothing, format!("and {more} more {what}{plural}")))
+}
+
+/// Formats a number with a true minus sign.
+fn number(value: f64) -> String {
+    plain(value).replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::path_view::{DrawnTool, PathRun};
+    use super::*;
+    use crate::side::Side;
+
+    /// A slot of 10 mm along x at z −2 from (0, 0) to (100, 40), reached by a rapid from z 300.
+    fn slot() -> PathView {
+        let run = |kind, points| PathRun { kind, tool: 0, program: 0, feed: 100.0, points };
+        PathView {
+            points: vec![
+                [0.0, 0.0, 300.0],
+                [0.0, 0.0, -2.0],
+                [0.0, 0.0, -2.0],
+                [100.0, 0.0, -2.0],
+                [100.0, 40.0, -2.0],
+            ],
+            runs: vec![run(RunKind::Rapid, 0..2), run(RunKind::Feed, 2..5)],
+            tools: vec![DrawnTool { name: "T1 end mill Φ10".to_owned(), diameter: Some(10.0) }],
+            places: vec![PathPlace { sign: Sign::Start, at: [0.0, 0.0, 300.0], label: "start".to_owned() }],
+            ..PathView::default()
+        }
+    }
+
+    fn picture(path: &PathView, views: &[StandardView], projection: Projection) -> Picture {
+        let arrangement =
+            Arrangement { top: Side::Z, views: views.into(), projection, color_by: ColorBy::Depth };
+        path_picture(&TopView::default(), path, &arrangement)
+    }
+
+    /// Returns the drawn feeds, without the swept widths.
+    fn feeds(picture: &Picture) -> Vec<&Vec<Point>> {
+        let is_feed = |stroke: &&Stroke| {
+            stroke.pen == Pen::Feed && stroke.style.is_some_and(|style| style.width.is_none())
+        };
+        let strokes = picture.scene.strokes.iter().filter(is_feed);
+        strokes
+            .filter_map(|stroke| if let Shape::Line(points) = &stroke.shape { Some(points) } else { None })
+            .collect()
+    }
+
+    #[test]
+    fn the_top_view_has_the_swept_width_and_the_front_view_has_not() {
+        let widths = |view| {
+            let picture = picture(&slot(), &[view], Projection::Third);
+            picture.scene.strokes.iter().filter_map(|stroke| stroke.style?.width).collect::<Vec<_>>()
+        };
+        assert_eq!((widths(StandardView::Top), widths(StandardView::Front)), (vec![10.0], vec![]));
+    }
+
+    /// In the third angle the top is above the front, in the first below; both have the same abscissa.
+    #[test]
+    fn views_are_aligned_as_on_a_drawing() {
+        for (projection, is_above) in [(Projection::Third, true), (Projection::First, false)] {
+            let picture = picture(&slot(), &[StandardView::Top, StandardView::Front], projection);
+            let [top, front] = feeds(&picture)[..] else { panic!("two feeds") };
+            assert!((top[0][0] - front[0][0]).abs() < 1e-9 && (top[1][0] - top[0][0] - 100.0).abs() < 1e-9);
+            assert_eq!(front[0][1] < top[0][1], is_above, "{projection:?}");
+        }
+    }
+
+    /// The right view is beside the front view, at the same ordinate, and has y to the right.
+    #[test]
+    fn the_right_view_is_beside_the_front_view() {
+        let picture = picture(&slot(), &[StandardView::Front, StandardView::Right], Projection::Third);
+        let [front, right] = feeds(&picture)[..] else { panic!("two feeds") };
+        assert!((front[0][1] - right[0][1]).abs() < 1e-9 && front[1][0] < right[0][0]);
+        assert!((right[right.len() - 1][0] - right[0][0] - 40.0).abs() < 1e-9, "{right:?}");
+    }
+
+    /// The feeds with the radius of the cutter reach from −5 to 105, so that 8 % of 110 mm are added on every side: in the
+    /// front view the rapid is cut at −2 + 8.8.
+    #[test]
+    fn a_rapid_is_cut_at_the_frame() {
+        let picture = picture(&slot(), &[StandardView::Front], Projection::Third);
+        let rapid = picture.scene.strokes.iter().find(|stroke| stroke.pen == Pen::Rapid).unwrap();
+        let Shape::Line(points) = &rapid.shape else { panic!("a line") };
+        assert!((points[0][1] - points[1][1] - 8.8).abs() < 1e-9, "{points:?}");
+        assert!(picture.title.lines.contains(&"rapids beyond the frame are cut off".to_owned()));
+        let named = picture.scene.strokes.iter().filter_map(|stroke| stroke.caption.as_deref());
+        assert!(named.into_iter().any(|caption| caption == "start (outside)"));
+    }
+
+    /// From z 0 to −8 in four steps of 2 mm: five shades, the deepest the darkest.
+    #[test]
+    fn deeper_is_darker() {
+        let mut path = slot();
+        path.points = (0..5)
+            .flat_map(|n| {
+                [[10.0 * f64::from(n), 0.0], [10.0 * f64::from(n), 30.0]]
+                    .map(|[x, y]| [x, y, -2.0 * f64::from(n)])
+            })
+            .collect();
+        path.runs = (0..5).map(|n| PathRun { points: 2 * n..2 * n + 2, ..path.runs[1].clone() }).collect();
+        let picture = picture(&path, &[StandardView::Top], Projection::Third);
+        let shades = picture.scene.strokes.iter().filter_map(|stroke| match stroke.style?.tint? {
+            Tint::Shade(shade) => Some(shade),
+            Tint::Class(_) | Tint::Pale => None,
+        });
+        let shades: Vec<f64> = shades.collect();
+        assert!(shades.len() == 5 && shades.windows(2).all(|pair| pair[1] < pair[0]), "{shades:?}");
+        assert_eq!((shades[0], shades[4]), (1.0, 0.0));
+    }
+}

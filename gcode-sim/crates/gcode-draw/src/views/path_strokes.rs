@@ -1,0 +1,308 @@
+//! Lines of a tool path in one view: colour by a value or a class, dash pattern by tool, clipped to the frame.
+use super::path_view::{ColorBy, PathRun, PathView, RunKind};
+use super::view_frames::{PlacedView, axis_index};
+use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint, arc};
+use gcode_part::Stock;
+use nalgebra::Vector3;
+
+/// Resolution of a sheet in parts of the extent of its views: less than 0.1 pixels of an ordinary picture.
+const RESOLUTION: f64 = 5e-5;
+/// Number of shades that are told apart.
+const SHADES: f64 = 64.0;
+/// Largest number of points of feeds under which the swept width is drawn.
+pub(super) const MAX_SWEPT_POINTS: usize = 20_000;
+
+/// Values that the shades of feeds stand for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShadeScale {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl ShadeScale {
+    /// Returns the range of the values of the feeds; `None` if the colours stand for classes.
+    pub(super) fn of(path: &PathView, color_by: ColorBy, depth: impl Fn([f64; 3]) -> f64) -> Option<Self> {
+        let feeds = || path.runs.iter().filter(|run| run.kind == RunKind::Feed);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut add = |value: f64| (low, high) = (low.min(value), high.max(value));
+        match color_by {
+            ColorBy::Depth => {
+                let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+                for pair in feeds().flat_map(|run| path.points[run.points.clone()].windows(2)) {
+                    let ends = [depth(pair[0]), depth(pair[1])];
+                    lowest = lowest.min(ends[0]).min(ends[1]);
+                    highest = highest.max(ends[0]).max(ends[1]);
+                    // A feed towards the part or out of it begins or ends above what is cut.
+                    let way = (Vector3::from(pair[1]) - Vector3::from(pair[0])).norm();
+                    if (ends[1] - ends[0]).abs() < 0.999 * way {
+                        ends.into_iter().for_each(&mut add);
+                    }
+                }
+                let high = if low <= high { high } else { highest };
+                return (lowest <= high).then_some(Self { low: lowest, high });
+            }
+            ColorBy::Feed => feeds().for_each(|run| add(run.feed)),
+            ColorBy::Tool | ColorBy::Program => return None,
+        }
+        (low <= high).then_some(Self { low, high })
+    }
+
+    /// Returns true if all values are the same.
+    pub(super) fn is_flat(self) -> bool {
+        self.high - self.low < 1e-6
+    }
+
+    /// Returns the colour of a shade by its number.
+    fn tint(self, level: f64) -> Tint {
+        Tint::Shade(level / (SHADES - 1.0))
+    }
+
+    /// Returns the number of a value's shade.
+    fn level(self, value: f64) -> f64 {
+        if self.is_flat() {
+            return (SHADES / 4.0).floor();
+        }
+        ((value - self.low) / (self.high - self.low) * SHADES).floor().clamp(0.0, SHADES - 1.0)
+    }
+}
+
+/// Draws the path in a view.
+pub(super) struct PathDrawer<'a> {
+    pub(super) path: &'a PathView,
+    pub(super) color_by: ColorBy,
+    pub(super) shades: Option<ShadeScale>,
+    /// Axis of the part whose coordinate, times the sign, is the height.
+    pub(super) height: (usize, f64),
+    /// Order of the first feed of each tool; `None` of a tool that only moves rapidly.
+    pub(super) tool_order: &'a [Option<usize>],
+    /// Largest extent of the views, mm.
+    pub(super) extent: f64,
+}
+
+impl PathDrawer<'_> {
+    /// Returns the look of a feed, but for its shade.
+    pub(super) fn style(&self, run: &PathRun) -> Style {
+        let order = self.tool_order.get(run.tool).copied().flatten().unwrap_or(0);
+        let tint = match self.color_by {
+            ColorBy::Tool => Some(Tint::Class(order)),
+            ColorBy::Program => Some(Tint::Class(run.program)),
+            ColorBy::Feed => self.shades.map(|scale| scale.tint(scale.level(run.feed))),
+            ColorBy::Depth => None,
+        };
+        Style { tint, pattern: (order % 6) as u8, width: None }
+    }
+
+    /// Draws the areas that the cutters sweep along the feeds.
+    pub(super) fn swept(&self, view: &PlacedView) -> Vec<Stroke> {
+        let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed);
+        let swept = feeds.filter_map(|run| {
+            let width = self.path.tools.get(run.tool)?.diameter?;
+            let points = self.sparse(view, run);
+            let style = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(width) };
+            (1 < points.len())
+                .then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
+        });
+        swept.collect()
+    }
+
+    /// Draws the rapids, clipped to the frame; returns true with them if any is cut off.
+    pub(super) fn rapids(&self, view: &PlacedView) -> (Vec<Stroke>, bool) {
+        let (mut strokes, mut is_cut) = (Vec::new(), false);
+        let mut line: Vec<Point> = Vec::new();
+        for run in self.path.runs.iter().filter(|run| run.kind == RunKind::Rapid) {
+            for pair in self.sparse(view, run).windows(2) {
+                let Some([from, to]) = clipped([pair[0], pair[1]], view.frame) else {
+                    is_cut = true;
+                    continue;
+                };
+                is_cut |= from != pair[0] || to != pair[1];
+                if line.last() != Some(&from) {
+                    flush(&mut strokes, &mut line, view, Pen::Rapid, None);
+                    line.push(from);
+                }
+                line.push(to);
+            }
+        }
+        flush(&mut strokes, &mut line, view, Pen::Rapid, None);
+        (strokes, is_cut)
+    }
+
+    /// Draws feeds and probing moves.
+    pub(super) fn feeds(&self, view: &PlacedView) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
+        for run in self.path.runs.iter().filter(|run| run.kind != RunKind::Rapid) {
+            let pen = if run.kind == RunKind::Probe { Pen::Probe } else { Pen::Feed };
+            let style = Some(self.style(run)).filter(|_| run.kind == RunKind::Feed);
+            match (self.shades, self.color_by, style) {
+                (Some(scale), ColorBy::Depth, Some(style)) => {
+                    self.shaded(view, run, scale, style, &mut strokes);
+                }
+                _ => flush(&mut strokes, &mut self.sparse(view, run), view, pen, style),
+            }
+        }
+        strokes
+    }
+
+    /// Draws a feed in pieces of one shade each. A steep segment is divided.
+    fn shaded(
+        &self,
+        view: &PlacedView,
+        run: &PathRun,
+        scale: ShadeScale,
+        style: Style,
+        to: &mut Vec<Stroke>,
+    ) {
+        let depth = |point: [f64; 3]| point[self.height.0] * self.height.1;
+        let least = RESOLUTION * self.extent;
+        let styled = |level: f64| Some(Style { tint: Some(scale.tint(level)), ..style });
+        let points = &self.path.points[run.points.clone()];
+        let (mut line, mut current) = (Vec::new(), f64::NAN);
+        let Some(first) = points.first() else { return };
+        let (mut before, mut before_depth) = (view.side.project(*first), depth(*first));
+        for (index, point) in points.iter().enumerate().skip(1) {
+            let (now, now_depth) = (view.side.project(*point), depth(*point));
+            let is_last = index + 1 == points.len();
+            if !is_last && libm::hypot(now[0] - before[0], now[1] - before[1]) < least {
+                continue;
+            }
+            let pieces =
+                ((scale.level(now_depth) - scale.level(before_depth)).abs() / 4.0).ceil().clamp(1.0, 16.0);
+            let at = |share: f64| {
+                [before[0] + (now[0] - before[0]) * share, before[1] + (now[1] - before[1]) * share]
+            };
+            for piece in 0..pieces as u32 {
+                let middle = (f64::from(piece) + 0.5) / pieces;
+                let level = scale.level(before_depth + (now_depth - before_depth) * middle);
+                if level != current {
+                    flush(to, &mut line, view, Pen::Feed, styled(current));
+                    line.push(at(f64::from(piece) / pieces));
+                    current = level;
+                }
+                line.push(at(f64::from(piece + 1) / pieces));
+            }
+            (before, before_depth) = (now, now_depth);
+        }
+        flush(to, &mut line, view, Pen::Feed, styled(current));
+    }
+
+    /// Returns the projected points of a run without those that a sheet can't tell from the one before.
+    fn sparse(&self, view: &PlacedView, run: &PathRun) -> Vec<Point> {
+        let least = RESOLUTION * self.extent;
+        let points = &self.path.points[run.points.clone()];
+        let mut sparse: Vec<Point> = Vec::new();
+        for (index, point) in points.iter().enumerate() {
+            let now = view.side.project(*point);
+            let is_far =
+                sparse.last().is_none_or(|last| least <= libm::hypot(now[0] - last[0], now[1] - last[1]));
+            if is_far || index + 1 == points.len() {
+                sparse.push(now);
+            }
+        }
+        sparse
+    }
+}
+
+/// Ends a polyline at its last point, with which the next one begins; one without extent is not drawn.
+fn flush(
+    strokes: &mut Vec<Stroke>,
+    line: &mut Vec<Point>,
+    view: &PlacedView,
+    pen: Pen,
+    style: Option<Style>,
+) {
+    let points = std::mem::take(line);
+    line.extend(points.last().copied());
+    let is_point =
+        points.iter().all(|point| libm::hypot(point[0] - points[0][0], point[1] - points[0][1]) < 1e-6);
+    if !is_point {
+        strokes.push(Stroke { style, ..Stroke::new(pen, moved(view, points)) });
+    }
+}
+
+fn moved(view: &PlacedView, points: Vec<Point>) -> Shape {
+    Shape::Line(points.into_iter().map(|point| view.moved(point)).collect())
+}
+
+/// Returns the part of a segment inside a rectangle (clipping by Liang and Barsky).
+pub(super) fn clipped([from, to]: [Point; 2], [low, high]: [Point; 2]) -> Option<[Point; 2]> {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let (mut first, mut last) = (0.0f64, 1.0f64);
+    for axis in 0..2 {
+        for (slope, room) in [(-way[axis], from[axis] - low[axis]), (way[axis], high[axis] - from[axis])] {
+            if slope == 0.0 && room < 0.0 {
+                return None;
+            } else if slope < 0.0 {
+                first = first.max(room / slope);
+            } else if 0.0 < slope {
+                last = last.min(room / slope);
+            }
+        }
+    }
+    let at = |share: f64| match share {
+        0.0 => from,
+        1.0 => to,
+        _ => [from[0] + way[0] * share, from[1] + way[1] * share],
+    };
+    (first < last).then(|| [at(first), at(last)])
+}
+
+/// Draws the outline of the stock.
+pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
+    let edge = |points: &[[f64; 3]]| {
+        let points: Vec<Point> = points.iter().map(|point| view.project(*point)).collect();
+        Stroke::new(Pen::Outline, Shape::Line(points))
+    };
+    match stock {
+        Stock::Box { min, max, .. } => {
+            let corner =
+                |ends: usize| [0, 1, 2].map(|axis| if ends >> axis & 1 == 1 { max[axis] } else { min[axis] });
+            let edges = (0..8).flat_map(|from| (0..3).map(move |axis| (from, from | 1 << axis)));
+            edges
+                .filter(|(from, to)| from != to)
+                .map(|(from, to)| edge(&[corner(from), corner(to)]))
+                .collect()
+        }
+        Stock::Cylinder { axis, diameter, from, to, .. } => {
+            let (along, radius) = (axis_index(*axis), diameter / 2.0);
+            let (first, second) = ((along + 1) % 3, (along + 2) % 3);
+            let rim = |end: f64| -> Vec<[f64; 3]> {
+                let place = |[a, b]: Point| {
+                    let mut point = [end; 3];
+                    (point[first], point[second]) = (a, b);
+                    point
+                };
+                arc([0.0, 0.0], [radius, radius], [0.0, 360.0]).into_iter().map(place).collect()
+            };
+            let rims = [rim(*from), rim(*to)];
+            // The outline runs along the generators that are farthest apart across the line of sight.
+            let towards = view.side.towards();
+            let across = libm::hypot(towards[first], towards[second]);
+            let sides = [1.0, -1.0].into_iter().filter(|_| 1e-6 < across).map(|sign| {
+                let end = |end: f64| {
+                    let mut point = [end; 3];
+                    point[first] = -towards[second] / across * radius * sign;
+                    point[second] = towards[first] / across * radius * sign;
+                    point
+                };
+                edge(&[end(*from), end(*to)])
+            });
+            rims.iter().map(|rim| edge(rim)).chain(sides).collect()
+        }
+        Stock::Surface { .. } => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From (−10, 5) to (30, 25) the line enters a square of 0 to 20 at (0, 10) and leaves it at (20, 20).
+    #[test]
+    fn a_segment_is_cut_at_the_frame() {
+        let frame = [[0.0, 0.0], [20.0, 20.0]];
+        assert_eq!(clipped([[-10.0, 5.0], [30.0, 25.0]], frame), Some([[0.0, 10.0], [20.0, 20.0]]));
+        assert_eq!(clipped([[1.0, 2.0], [3.0, 2.0]], frame), Some([[1.0, 2.0], [3.0, 2.0]]));
+        assert_eq!(clipped([[-10.0, 5.0], [-1.0, 25.0]], frame), None);
+        assert_eq!(clipped([[-10.0, 21.0], [30.0, 21.0]], frame), None);
+    }
+}

@@ -1,0 +1,76 @@
+//! Room of the tool's parts in nominal holes and pockets.
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::metal::{KnownMetal, MAX_OFFSET, SIDE_SLACK};
+use crate::machine::{TOUCH_DEPTH, ToolPart};
+use gcode_part::{Collar, Step, Surface, Taper};
+
+impl KnownMetal {
+    /// Returns true if a part of the tool stays in one nominal hole, or in one pocket, while the tip moves between two points.
+    pub(super) fn is_allowed(
+        &self,
+        tips: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        part: &ToolPart,
+    ) -> bool {
+        let base = tips.map(|tip| tip + axis.into_inner() * part.from);
+        let height =
+            self.removed.height_of_metal(&base[0], axis).max(self.removed.height_of_metal(&base[1], axis));
+        let is_in_box = self.pockets.iter().any(|pocket| {
+            let Surface::Block { min, max } = pocket else { return false };
+            let radius = part.radius();
+            let across = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt() - TOUCH_DEPTH);
+            let up = axis.into_inner() * height;
+            let (low, high) = (base[0].inf(&base[1]) - across, base[0].sup(&base[1]) + across);
+            (0..3).all(|i| {
+                let (low, high) = (low[i] + up[i].min(0.0), high[i] + up[i].max(0.0));
+                min[i] <= low && high <= max[i] + if up[i] > 0.0 { TOUCH_DEPTH } else { 0.0 }
+            })
+        });
+        is_in_box || self.hole_around(&base, axis, part).is_some()
+    }
+
+    /// Returns the nominal hole on whose axis the tip makes a stroke.
+    pub(super) fn hole_of_stroke(
+        &self,
+        tips: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+    ) -> Option<&Collar> {
+        let line = ToolPart::flutes(0.0, f64::INFINITY, 0.0);
+        self.hole_around(tips, axis, &line)
+            .filter(|hole| tips.iter().all(|tip| hole.from_axis(tip) <= MAX_OFFSET))
+    }
+
+    /// Returns the nominal hole in which a part of the tool stays while its lower end moves between two points.
+    fn hole_around(
+        &self,
+        ends: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        part: &ToolPart,
+    ) -> Option<&Collar> {
+        let mut found = None;
+        self.around(ends, &mut |collar| {
+            let aside = ends.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
+            let deepest = ends.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
+            // Widths change evenly: those at the entry and at the lower end decide.
+            let is_in_step = |step: &Step| {
+                let is_in = |depth: f64| {
+                    let width = part.taper.at((part.from + deepest - depth).min(part.to.max(part.from)));
+                    let room =
+                        if collar.has_diameter { step.radius(depth) + SIDE_SLACK - width } else { width };
+                    aside <= room
+                };
+                deepest <= step.max_depth + TOUCH_DEPTH && is_in(0.0) && is_in(deepest)
+            };
+            let is_in_edge = collar.edge_break(part.taper.slope).is_some_and(|edge| {
+                let radius = edge.taper.radius - SIDE_SLACK;
+                aside < TOUCH_DEPTH
+                    && is_in_step(&Step { taper: Taper::cylinder(radius), max_depth: collar.max_depth() })
+            });
+            if collar.is_parallel(axis) && (is_in_edge || collar.steps.iter().any(is_in_step)) {
+                found = Some(collar);
+            }
+        });
+        found
+    }
+}

@@ -1,0 +1,60 @@
+//! Threads of nominal holes that a tool cuts away along their axis: only a tap, and a mill along its helix, may enter them.
+use nalgebra::Point3;
+
+use super::HoleExtractor;
+use super::rapids::format_point;
+use crate::findings::FEED_BESIDE_HOLE;
+use crate::machine::{ToolKind, tool_name};
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::Event;
+use gcode_part::exceeds;
+
+/// Largest depth of a cut in the flanks of a thread, mm.
+const MAX_FLANK_CUT: f64 = 0.05;
+
+/// Least distance of a tool that stands beside the axis of a hole, mm.
+const MIN_ASIDE: f64 = 0.1;
+
+/// Largest sine of the angle between the tool and a motion along it.
+const MAX_AXIAL_SINE: f64 = 0.1;
+
+impl HoleExtractor<'_> {
+    /// Reports a straight motion along the tool, at the side of a threaded hole, that cuts more than a turn of the thread.
+    pub(super) fn check_thread_wall(&mut self, event: &Event<'_>, from: &Point3<f64>) {
+        let to = self.pose.tip;
+        let (Some(axis), Some(diameter)) = (self.pose.axis, self.machine.diameter_of(self.setup.tool)) else {
+            return;
+        };
+        let travel = to - from;
+        let is_along = axis.cross(&travel).norm() <= MAX_AXIAL_SINE * travel.norm();
+        let kind = self.setup.tool.and_then(|number| self.machine.find_tool(number)?.kind);
+        if !is_along || kind == Some(ToolKind::Tap) || self.cutting_state.rigid_run != 0 {
+            return;
+        }
+        let ends = if travel.dot(&axis) < 0.0 { [from, &to] } else { [&to, from] };
+        let Some((hole, thread, aside)) = self.strokes.nominal_axes().threaded(ends, &axis) else { return };
+        let depths = ends.map(|end| (hole.entry - end).dot(&hole.out));
+        let bottom = depths[1].min(thread.span[1]);
+        let length = bottom - depths[0].max(thread.span[0]);
+        let reach = aside + diameter / 2.0;
+        if aside < MIN_ASIDE
+            || !exceeds(reach - thread.core, MAX_FLANK_CUT)
+            || exceeds(reach - thread.major, MAX_FLANK_CUT)
+            || length <= thread.pitch.max(MAX_FLANK_CUT)
+        {
+            return;
+        }
+        let (place, core) = (hole.entry - hole.out * bottom, 2.0 * thread.core);
+        let tool = tool_name(self.setup.tool);
+        self.findings.add(&FEED_BESIDE_HOLE, &event.backtrace(), 2, |finding| {
+            let message = format!(
+                "{tool} goes along the axis {aside:.3} mm beside it and cuts {:.3} mm deep into the thread, {length:.3} mm \
+                 long, down to {}: the hole before the thread is Φ{core:.3}",
+                reach - core / 2.0,
+                format_point(&place),
+            );
+            Diagnostic::new(finding, message)
+                .help("lead the mill to the axis of the hole before it goes down or up")
+        });
+    }
+}

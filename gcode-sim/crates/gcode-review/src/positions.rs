@@ -1,0 +1,102 @@
+//! Positions of a long run in little memory: axis by axis, in pieces, each in the smallest form that has the same bits.
+use gcode_lang::motion::{MAX_AXES, Position};
+
+/// Number of positions of a piece.
+const PIECE: usize = 256;
+
+/// Number of units of a coordinate in a millimetre or a degree.
+const UNITS: f64 = 10_000.0;
+
+/// Positions by their indices.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Positions {
+    pieces: Vec<[AxisPiece; MAX_AXES]>,
+    /// Positions of the last piece, up to [`PIECE`].
+    open: Vec<Position>,
+}
+
+/// Coordinates of one axis in a piece.
+#[derive(Clone, Debug)]
+enum AxisPiece {
+    /// All are equal.
+    Constant(f64),
+    /// Whole numbers of ten-thousandths: the nearest number to each has the bits of the coordinate.
+    Units(Box<[i32]>),
+    /// Any others.
+    Numbers(Box<[f64]>),
+}
+
+impl AxisPiece {
+    fn of(coordinates: impl Iterator<Item = f64> + Clone) -> Self {
+        let is_same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+        let first = coordinates.clone().next().unwrap_or_default();
+        if coordinates.clone().all(|one| is_same(one, first)) {
+            return Self::Constant(first);
+        }
+        let units = |one: f64| {
+            let units = (one * UNITS).round() as i32;
+            is_same(f64::from(units) / UNITS, one).then_some(units)
+        };
+        match coordinates.clone().map(units).collect() {
+            Some(units) => Self::Units(units),
+            None => Self::Numbers(coordinates.collect()),
+        }
+    }
+
+    fn get(&self, index: usize) -> f64 {
+        match self {
+            Self::Constant(one) => *one,
+            Self::Units(units) => f64::from(units[index]) / UNITS,
+            Self::Numbers(all) => all[index],
+        }
+    }
+}
+
+impl Positions {
+    /// Appends a position.
+    pub(super) fn push(&mut self, position: Position) {
+        self.open.push(position);
+        if self.open.len() == PIECE {
+            let of = |axis: usize| AxisPiece::of(self.open.iter().map(|position| position[axis]));
+            self.pieces.push(std::array::from_fn(of));
+            self.open.clear();
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.pieces.len() * PIECE + self.open.len()
+    }
+
+    /// Returns a position.
+    pub(super) fn get(&self, index: usize) -> Position {
+        match self.pieces.get(index / PIECE) {
+            Some(piece) => Position(std::array::from_fn(|axis| piece[axis].get(index % PIECE))),
+            None => self.open[index % PIECE],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_form_returns_the_same_bits() {
+        let kinds: [fn(usize) -> f64; 5] = [
+            |_| -0.0,
+            |n| n as f64 / 1000.0,
+            |n| 0.1 + n as f64 / 10.0,
+            |n| (n as f64).sqrt(),
+            |n| n as f64 * 1e6,
+        ];
+        for kind in kinds {
+            let mut all = Positions::default();
+            let position = |n: usize| Position([kind(n), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, kind(2 * n)]);
+            (0..3 * PIECE / 2).for_each(|n| all.push(position(n)));
+            assert_eq!(all.len(), 3 * PIECE / 2);
+            for n in 0..all.len() {
+                assert_eq!(all.get(n).0.map(f64::to_bits), position(n).0.map(f64::to_bits), "{n}");
+            }
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Contents of the picture of a tool path: runs, tools, stops, work zeros and stock.
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::figures::count;
+use super::top::side_along_holes;
+use gcode_draw::{DrawnTool, PathPlace, PathRun, PathView, RunKind, Side, Sign, TopView};
+use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool};
+use gcode_inspect::tool_path::{PathKind, ToolPath};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::Position;
+use gcode_lang::source::{SourceId, Span};
+use gcode_part::{Hole, Stock};
+use gcode_session::Simulation;
+
+/// Largest number of stops whose text is in the title block.
+const MAX_STOP_TEXTS: usize = 3;
+
+/// Returns true if a path shows more than the symbols of the holes do: a feed that makes none, or motion without holes.
+pub(crate) fn shows_more(path: &ToolPath, simulation: &Simulation) -> bool {
+    let holes = &simulation.extracted.holes;
+    let blocks: BTreeSet<(SourceId, u32)> = holes
+        .iter()
+        .flat_map(|hole| hole.passes().map(|pass| (pass.backtrace.block.source, pass.backtrace.block.start)))
+        .collect();
+    let is_of_hole = |block: Span| blocks.contains(&(block.source, block.start));
+    !path.moves.is_empty() && (holes.is_empty() || path.has_feed_off_holes(is_of_hole))
+}
+
+/// Returns the side from which the part is cut: that of the tool in most feeds, of most holes, or of the spindle. A tool of
+/// unknown direction that makes no hole is along z, as in G17.
+pub(crate) fn top_side(path: &ToolPath, found: &[Hole], machine: &Machine, spindle: Side) -> Side {
+    let along = |(axis, is_positive)| Side::along(axis, is_positive);
+    let known = path.tool_axis().map(along);
+    let usual = if machine.head.kind == HeadKind::Free && found.is_empty() { Side::Z } else { spindle };
+    known.or_else(|| side_along_holes(found)).or_else(|| path.supposed_axis().map(along)).unwrap_or(usual)
+}
+
+/// Builds the contents of the picture. The points of the path move into it.
+pub(crate) fn of_path(
+    path: ToolPath,
+    simulation: &Simulation,
+    machine: &Machine,
+    stock: Option<Stock>,
+) -> PathView {
+    let run = &simulation.run;
+    let mut names: BTreeMap<Option<u32>, usize> = BTreeMap::new();
+    let mut programs: BTreeMap<String, usize> = BTreeMap::new();
+    let mut known: BTreeMap<(SourceId, u32), usize> = BTreeMap::new();
+    let mut runs = Vec::with_capacity(path.stretches.len());
+    let mut tools = Vec::new();
+    for stretch in &path.stretches {
+        let tool = *names.entry(stretch.tool).or_insert_with(|| {
+            tools.push(tool(stretch.tool, machine));
+            tools.len() - 1
+        });
+        let program = *known.entry((stretch.block.source, stretch.block.start)).or_insert_with(|| {
+            let next = programs.len();
+            *programs.entry(run.locate(stretch.block).0).or_insert(next)
+        });
+        let kind = match stretch.kind {
+            PathKind::Rapid => RunKind::Rapid,
+            PathKind::Feed => RunKind::Feed,
+            PathKind::Probe => RunKind::Probe,
+        };
+        runs.push(PathRun { kind, tool, program, feed: stretch.feed, points: stretch.points.clone() });
+    }
+    let mut programs: Vec<(String, usize)> = programs.into_iter().collect();
+    programs.sort_by_key(|(_, number)| *number);
+    PathView {
+        runs,
+        tools,
+        programs: programs.into_iter().map(|(name, _)| name).collect(),
+        places: places(&path, simulation),
+        zeros: zeros(machine),
+        stock,
+        notes: notes(&path),
+        points: path.points,
+    }
+}
+
+/// Returns name and diameter of a tool.
+fn tool(number: Option<u32>, machine: &Machine) -> DrawnTool {
+    let Some(number) = number else {
+        return DrawnTool { name: "feed before a tool change".to_owned(), diameter: None };
+    };
+    let known = machine.tools.iter().find(|tool| tool.number == number).copied();
+    let Tool { kind, diameter, .. } = known.unwrap_or_default();
+    let kind = kind.map(|kind| format!(" {}", kind.name().replace('-', " ")));
+    let size = diameter.map(|diameter| format!(" Φ{}", super::figures::short(diameter)));
+    let name = format!("T{number}{}{}", kind.unwrap_or_default(), size.unwrap_or_default());
+    DrawnTool { name, diameter }
+}
+
+/// Returns start and end of the path, its stops, and the position of an alarm.
+fn places(path: &ToolPath, simulation: &Simulation) -> Vec<PathPlace> {
+    let place = |sign, at: Option<[f64; 3]>, label: String| at.map(|at| PathPlace { sign, at, label });
+    let first = path.points.first().copied();
+    let last = path.end.or_else(|| path.points.last().copied());
+    let start = place(Sign::Start, first, "start".to_owned());
+    let end = match simulation.run.stop_finding() {
+        Some(finding) => place(Sign::Alarm, last, finding.code().into_owned()),
+        None => place(Sign::End, last, "end".to_owned()),
+    };
+    let stops = path.stops.iter().filter_map(|stop| place(Sign::Stop, stop.at, stop.kind.name().to_owned()));
+    start.into_iter().chain(end).chain(stops).collect()
+}
+
+/// Returns the work zeros: those of the machine file, or the origin of the part, from which positions then count.
+fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
+    if !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_)) {
+        return Vec::new();
+    }
+    if machine.offsets.is_empty() {
+        return vec![("zero".to_owned(), [0.0; 3])];
+    }
+    let zero = |values: &[(usize, f64)]| {
+        let mut at = Position::default();
+        values.iter().for_each(|(axis, value)| at[*axis] = *value);
+        machine.forward(&at, &Setup::default()).tip.coords.into()
+    };
+    machine.offsets.iter().map(|offset| (offset.system.name(), zero(&offset.values))).collect()
+}
+
+/// Returns what the picture lacks, and the texts of the first stops.
+fn notes(path: &ToolPath) -> Vec<String> {
+    let mut notes = Vec::new();
+    let texts = path.stops.iter().filter(|stop| !stop.text.is_empty());
+    notes.extend(texts.take(MAX_STOP_TEXTS).map(|stop| format!("stop {}: {}", stop.kind.name(), stop.text)));
+    if 0 < path.unplaced_feeds {
+        let feeds = count(path.unplaced_feeds, "feed");
+        notes.push(format!("{feeds} from or to an unknown position not drawn"));
+    }
+    if 0 < path.omitted_moves {
+        let drawn = path.moves.len();
+        notes.push(format!("the first {drawn} of {} moves are drawn", drawn as u64 + path.omitted_moves));
+    }
+    notes
+}
+
+/// Returns the number of findings of a severity and the first of them as a line of the title block.
+pub(crate) fn finding_line<'a>(
+    findings: impl IntoIterator<Item = &'a Diagnostic>,
+    severity: Severity,
+    what: &str,
+) -> Option<String> {
+    let mut of_severity = findings.into_iter().filter(|finding| finding.severity == severity);
+    let first = of_severity.next()?;
+    Some(format!("{}: {}", count(of_severity.count() + 1, what), first.message))
+}
+
+/// Returns true if there is something to draw: a move or a hole.
+pub(crate) fn is_drawable(path: &ToolPath, holes: &TopView) -> bool {
+    !path.moves.is_empty() || !holes.holes.is_empty()
+}
