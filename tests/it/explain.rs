@@ -126,8 +126,7 @@ fn findings_on(page: &Page, number: usize) -> Vec<Diagnostic> {
     }
     request.process_limits =
         reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
-    let metal =
-        reference.as_ref().map(|reference| reference.metal(machine.stock.as_ref())).unwrap_or_default();
+    let metal = reference.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
     let simulation = simulate(&request, &mut NoLibrary, metal).unwrap();
     match reference {
         Some(reference)

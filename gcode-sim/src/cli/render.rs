@@ -198,8 +198,7 @@ fn of_path(
     reference: Option<&Reference>,
     tolerance: Option<f64>,
 ) -> Result<Drawn, UsageError> {
-    let stock = request.machine.stock.clone();
-    let metal = reference.map(|r| r.metal(stock.as_ref())).unwrap_or_default();
+    let metal = reference.map(|reference| request.metal(reference)).unwrap_or_default();
     request.process_limits = reference.map(|r| r.process_limits.clone()).unwrap_or_default();
     let machine = request.machine.clone();
     let mut recorder = PathRecorder::new(&machine);
@@ -235,7 +234,7 @@ fn of_path(
         None => tool_path::finding_line(&simulation.extracted.findings, Severity::Error, "error"),
     };
     holes.lines.extend(errors.into_iter().chain(warnings));
-    let stock = reference.and_then(|reference| reference.stock.clone()).or(stock);
+    let stock = reference.and_then(|reference| reference.stock.clone()).or(request.machine.stock.clone());
     let picture = hole_picture(arguments, views, holes, path, &simulation, &machine, stock)?;
     let names = if views.is_empty() {
         vec![View::Top.name()]

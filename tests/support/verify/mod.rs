@@ -41,8 +41,7 @@ pub(crate) fn run(case: &Case) {
         Some(nominal) => {
             let reference = nominal.into_holes().unwrap();
             request.process_limits = reference.process_limits.clone();
-            let simulation =
-                simulate(&request, &mut NoLibrary, reference.metal(machine.stock.as_ref())).unwrap();
+            let simulation = simulate(&request, &mut NoLibrary, request.metal(&reference)).unwrap();
             let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &request);
             inspect_holes(&verdict, &simulation.run)
         }

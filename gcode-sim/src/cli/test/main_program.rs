@@ -38,22 +38,25 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<Vec<MainProgram>
     if let Some(main) = programs.iter().find(is_main) {
         return Ok(vec![MainProgram::of_file(main)]);
     }
-    let candidates = uncalled(programs)?;
+    let files = programs.iter().map(|path| ProgramFile::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let mut candidates = uncalled(files);
     let mut mains = Vec::new();
     let mut left_out = Vec::new();
-    for file in &candidates {
-        match &mains_of_file(file)?[..] {
-            [] => left_out.push(*file),
-            [_] => mains.push(MainProgram::of_file(file)),
+    for file in candidates.iter_mut() {
+        match &file.mains()[..] {
+            [] => left_out.push(file.path),
+            [_] => mains.push(MainProgram::of_file(file.path)),
             several => {
-                let of_path =
-                    |path: &String| MainProgram { path: Some(path.clone()), ..MainProgram::of_file(file) };
+                let of_path = |path: &String| MainProgram {
+                    path: Some(path.clone()),
+                    ..MainProgram::of_file(file.path)
+                };
                 mains.extend(several.iter().map(of_path));
             }
         }
     }
     if let ([], [only]) = (&mains[..], &candidates[..]) {
-        return Ok(vec![MainProgram::of_file(only)]);
+        return Ok(vec![MainProgram::of_file(only.path)]);
     }
     if !mains.is_empty() {
         for file in left_out {
@@ -64,7 +67,7 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<Vec<MainProgram>
         }
         return Ok(mains);
     }
-    let names: Vec<_> = candidates.iter().filter_map(|path| path.file_name()?.to_str()).collect();
+    let names: Vec<_> = candidates.iter().filter_map(|file| file.path.file_name()?.to_str()).collect();
     let which = if names.is_empty() {
         "only programs that call one another".to_owned()
     } else {
@@ -73,37 +76,49 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<Vec<MainProgram>
     Err(UsageError::new(format!("{} contains {which}: name the main program main.nc", folder.display())))
 }
 
-/// Returns the paths of the main programs of a file.
-fn mains_of_file(file: &Path) -> Result<Vec<String>, UsageError> {
-    let mut memory = Memory::default();
-    memory.load(file.display().to_string(), input::program(file)?);
-    let called = programs_called_by_others(&mut memory, &Settings::default());
-    let mains = main_programs(&memory, &called);
-    Ok(mains.into_iter().map(|id| memory.get(id).path()).collect())
+/// A file with its programs.
+struct ProgramFile<'p> {
+    path: &'p Path,
+    memory: Memory,
 }
 
-/// Returns the programs that none of the others calls.
-fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
-    let settings = Settings::default();
-    let mut files = Vec::with_capacity(programs.len());
-    for path in programs {
+impl<'p> ProgramFile<'p> {
+    fn read(path: &'p Path) -> Result<Self, UsageError> {
         let mut memory = Memory::default();
         memory.load(path.display().to_string(), input::program(path)?);
-        let calls: Vec<CalledProgramName> =
-            memory.ids().flat_map(|id| called_programs(memory.lower_program(id), &settings)).collect();
-        let names: Vec<ProgramName> = memory.programs().iter().map(|p| p.name.clone()).collect();
-        files.push((path, names, calls));
+        Ok(Self { path, memory })
     }
-    let is_called = |names: &[ProgramName], call: &CalledProgramName| match call {
-        CalledProgramName::Number(number) => names.contains(&ProgramName::Number(*number)),
-        CalledProgramName::Name(name) => names.contains(&ProgramName::of(name.clone())),
-        CalledProgramName::Computed | CalledProgramName::Missing => false,
+
+    /// Returns the paths of the main programs.
+    fn mains(&mut self) -> Vec<String> {
+        let called = programs_called_by_others(&mut self.memory, &Settings::default());
+        let mains = main_programs(&self.memory, &called);
+        mains.into_iter().map(|id| self.memory.get(id).path()).collect()
+    }
+
+    fn calls(&mut self) -> Vec<CalledProgramName> {
+        let (memory, settings) = (&mut self.memory, Settings::default());
+        memory.ids().flat_map(|id| called_programs(memory.lower_program(id), &settings)).collect()
+    }
+
+    fn is_called_by(&self, call: &CalledProgramName) -> bool {
+        let has = |name: ProgramName| self.memory.programs().iter().any(|program| program.name == name);
+        match call {
+            CalledProgramName::Number(number) => has(ProgramName::Number(*number)),
+            CalledProgramName::Name(name) => has(ProgramName::of(name.clone())),
+            CalledProgramName::Computed | CalledProgramName::Missing => false,
+        }
+    }
+}
+
+/// Returns the files whose programs none of the others calls.
+fn uncalled(mut files: Vec<ProgramFile<'_>>) -> Vec<ProgramFile<'_>> {
+    let calls: Vec<_> = files.iter_mut().map(ProgramFile::calls).collect();
+    let is_uncalled = |(index, file): &(usize, ProgramFile<'_>)| {
+        let others = calls.iter().enumerate().filter(|(other, _)| other != index);
+        !others.flat_map(|(_, calls)| calls).any(|call| file.is_called_by(call))
     };
-    let from_others = |path: &PathBuf, names: &[ProgramName]| {
-        let others = files.iter().filter(|(other, ..)| *other != path);
-        others.flat_map(|(.., calls)| calls).any(|call| is_called(names, call))
-    };
-    Ok(files.iter().filter(|(path, names, _)| !from_others(path, names)).map(|(path, ..)| *path).collect())
+    files.into_iter().enumerate().filter(is_uncalled).map(|(_, file)| file).collect()
 }
 
 #[cfg(test)]
