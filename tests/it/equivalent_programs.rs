@@ -38,7 +38,9 @@ fn rewrite(text: &str) -> String {
 fn renumbered(code: &str) -> String {
     let mut renumbered = String::new();
     let mut rest = code;
-    while let Some(at) = rest.starts_with('N').then_some(1).or(rest.find("GOTO").map(|at| at + 4)) {
+    let target =
+        |text: &str| ["GOTO", "M99 P", "M99  P"].iter().find_map(|jump| Some(text.find(jump)? + jump.len()));
+    while let Some(at) = rest.starts_with('N').then_some(1).or_else(|| target(rest)) {
         let digits = rest[at..].trim_start().chars().take_while(char::is_ascii_digit).count();
         let skip = rest[at..].len() - rest[at..].trim_start().len();
         let number = &rest[at + skip..at + skip + digits];
