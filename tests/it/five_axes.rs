@@ -76,10 +76,57 @@ impl Arrangement {
     fn rotary_zero(&self, machine: &Machine) -> Position {
         let mut zero = Position::default();
         for index in self.on_head..2 {
-            zero[machine.axes.find(b"AC"[index]).unwrap()] = (self.zeros[index] * 1000.0).round() / 1000.0;
+            zero[machine.axes.find(b"AC"[index]).unwrap()] = written(self.zeros[index]);
         }
         zero
     }
+}
+
+/// A machine with its work offsets set.
+struct SetUp {
+    machine: Machine,
+    /// Positions of the rotary axes at their work zeros.
+    zero: Position,
+    /// Work zero of the slides: the part's origin with the table at its work zeros.
+    work: Vector3<f64>,
+    pivot: f64,
+}
+
+impl SetUp {
+    fn of(arrangement: &Arrangement) -> Self {
+        let machine = arrangement.machine();
+        let zero = arrangement.rotary_zero(&machine);
+        let origin = machine.part_frame(&zero) * Point3::origin() + Vector3::z() * arrangement.pivot;
+        Self { machine, zero, work: origin.coords.map(written), pivot: arrangement.pivot }
+    }
+
+    /// Returns the blocks that set the work offsets and the length of H1, and G90 G21.
+    fn offsets(&self, length: f64) -> String {
+        format!(
+            "#5221={:.3}\n#5222={:.3}\n#5223={:.3}\n#5224={:.3}\n#5226={:.3}\n#11001={length:.3}\nG90 G21\n",
+            self.work.x, self.work.y, self.work.z, self.zero[3], self.zero[5]
+        )
+    }
+
+    /// Returns the point of the part at coordinates of the work, with the table at its work zeros.
+    fn on_part(&self, point: Vector3<f64>) -> Point3<f64> {
+        let placed = Point3::from(point + self.work) - Vector3::z() * self.pivot;
+        self.machine.part_frame(&self.zero).inverse_transform_point(&placed)
+    }
+}
+
+/// Rounds to the digits of a program.
+fn written(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}
+
+/// Returns the set-up of the tool with the last length offset of a run.
+fn last_setup(ran: &Ran) -> Setup {
+    let mut offsets = ran.recorder.0.iter().filter_map(|(_, kind, _)| match kind {
+        EventKind::ToolLength { offset, .. } => Some(*offset),
+        _ => None,
+    });
+    Setup { offset: offsets.next_back().unwrap(), ..Setup::default() }
 }
 
 fn run(machine: &Machine, program: &str) -> Ran {
@@ -99,22 +146,18 @@ proptest! {
         length in 10.0..250.0_f64,
         side in 0..3_u32,
     ) {
-        let machine = arrangement.machine();
-        let zero = arrangement.rotary_zero(&machine);
-        // The work zero is the part's origin with the table at its work zeros.
-        let origin = machine.part_frame(&zero) * Point3::origin() + Vector3::z() * arrangement.pivot;
-        let written = |value: f64| (value * 1000.0).round() / 1000.0;
+        let set_up = SetUp::of(&arrangement);
+        let SetUp { machine, zero, .. } = &set_up;
         let [px, py, pz] = plane.map(written);
         let [x, y, z] = point.map(written);
         let (i, j, k, length) = (written(i), written(j), written(k), written(length));
-        let work = origin.coords.map(written);
         let program = format!(
-            "O1\n#5221={:.3}\n#5222={:.3}\n#5223={:.3}\n#5224={:.3}\n#5226={:.3}\n#11001={length:.3}\nG90 G21\n\
+            "O1\n{}\
              G68.2 X{px:.3} Y{py:.3} Z{pz:.3} I{i:.3} J{j:.3} K{k:.3}\nG53.1 P{side}\nG43 H1 G00 X{x:.3} Y{y:.3} Z{z:.3}\n\
              G81 X{x:.3} Y{y:.3} Z{:.3} R{z:.3} F100\nG80\nG00 X0 Y0 Z{z:.3}\nM30\n",
-            work.x, work.y, work.z, zero[3], zero[5], z - 20.0
+            set_up.offsets(length), z - 20.0
         );
-        let ran = run(&machine, &program);
+        let ran = run(machine, &program);
         if let Outcome::Alarm(stopped) = &ran.outcome {
             // A nutating axis doesn't reach every direction, and with P1 or P2 both solutions may have one sign.
             prop_assert_eq!(stopped.alarm.code().to_string(), "PS5459");
@@ -126,21 +169,13 @@ proptest! {
             * Rotation3::from_axis_angle(&Vector3::x_axis(), j.to_radians())
             * Rotation3::from_axis_angle(&Vector3::z_axis(), k.to_radians());
         let in_work = |point: Vector3<f64>| Vector3::new(px, py, pz) + euler * point;
-        let on_part = |point: Vector3<f64>| {
-            let placed = Point3::from(in_work(point) + work) - Vector3::z() * arrangement.pivot;
-            machine.part_frame(&zero).inverse_transform_point(&placed)
-        };
-        let axis = machine.part_frame(&zero).rotation.inverse_transform_unit_vector(
+        let axis = machine.part_frame(zero).rotation.inverse_transform_unit_vector(
             &Unit::new_normalize(euler * Vector3::z()),
         );
-        let mut offsets = ran.recorder.0.iter().filter_map(|(_, kind, _)| match kind {
-            EventKind::ToolLength { offset, .. } => Some(*offset),
-            _ => None,
-        });
-        let setup = Setup { offset: offsets.next_back().unwrap(), ..Setup::default() };
+        let setup = last_setup(&ran);
         let moves: Vec<_> = ran.recorder.moves().map(|(_, at)| *at).collect();
         // The last four: to the point, down, back, and to the axis of the plane.
-        let goals = [[x, y, z], [x, y, z - 20.0], [x, y, z], [0.0, 0.0, z]].map(|p| on_part(Vector3::from(p)));
+        let goals = [[x, y, z], [x, y, z - 20.0], [x, y, z], [0.0, 0.0, z]].map(|p| set_up.on_part(in_work(Vector3::from(p))));
         for (at, goal) in moves[moves.len() - 4..].iter().zip(goals) {
             let pose = machine.forward(at, &setup);
             prop_assert!((pose.tip - goal).norm() < 1e-6, "{} is not {goal}\n{program}", pose.tip);
@@ -157,25 +192,18 @@ proptest! {
         angles in prop::array::uniform4(-179.0..179.0_f64),
         length in 10.0..250.0_f64,
     ) {
-        let machine = arrangement.machine();
-        let zero = arrangement.rotary_zero(&machine);
-        let written = |value: f64| (value * 1000.0).round() / 1000.0;
-        let origin = machine.part_frame(&zero) * Point3::origin() + Vector3::z() * arrangement.pivot;
-        let work = origin.coords.map(written);
+        let set_up = SetUp::of(&arrangement);
+        let machine = &set_up.machine;
         let ([x, y, z], [u, v, w], [a, c, e, g]) = (from.map(written), to.map(written), angles);
         let program = format!(
-            "O1\n#5221={:.3}\n#5222={:.3}\n#5223={:.3}\n#5224={:.3}\n#5226={:.3}\n#11001={length:.3}\nG90 G21\n\
+            "O1\n{}\
              G43.4 H1\nG00 X{x:.3} Y{y:.3} Z{z:.3} A{a:.3} C{c:.3}\nM00\n\
              G01 X{u:.3} Y{v:.3} Z{w:.3} A{e:.3} C{g:.3} F1000\nM30\n",
-            work.x, work.y, work.z, zero[3], zero[5]
+            set_up.offsets(length)
         );
-        let ran = run(&machine, &program);
+        let ran = run(machine, &program);
         prop_assert!(matches!(ran.outcome, Outcome::End), "{:?}\n{program}", ran.outcome);
-        let on_part = |point: [f64; 3]| {
-            let placed = Point3::from(Vector3::from(point) + work) - Vector3::z() * arrangement.pivot;
-            machine.part_frame(&zero).inverse_transform_point(&placed)
-        };
-        let (start, end) = (on_part([x, y, z]), on_part([u, v, w]));
+        let [start, end] = [[x, y, z], [u, v, w]].map(|point| set_up.on_part(Vector3::from(point)));
         let mut offset = Position::default();
         offset[2] = written(length);
         let setup = Setup { offset, ..Setup::default() };
@@ -219,7 +247,7 @@ proptest! {
             return Ok(());
         }
         let mut offset = Position::default();
-        offset[2] = (length * 1000.0).round() / 1000.0;
+        offset[2] = written(length);
         let setup = Setup { offset, ..Setup::default() };
         let moves: Vec<_> = ran.recorder.moves().map(|(_, at)| *at).collect();
         let tip = machine.forward(&moves[0], &setup).tip;
@@ -241,28 +269,20 @@ proptest! {
         turn in -180.0..180.0_f64,
         length in 10.0..250.0_f64,
     ) {
-        let machine = arrangement.machine();
-        let zero = arrangement.rotary_zero(&machine);
-        let written = |value: f64| (value * 1000.0).round() / 1000.0;
-        let origin = machine.part_frame(&zero) * Point3::origin() + Vector3::z() * arrangement.pivot;
-        let work = origin.coords.map(written);
+        let set_up = SetUp::of(&arrangement);
+        let machine = &set_up.machine;
         let ([px, py, pz], [x, y, z], [a, c]) = (plane.map(written), point.map(written), angles);
         let program = format!(
-            "O1\n#5221={:.3}\n#5222={:.3}\n#5223={:.3}\n#5224={:.3}\n#5226={:.3}\n#11001={length:.3}\nG90 G21\n\
+            "O1\n{}\
              G00 A{a:.3} C{c:.3}\nG68.3 X{px:.3} Y{py:.3} Z{pz:.3} R{turn:.3}\nG43 H1 G00 X0 Y0 Z0\nX{x:.3} Y{y:.3} Z{z:.3}\nM30\n",
-            work.x, work.y, work.z, zero[3], zero[5]
+            set_up.offsets(length)
         );
-        let ran = run(&machine, &program);
+        let ran = run(machine, &program);
         prop_assert!(matches!(ran.outcome, Outcome::End), "{:?}\n{program}", ran.outcome);
-        let mut offsets = ran.recorder.0.iter().filter_map(|(_, kind, _)| match kind {
-            EventKind::ToolLength { offset, .. } => Some(*offset),
-            _ => None,
-        });
-        let setup = Setup { offset: offsets.next_back().unwrap(), ..Setup::default() };
+        let setup = last_setup(&ran);
         let moves: Vec<_> = ran.recorder.moves().map(|(_, at)| *at).collect();
         let [at_origin, at_point] = [moves[moves.len() - 2], moves[moves.len() - 1]].map(|at| machine.forward(&at, &setup));
-        let placed = Point3::from(Vector3::new(px, py, pz) + work) - Vector3::z() * arrangement.pivot;
-        let goal = machine.part_frame(&zero).inverse_transform_point(&placed);
+        let goal = set_up.on_part(Vector3::new(px, py, pz));
         prop_assert!((at_origin.tip - goal).norm() < 1e-6, "{} is not {goal}\n{program}", at_origin.tip);
         let way = at_point.tip - at_origin.tip;
         prop_assert!((way.norm() - Vector3::new(x, y, z).norm()).abs() < 1e-6);

@@ -156,15 +156,17 @@ impl NominalAxes {
         nearest.or(entered.next_back()).map_or(0, |(index, _)| index)
     }
 
+    /// Returns true if any hole has a thread.
+    pub fn has_threads(&self) -> bool {
+        0.0 < self.max_thread
+    }
+
     /// Returns the threaded hole that a motion along `out` is in, with its axis' distance; `None` beside the threads.
     pub fn threaded(
         &self,
         motion: [&Point3<f64>; 2],
         out: &Unit<Vector3<f64>>,
     ) -> Option<(&NominalAxis, &NominalThread, f64)> {
-        if self.max_thread == 0.0 {
-            return None;
-        }
         let (index, distance) =
             self.nearest_of(motion, out, self.max_thread, |axis| axis.thread.is_some())?;
         let axis = &self.axes[index];

@@ -81,7 +81,7 @@ impl Slice {
         }
     }
 
-    /// Marks all axes with the number in `AX[#510]=40.`: another number is another axis.
+    /// Marks all axes with the number in `AX[#510]=40.`, behind the words of the block: another number is another axis.
     fn follow_computed_axes(&mut self, block: &Block<'_>, words: &Words) {
         for axis in words.list.iter().filter_map(|word| words.axis(word.axis?)) {
             let marks = self.operand_marks(block, axis);
@@ -104,11 +104,7 @@ impl Slice {
             WordOperand::Literal(_) | WordOperand::Number(_) | WordOperand::G(..) => {}
         }
         if let Some(axis) = word.axis.and_then(|place| words.axis(place)) {
-            // Another value is another axis.
-            let axis_marks = self.operand_marks(block, axis);
-            self.machine.axes.iter_mut().for_each(|axis| *axis |= axis_marks);
-            self.further |= axis_marks;
-            marks |= axis_marks;
+            marks |= self.operand_marks(block, axis);
         }
         let evaluate = |registers: &Registers| registers.evaluate_word(words, word).ok().flatten();
         let value = block.registers.without_side_effects(evaluate).map(|raw| raw.value());

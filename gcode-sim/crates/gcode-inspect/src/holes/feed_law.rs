@@ -71,7 +71,7 @@ impl HoleExtractor<'_> {
 
     /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be.
     pub(super) fn may_be_shifted(&self) -> bool {
-        let kind = self.setup.tool.and_then(|number| self.machine.find_tool(number)?.kind);
+        let kind = self.machine.kind_of(self.setup.tool);
         let may_be_bar = kind.map_or(self.has_tool_turned, |kind| kind == ToolKind::BoringBar);
         may_be_bar && self.cutting_state.spindle_direction == SpindleDirection::Off
     }
@@ -186,8 +186,8 @@ impl HoleExtractor<'_> {
             // Without nominal holes the direction of the tool may be that of the feed.
             None if is_along(axis, &(to - from)) || self.metal.holes.is_none() => Profile::flat(0.0, true),
             None => {
-                if self.surface.is_some() && !self.unsized_mills.contains(&self.setup.tool) {
-                    self.unsized_mills.push(self.setup.tool);
+                if self.surface.is_some() {
+                    self.note_unsized_mill(self.setup.tool);
                 }
                 Profile::flat(MAX_RADIUS, false)
             }

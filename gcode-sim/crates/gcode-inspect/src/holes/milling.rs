@@ -26,7 +26,7 @@ impl HoleExtractor<'_> {
         let range = self.milling.0.get(&key).copied();
         let is_known = range.is_some_and(|[least, most]| least <= rate.0 && rate.0 <= most);
         let is_straight = path.len() == 2;
-        let kind = state.tool.and_then(|number| self.machine.find_tool(number)?.kind);
+        let kind = self.machine.kind_of(state.tool);
         let wrong_kind = kind.filter(|kind| is_straight && kind.cuts_with_end());
         let is_done = is_known && !is_stopped && wrong_kind.is_none();
         if is_done || !path.windows(2).any(|chord| self.mills(&chord[0], &chord[1])) {

@@ -51,7 +51,7 @@ impl HoleExtractor<'_> {
     /// file states: only a tap reverses, and a stop is a boring bar's.
     pub(super) fn check_spindle(&mut self, backtrace: &Backtrace, line: &CuttingLine) {
         let number = line.cutting_state.tool;
-        let kind = number.and_then(|number| self.machine.find_tool(number)?.kind);
+        let kind = self.machine.kind_of(number);
         let is_bar = matches!(kind, Some(ToolKind::BoringBar)) && line.spindle != SpindleInHole::Reversed;
         let needs_spindle = kind.is_some_and(|kind| kind != ToolKind::Tap) && !is_bar;
         if !needs_spindle && self.process_limits.tool_process(number).is_none() {

@@ -346,8 +346,7 @@ impl HoleExtractor<'_> {
         if line.tool_axis.is_some() {
             return if line.is_across_tool() { CutKind::Oblique } else { along_tool };
         }
-        let tool = line.cutting_state.tool.and_then(|number| self.machine.find_tool(number));
-        let is_mill = tool.is_some_and(|tool| tool.kind == Some(ToolKind::EndMill));
+        let is_mill = self.machine.kind_of(line.cutting_state.tool) == Some(ToolKind::EndMill);
         match line.upright.map(|upright| upright.dot(&line.out)) {
             Some(cosine) if is_mill && cosine.abs() <= MAX_SQUARE_SINE => CutKind::Oblique,
             Some(cosine) if cosine.abs() <= MAX_SQUARE_SINE => CutKind::Across { is_between_rapids },

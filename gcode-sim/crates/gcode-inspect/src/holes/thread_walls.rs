@@ -21,14 +21,17 @@ const MAX_AXIAL_SINE: f64 = 0.1;
 impl HoleExtractor<'_> {
     /// Reports a straight motion along the tool, at the side of a threaded hole, that cuts more than a turn of the thread.
     pub(super) fn check_thread_wall(&mut self, event: &Event<'_>, from: &Point3<f64>) {
+        if !self.strokes.nominal_axes().has_threads() {
+            return;
+        }
         let to = self.pose.tip;
         let (Some(axis), Some(diameter)) = (self.pose.axis, self.machine.diameter_of(self.setup.tool)) else {
             return;
         };
         let travel = to - from;
         let is_along = axis.cross(&travel).norm() <= MAX_AXIAL_SINE * travel.norm();
-        let kind = self.setup.tool.and_then(|number| self.machine.find_tool(number)?.kind);
-        if !is_along || kind == Some(ToolKind::Tap) || self.cutting_state.rigid_run != 0 {
+        let is_tap = self.machine.kind_of(self.setup.tool) == Some(ToolKind::Tap);
+        if !is_along || is_tap || self.cutting_state.rigid_run != 0 {
             return;
         }
         let ends = if travel.dot(&axis) < 0.0 { [from, &to] } else { [&to, from] };

@@ -258,6 +258,11 @@ impl Machine {
         self.find_tool(tool?)?.diameter
     }
 
+    /// Returns the kind of the tool in the spindle; `None` if the tool or its kind is unknown.
+    pub(crate) fn kind_of(&self, tool: Option<u32>) -> Option<ToolKind> {
+        self.find_tool(tool?)?.kind
+    }
+
     /// Returns the rotary axes of a table that nothing describes, as bits: a program without them needs none.
     pub(crate) fn assumed_rotary_axes(&self) -> u8 {
         match self.has_default_table {

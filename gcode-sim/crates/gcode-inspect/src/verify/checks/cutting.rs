@@ -116,7 +116,7 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
 
 /// Reports a feed per revolution of several times what tables of cutting data give; an error above the diameter.
 fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
-    let kind = cut.tool.and_then(|number| machine.find_tool(number)?.kind);
+    let kind = machine.kind_of(cut.tool);
     let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < cut.speed.0;
     if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
         return None;
