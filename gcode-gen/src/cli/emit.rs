@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
-use gcode_draw::{Picture, Size};
+use gcode_draw::{FileFormat, Picture, Size};
 use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
@@ -87,8 +87,9 @@ fn stale_files(job: &Job, package: &Package, out: &Path) -> Vec<PathBuf> {
 /// Encodes the pictures as PNG by file name: `O8100.png`, and `O8400-tip.png` for a further view.
 pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)>, UsageError> {
     let size = Size::new(1600, 1200)?;
-    let drawn =
-        |(name, picture): &(String, Picture)| Ok((format!("{name}.png"), gcode_draw::draw(picture, size)?));
+    let drawn = |(name, picture): &(String, Picture)| {
+        Ok((format!("{name}.png"), gcode_draw::draw(picture, size, FileFormat::Png)?))
+    };
     checked.pictures.iter().map(drawn).collect()
 }
 

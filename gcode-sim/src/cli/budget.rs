@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicUsize;
 use clap::Args;
 
 use super::format::TextFormat;
+use super::picture_file::PictureFile;
 use super::{ExitStatus, UsageError, input, options, output, overwrite_guard, progress};
 use crate::report::budget::BudgetReport;
 use gcode_draw::Size;
@@ -47,8 +48,8 @@ pub(super) struct Arguments {
     threads: Option<NonZeroUsize>,
 
     /// Also draw each error source's share to this file
-    #[arg(long, value_name = "OUT.png")]
-    picture: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.png", value_parser = PictureFile::parser())]
+    picture: Option<PictureFile>,
 
     /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
@@ -61,10 +62,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if !(1..=MAX_SAMPLES).contains(&arguments.samples) {
         return Err(UsageError::new(format!("--samples {}: 1 to {MAX_SAMPLES}", arguments.samples)));
     }
-    if let Some(path) = &arguments.picture {
+    if let Some(file) = &arguments.picture {
         let machine = arguments.machine.as_deref();
         let files = [arguments.job.as_path(), arguments.errors.as_path()].into_iter().chain(machine);
-        overwrite_guard::check_not_input(path, &files.collect::<Vec<_>>())?;
+        overwrite_guard::check_not_input(file.path(), &files.collect::<Vec<_>>())?;
     }
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| in_job(&e))?;
     let reference = NominalPart::from_job(&job).map_err(|e| in_job(&e))?.into_holes();
@@ -99,11 +100,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         .map_err(|error| in_job(&error))?;
     let report = BudgetReport::new(&request, &result);
     output::report(&report, BudgetReport::text, arguments.format)?;
-    if let Some(path) = &arguments.picture {
+    if let Some(file) = &arguments.picture {
         // The height grows with the number of bars.
         let height = 120 + 25 * sources.len() as u32;
-        output::write(path, &report.bars().draw(Size::new(1200, height.max(360))?)?)?;
-        output::written("picture", path, arguments.format == TextFormat::Text)?;
+        file.plot(&report.bars(), Size::new(1200, height.max(360))?)?;
+        output::written("picture", file.path(), arguments.format == TextFormat::Text)?;
     }
     Ok(ExitStatus::Passed)
 }

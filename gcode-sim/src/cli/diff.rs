@@ -5,6 +5,7 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
+use super::picture_file::PictureFile;
 use super::project::{self, Project};
 use super::{ExitStatus, UsageError, options, output, page, render, unused_machine};
 use crate::report::changed_view;
@@ -39,8 +40,8 @@ pub(super) struct Arguments {
     tolerance: f64,
 
     /// Also draw the new holes over the old ones to this file
-    #[arg(long, value_name = "OUT.png")]
-    picture: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.png", value_parser = PictureFile::parser())]
+    picture: Option<PictureFile>,
 
     /// Also write a review page to this file: both programs side by side, their holes, paths, blocks and variables;
     /// opens in any browser
@@ -61,7 +62,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let programs = [arguments.old.as_path(), arguments.new.as_path()];
     let files: Vec<&Path> =
         programs.into_iter().chain(arguments.run.files()).chain(arguments.reference.as_deref()).collect();
-    options::check_files(&files, arguments.picture.as_deref(), arguments.page.as_deref())?;
+    options::check_files(
+        &files,
+        arguments.picture.as_ref().map(PictureFile::path),
+        arguments.page.as_deref(),
+    )?;
     let mut before = arguments.run.clone();
     if !arguments.old_libraries.is_empty() {
         before.libraries.clone_from(&arguments.old_libraries);
@@ -100,7 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         FindingFormat::Text => output::print(&report.text())?,
         FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name), None)?,
     }
-    if let Some(path) = &arguments.picture {
+    if let Some(file) = &arguments.picture {
         let names = [&new_request, &old_request].map(render::name);
         // Equal names are distinguished by their folders.
         let [is, was] = if names[0] == names[1] {
@@ -112,8 +117,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let (machine, reference) = (&new_request.machine, reference.as_ref());
         let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), reference);
         let picture = gcode_draw::top_view(&view);
-        render::write(&picture, "1600x1200", path)?;
-        output::written("picture", path, arguments.format == FindingFormat::Text)?;
+        file.draw(&picture, gcode_draw::Size::default())?;
+        output::written("picture", file.path(), arguments.format == FindingFormat::Text)?;
     }
     if let (Some(path), Some(old_trace), Some(new_trace)) = (&arguments.page, &old_trace, &new_trace) {
         let judged = |revision: &Revision, request: &Request| {

@@ -16,6 +16,7 @@ pub mod output;
 pub mod overwrite_guard;
 pub mod packaging;
 mod page;
+mod picture_file;
 mod progress;
 mod project;
 mod readings;

@@ -1,10 +1,10 @@
 //! `gcode-sim readings`: shows the readings of an edge finder fed along the part's surface.
-use std::path::PathBuf;
 
 use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
+use super::picture_file::PictureFile;
 use super::{ExitStatus, UsageError, options, output, render};
 use crate::report::readings::ReadingsReport;
 use gcode_draw::Size;
@@ -20,8 +20,8 @@ pub(super) struct Arguments {
     tolerance: Option<f64>,
 
     /// Also draw the readings along the path to this file
-    #[arg(long, value_name = "OUT.png")]
-    picture: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.png", value_parser = PictureFile::parser())]
+    picture: Option<PictureFile>,
 
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x900")]
@@ -35,7 +35,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (program, _) = arguments.program.completed()?;
     let (request, mut folders) =
-        options::checked_request(&program, None, arguments.picture.as_deref(), None)?;
+        options::checked_request(&program, None, arguments.picture.as_ref().map(PictureFile::path), None)?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
         return Err(UsageError::new("readings need a part: give it with --part JOB.toml"));
@@ -47,10 +47,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         ListFormat::Json => output::json(&report)?,
         ListFormat::Csv => output::print(&report.csv())?,
     }
-    if let Some(path) = &arguments.picture {
+    if let Some(file) = &arguments.picture {
         let size: Size = arguments.size.parse()?;
-        output::write(path, &report.plot().draw(size)?)?;
-        output::written("picture", path, arguments.format == ListFormat::Text)?;
+        file.plot(&report.plot(), size)?;
+        output::written("picture", file.path(), arguments.format == ListFormat::Text)?;
     }
     let status = super::findings(&following.readings.findings, &following.run);
     if status != ExitStatus::Passed {

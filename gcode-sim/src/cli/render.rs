@@ -6,10 +6,11 @@ use clap::{Args, ValueEnum};
 use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
 use super::library::Folders;
+use super::picture_file::PictureFile;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, tool_path, top};
-use gcode_draw::{Arrangement, ColorBy, FluteView, Picture, Projection, Size, StandardView, TopView};
+use gcode_draw::{Arrangement, ColorBy, FluteView, Picture, Projection, StandardView, TopView};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_inspect::verify::{Answer, Tolerances, denied_words};
@@ -22,9 +23,9 @@ pub(super) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// The picture to write
-    #[arg(short, long, value_name = "OUT.png")]
-    output: PathBuf,
+    /// The picture to write: .png, .svg or .pdf
+    #[arg(short, long, value_name = "OUT.png", value_parser = PictureFile::parser())]
+    output: PictureFile,
 
     /// The reference: draws the outline, each hole's verdict and its deviation
     #[arg(long, value_name = "REF")]
@@ -118,8 +119,12 @@ enum ColorMeaning {
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let views = views(&arguments.view)?;
     let (program, _) = arguments.program.completed()?;
-    let (mut request, mut folders) =
-        options::checked_request(&program, arguments.reference.as_deref(), Some(&arguments.output), None)?;
+    let (mut request, mut folders) = options::checked_request(
+        &program,
+        arguments.reference.as_deref(),
+        Some(arguments.output.path()),
+        None,
+    )?;
     let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
@@ -150,9 +155,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             of_path(arguments, &views, &mut request, &mut folders, reference.as_ref(), tolerance)?
         }
     };
-    write(&drawn.picture, &arguments.size, &arguments.output)?;
+    arguments.output.draw(&drawn.picture, arguments.size.parse()?)?;
     let (verdict, summary) = drawn.verdict.unzip();
-    let picture = arguments.output.display().to_string();
+    let picture = arguments.output.path().display().to_string();
     let report = RenderReport { picture, view: drawn.view, verdict, summary };
     output::report(&report, RenderReport::text, arguments.format)?;
     let of_findings = super::findings(&drawn.findings, &drawn.run);
@@ -309,17 +314,6 @@ fn flute_picture(view: View, drawn: &FluteView) -> Result<Picture, UsageError> {
             Err(UsageError::new("this view shows holes; a burr has the views side, tip and helix"))
         }
     }
-}
-
-/// Draws a picture to a PNG file of exactly this size.
-pub(super) fn write(picture: &Picture, size: &str, path: &Path) -> Result<(), UsageError> {
-    let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
-    if path.extension().is_some_and(is_other) {
-        let (path, png) = (path.display(), path.with_extension("png"));
-        return Err(UsageError::new(format!("{path}: a picture is a PNG file: name it {}", png.display())));
-    }
-    let size: Size = size.parse()?;
-    output::write(path, &gcode_draw::draw(picture, size)?)
 }
 
 /// Returns the file name of the program without its folder.

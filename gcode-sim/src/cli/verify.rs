@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::FindingFormat;
 use super::library::Folders;
+use super::picture_file::PictureFile;
 use super::{ExitStatus, UsageError, options, output, page, progress, render};
 use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
@@ -50,8 +51,8 @@ pub(super) struct Arguments {
     full: bool,
 
     /// Also draw to this file: the top view of holes, a cylinder unrolled, or a burr from the side
-    #[arg(long, value_name = "OUT.png")]
-    picture: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.png", value_parser = PictureFile::parser())]
+    picture: Option<PictureFile>,
 
     /// Also write a page to this file: the holes with their deviations, the path, the blocks and the values of the
     /// variables; opens in any browser
@@ -80,7 +81,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (arguments, path) = &arguments.completed()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
-    let results = (arguments.picture.as_deref(), arguments.page.as_deref());
+    let results = (arguments.picture.as_ref().map(PictureFile::path), arguments.page.as_deref());
     let (mut request, folders) =
         options::checked_request(&arguments.program, Some(path), results.0, results.1)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
@@ -128,8 +129,8 @@ fn print_verdict(
     table: impl Fn() -> String,
     picture: impl Fn() -> Picture,
 ) -> Result<ExitStatus, UsageError> {
-    if let Some(path) = &arguments.picture {
-        render::write(&picture(), "1600x1200", path)?;
+    if let Some(file) = &arguments.picture {
+        file.draw(&picture(), gcode_draw::Size::default())?;
     }
     let sources = run.control.memory().sources();
     match arguments.format {
@@ -141,8 +142,8 @@ fn print_verdict(
             output::sarif(findings, Some(Invocation::new(exit_code, conclusion.line())))?;
         }
     }
-    if let Some(path) = &arguments.picture {
-        output::written("picture", path, arguments.format == FindingFormat::Text)?;
+    if let Some(file) = &arguments.picture {
+        output::written("picture", file.path(), arguments.format == FindingFormat::Text)?;
     }
     Ok(super::concluded(conclusion, findings, run))
 }

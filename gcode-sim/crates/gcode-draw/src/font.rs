@@ -17,6 +17,16 @@ impl Font {
         Self(FontRef::try_from_slice(TTF).expect("the embedded font is a font: every picture test reads it"))
     }
 
+    /// Returns the bytes of the font's file.
+    pub(super) fn file(&self) -> &'static [u8] {
+        TTF
+    }
+
+    /// Returns the number of a character's glyph.
+    pub(super) fn glyph(&self, character: char) -> u16 {
+        self.0.glyph_id(character).0
+    }
+
     /// Returns the width in pixels at an em of `size` pixels.
     pub(super) fn width(&self, text: &str, size: f64) -> f64 {
         let font = self.0.as_scaled(self.scale(size));

@@ -226,7 +226,7 @@ mod tests {
                 zone: Some(0.1),
             },
             legend: samples.map(|sample| LegendItem::new(sample, "meaning of this symbol")).into(),
-            chart: None,
+            ..Picture::default()
         }
     }
 

@@ -1,7 +1,7 @@
-//! Draws holes, tool paths, flutes and charts as PNG and SVG, and compares pictures.
+//! Draws holes, tool paths, flutes and charts as PNG, SVG and PDF, and compares pictures.
 //!
 //! **In:** a [`Scene`]: lines, circles, texts and marks in mm, each with its meaning, on the part (3 dimensions)
-//! or on a sheet (2). **Out:** the bytes of a PNG file, the text of an SVG element, or the scene itself as JSON
+//! or on a sheet (2). **Out:** the bytes of a PNG, SVG or PDF file, the text of an SVG element, or the scene itself as JSON
 //! for a viewer; the same bytes for the same scene.
 //!
 //! A [`Sheet`] has every symbol and text at its position on the paper. [`Sheet::to_scale`] draws a scene as it
@@ -31,7 +31,7 @@
 //! `views`. [`draw`] lays out, paints and encodes; [`Plot`] is a chart alone.
 //!
 //! ```
-//! use gcode_draw::{DrawnHole, HoleStatus, Size, TopView, compare, draw, main_view};
+//! use gcode_draw::{DrawnHole, FileFormat, HoleStatus, Size, TopView, compare, draw, main_view};
 //! use gcode_part::Hole;
 //!
 //! let nominal =
@@ -47,10 +47,10 @@
 //! };
 //! let (name, tolerance) = ("O8100.nc".to_owned(), Some(0.1));
 //! let view = TopView { name, tolerance, holes: vec![hole], ..TopView::default() };
-//! let png = draw(&main_view(&view), Size::new(800, 600)?)?;
+//! let png = draw(&main_view(&view), Size::new(800, 600)?, FileFormat::Png)?;
 //! assert!(png.starts_with(b"\x89PNG"));
 //!
-//! let again = draw(&main_view(&view), Size::new(800, 600)?)?;
+//! let again = draw(&main_view(&view), Size::new(800, 600)?, FileFormat::Png)?;
 //! assert!(compare(&png, &again, 0)?.is_none());
 //! # Ok::<(), gcode_draw::PictureError>(())
 //! ```
@@ -58,7 +58,9 @@
 mod chart;
 mod compare;
 mod deviation_dials;
+mod file_format;
 mod font;
+mod hole_table;
 mod ink;
 mod label_layout;
 mod labels;
@@ -69,6 +71,7 @@ mod measure;
 mod obstacle;
 mod palette;
 mod panel;
+mod pdf;
 mod picture;
 mod plot;
 mod raster;
@@ -84,6 +87,7 @@ mod words;
 
 pub use chart::{Chart, ChartMarker, Curve, Graph};
 pub use compare::{Difference, compare};
+pub use file_format::FileFormat;
 pub use ink::Rect;
 pub use layout::lay_out;
 pub use picture::Picture;
@@ -122,6 +126,9 @@ pub enum PictureError {
     /// A coordinate of the scene cannot be drawn; the hole or line that has it.
     #[error("{0} has a coordinate that is not a number or lies beyond 1000000 mm")]
     OffTheSheet(String),
+    /// The ending of a file's name names no format of pictures; the name.
+    #[error("{0}: a picture is a .png, .svg or .pdf file")]
+    NoFormat(String),
     /// The PNG encoder fails.
     #[error("the picture cannot be written as PNG: {0}")]
     Encode(String),
@@ -140,10 +147,10 @@ pub fn main_view(view: &TopView) -> Picture {
     development(view).unwrap_or_else(|| top_view(view))
 }
 
-/// Draws a picture as a PNG file of exactly this size.
+/// Draws a picture as a file of exactly this size; in SVG and PDF 96 pixels are an inch.
 ///
 /// # Errors
 /// [`PictureError::OffTheSheet`] if a coordinate cannot be drawn, see [`lay_out`].
-pub fn draw(picture: &Picture, size: Size) -> Result<Vec<u8>, PictureError> {
-    png(&paint(&lay_out(picture, size)?))
+pub fn draw(picture: &Picture, size: Size, format: FileFormat) -> Result<Vec<u8>, PictureError> {
+    format.encode(&lay_out(picture, size)?, &picture.title.name)
 }

@@ -64,7 +64,7 @@ fn draw_dial(
     let hole = (mark.radius * frame.scale.factor).max(0.28 * text);
     let mut inks = vec![
         DrawCommand::Disc { centre, radius: zone, color: palette::PAPER },
-        DrawCommand::Ring { centre, radius: zone, ink: palette::thin(text, palette::THIN) },
+        DrawCommand::Ring { centre, radius: zone, ink: palette::zone(text) },
         DrawCommand::Ring { centre, radius: hole, ink: palette::thin(text, palette::TEXT) },
     ];
     let (mut cut, mut strayed) = (false, false);

@@ -9,7 +9,7 @@ use super::scene::{HoleStatus, Pen, Style, Tint};
 pub(super) const PAPER: Rgb = Rgb(255, 255, 255);
 pub(super) const TEXT: Rgb = Rgb(0, 0, 0);
 pub(super) const SOFT_TEXT: Rgb = Rgb(70, 70, 70);
-/// Leaders, direction arrows, the circle of the tolerance zone.
+/// Leaders, direction arrows, tolerance zones.
 pub(super) const THIN: Rgb = Rgb(90, 90, 90);
 /// Tolerance band of a graph.
 pub(super) const BAND: Rgb = Rgb(238, 238, 238);
@@ -32,6 +32,11 @@ pub(super) fn status_colour(status: HoleStatus) -> Rgb {
 /// Returns a thin solid line at a text height of `text` pixels.
 pub(super) fn thin(text: f64, color: Rgb) -> Ink {
     Ink::solid(0.06 * text, color)
+}
+
+/// Returns the line of a tolerance zone at a text height of `text` pixels: a chain line, which no edge of a part has.
+pub(super) fn zone(text: f64) -> Ink {
+    Ink { dash: Some([0.5, 0.16, 0.12, 0.16].map(|length| length * text)), ..thin(text, THIN) }
 }
 
 /// Returns the line of a leader from a label at a text height of `text` pixels.

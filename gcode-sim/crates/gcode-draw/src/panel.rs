@@ -48,6 +48,7 @@ impl PanelRow {
             Self::Rule => 4,
             Self::Sample(
                 Sample::Deviation
+                | Sample::HoleInZone
                 | Sample::Status(_)
                 | Sample::Plain(_)
                 | Sample::Shades(..)
@@ -121,21 +122,24 @@ impl Panel {
         if let Some(column) = self.legend {
             commands.push(rule(px(drawing.left, drawing.bottom), px(drawing.right, drawing.bottom)));
             commands.push(rule(px(page.centre().x, drawing.bottom), px(page.centre().x, page.bottom)));
-            commands.extend(fitted(self.title, frame, title));
-            commands.extend(fitted(column, frame, legend));
+            commands.extend(fitted(self.title, frame, title).0);
+            commands.extend(fitted(column, frame, legend).0);
         } else {
             commands.push(rule(px(drawing.right, drawing.top), px(drawing.right, drawing.bottom)));
             let both =
                 |text: f64| title(text).into_iter().chain([PanelRow::Rule]).chain(legend(text)).collect();
-            commands.extend(fitted(self.title, frame, both));
+            let (inks, height) = fitted(self.title, frame, both);
+            commands.extend(inks);
+            let rest = Rect { top: self.title.top + height + frame.text_size, ..self.title };
+            commands.extend(picture.table.draw(rest, &frame.font, frame.text_size));
         }
         commands
     }
 }
 
 /// Sets the rows in the largest text that fits the column. If even the smallest is too large, the least
-/// important rows are omitted and a row of dots marks the omission.
-fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<PanelRow>) -> Vec<DrawCommand> {
+/// important rows are omitted and a row of dots marks the omission. Returns the height too.
+fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<PanelRow>) -> (Vec<DrawCommand>, f64) {
     let least = 9.5f64.min(frame.text_size);
     let mut text = frame.text_size;
     let (mut inks, mut height) = flow(&rows(text), column, &frame.font, text);
@@ -152,7 +156,7 @@ fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<PanelRow>) -> V
         left.push(PanelRow::Dots);
         (inks, height) = flow(&left, column, &frame.font, text);
     }
-    inks
+    (inks, height)
 }
 
 fn title_rows(picture: &Picture, text: f64) -> Vec<PanelRow> {
@@ -186,6 +190,7 @@ fn legend_rows(picture: &Picture, shown: LegendUse, notes: &[String], text: f64)
                 let words = format!("{} ×{}", item.text, plain(shown.magnification?));
                 return Some(PanelRow::Sample(Sample::Deviation, words));
             }
+            Sample::HoleInZone if shown.magnification.is_none() => return None,
             Sample::Status(status) if shown.has_plain_good && status.is_good() => Sample::Plain(status),
             Sample::Status(status) if shown.has_plain_rest && !status.is_good() => Sample::Plain(status),
             sample => sample,
@@ -315,12 +320,15 @@ fn sample_commands(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
         Sample::Shades(..) | Sample::Nothing => Vec::new(),
         Sample::Direction => symbol::arrow(left, right, Ink::solid(0.08 * text, palette::TEXT), 0.5 * text),
         Sample::Displacement => displacement_commands(left, right, 0.3 * text, text).into(),
+        Sample::HoleInZone => {
+            let ink = palette::thin(text, palette::TEXT);
+            vec![DrawCommand::Ring { centre: middle, radius: 0.28 * text, ink }]
+        }
         Sample::Deviation => {
             let end = px(middle.x + 0.3 * text, middle.y - 0.2 * text);
             let color = palette::status_colour(HoleStatus::Good);
-            let circle = palette::thin(text, palette::THIN);
             vec![
-                DrawCommand::Ring { centre: middle, radius: 0.62 * text, ink: circle },
+                DrawCommand::Ring { centre: middle, radius: 0.62 * text, ink: palette::zone(text) },
                 DrawCommand::line(middle, end, Ink::solid((0.13 * text).max(1.5), color)),
                 DrawCommand::Disc { centre: end, radius: (0.17 * text).max(1.8), color },
             ]

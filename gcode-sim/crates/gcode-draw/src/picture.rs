@@ -1,5 +1,6 @@
 //! Pictures: a scene or a chart with a title block and a legend, as a view builds them.
 use super::chart::Chart;
+use super::hole_table::HoleTable;
 use super::scene::{HoleStatus, Pen, Scene, Sign, Style};
 use super::side::Projection;
 
@@ -10,6 +11,8 @@ pub struct Picture {
     /// The drawing, mm.
     pub scene: Scene,
     pub(super) legend: Vec<LegendItem>,
+    /// Table in the rest of the panel.
+    pub(super) table: HoleTable,
     /// Chart that replaces the drawing.
     pub(super) chart: Option<Chart>,
 }
@@ -65,6 +68,8 @@ pub(super) enum Sample {
     Direction,
     /// Deviation in its zone; the sheet adds the magnification, or omits the line if none is drawn.
     Deviation,
+    /// Circle of a hole within the circle of its zone; omitted if no deviation is drawn.
+    HoleInZone,
     /// Line to the actual position of a hole; omitted if none is drawn.
     Displacement,
 }

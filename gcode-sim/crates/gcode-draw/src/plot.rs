@@ -7,7 +7,7 @@ use super::scene::{Align, HoleStatus};
 use super::sheet::Sheet;
 use super::size::Size;
 use super::words::Words;
-use super::{PictureError, paint, png};
+use super::{FileFormat, PictureError};
 
 /// A chart or bars with a title and notes.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,12 +42,12 @@ pub struct Bar {
 }
 
 impl Plot {
-    /// Draws the plot as a PNG file of exactly this size.
+    /// Draws the plot as a file of exactly this size.
     ///
     /// # Errors
     /// [`PictureError::Encode`] if the PNG encoder fails.
-    pub fn draw(&self, size: Size) -> Result<Vec<u8>, PictureError> {
-        png(&paint(&self.lay_out(size)))
+    pub fn draw(&self, size: Size, format: FileFormat) -> Result<Vec<u8>, PictureError> {
+        format.encode(&self.lay_out(size), &self.title)
     }
 
     /// Places title and notes above the contents.

@@ -1,18 +1,30 @@
 //! Writes a sheet as SVG; makes no layout decision.
 use super::ink::{DrawCommand, Ink, Px, Rgb};
+use super::palette;
 use super::scene::Align;
 use super::sheet::Sheet;
 
-/// Writes a sheet as an SVG element with a title for screen readers: a file of its own, or part of a page.
+/// Writes a sheet as an SVG element with a title for screen readers, as a part of a page.
 ///
 /// Texts name the font that the layout measures, and the usual sans serif where it is not installed.
 pub fn svg(sheet: &Sheet, title: &str) -> String {
+    written(sheet, title, "", "")
+}
+
+/// Writes a sheet as an SVG file of its size on white.
+pub(super) fn svg_file(sheet: &Sheet, title: &str) -> String {
+    let [width, height] = [sheet.page.width(), sheet.page.height()].map(number);
+    let paper = format!("<rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>", colour(palette::PAPER));
+    written(sheet, title, &format!(" width=\"{width}\" height=\"{height}\""), &paper)
+}
+
+fn written(sheet: &Sheet, title: &str, size: &str, paper: &str) -> String {
     let [width, height] = [sheet.page.width(), sheet.page.height()].map(number);
     let elements: String = sheet.commands.iter().map(element).collect();
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\"{size} viewBox=\"0 0 {width} {height}\" role=\"img\" \
          font-family=\"DejaVu Sans, Arial, sans-serif\" fill=\"none\" stroke-linecap=\"round\" \
-         stroke-linejoin=\"round\"><title>{}</title>{elements}</svg>",
+         stroke-linejoin=\"round\"><title>{}</title>{paper}{elements}</svg>",
         escaped(title)
     )
 }

@@ -21,7 +21,7 @@ pub fn development(view: &TopView) -> Option<Picture> {
     let legend = sheet.legend(view, &marks);
     let title = view.title(what, view.tolerance, Some(sheet.range()));
     let scene = Scene { axes, strokes: sheet.strokes(), marks, zone: view.tolerance };
-    Some(Picture { title, scene, legend, ..Picture::default() })
+    Some(Picture { title, scene, legend, table: view.table(), ..Picture::default() })
 }
 
 /// Possible numbers of strips: every strip spans a whole number of degrees.

@@ -115,7 +115,7 @@ fn picture(
             zone: None,
         },
         legend,
-        chart: None,
+        ..Picture::default()
     }
 }
 

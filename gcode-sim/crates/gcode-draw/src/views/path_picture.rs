@@ -69,7 +69,7 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     let legend = legend(view, &drawer, &scene, arrangement, &height_name);
     let mut title = view.title(title_of(arrangement), view.tolerance, None);
     title.lines.extend(notes);
-    Picture { title, scene, legend, ..Picture::default() }
+    Picture { title, scene, legend, table: view.table(), ..Picture::default() }
 }
 
 /// Returns the names of the views, and the direction of a single one.

@@ -2,6 +2,7 @@
 use nalgebra::Vector3;
 
 use super::purpose::{PicturePurpose, change_headline};
+use crate::hole_table::{Column, HoleTable};
 use crate::measure::plain;
 use crate::picture::{LegendItem, Picture, Sample, Title};
 use crate::scene::{Axis, HoleStatus, Mark, Pen, Scene, Shape, Stroke, ZoneDeviation};
@@ -126,7 +127,13 @@ pub fn top_view(view: &TopView) -> Picture {
     let what = format!("Top view, seen from {}", view.side.name());
     let position = view.tolerance.filter(|_| view.purpose == PicturePurpose::Verdict);
     let legend = legend(view, &scene);
-    Picture { title: view.title(what, position, hidden), scene, legend, ..Picture::default() }
+    Picture {
+        title: view.title(what, position, hidden),
+        scene,
+        legend,
+        table: view.table(),
+        ..Picture::default()
+    }
 }
 
 /// Removes the numbers and dials that would hide the holes of a dense pattern.
@@ -232,7 +239,51 @@ impl TopView {
         let zone = self.tolerance.filter(|_| marks.iter().any(|mark| mark.deviation.is_some()));
         let zone =
             zone.map(|zone| format!("{} Φ{}, axial view,", self.purpose.deviation_label(), plain(zone)));
-        signs.chain(zone.map(|text| LegendItem::new(Sample::Deviation, text))).collect()
+        let zone = zone.map(|text| {
+            let hole = LegendItem::new(Sample::HoleInZone, "the hole, not enlarged");
+            [LegendItem::new(Sample::Deviation, text), hole]
+        });
+        signs.chain(zone.into_iter().flatten()).collect()
+    }
+
+    /// Returns the table of the holes: place, size, and with a verdict the deviation. A comparison of revisions has none.
+    pub(super) fn table(&self) -> HoleTable {
+        let shown = || self.holes.iter().filter_map(|hole| Some((hole, hole.shown()?)));
+        if self.purpose == PicturePurpose::Change || shown().next().is_none() {
+            return HoleTable::default();
+        }
+        let diameters = |hole: &Hole| {
+            let mut all: Vec<f64> = hole.features.iter().map(|feature| feature.diameter).collect();
+            all.extend(hole.diameter.filter(|_| hole.features.is_empty()));
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all.into_iter().map(|diameter| signed(diameter, 3)).collect::<Vec<_>>().join("/")
+        };
+        let has_diameter = shown().any(|(_, hole)| !diameters(hole).is_empty());
+        let has_position = shown().any(|(hole, _)| hole.position_deviation.is_some());
+        let columns = [
+            (true, "hole", 9),
+            (true, "x", 8),
+            (true, "y", 7),
+            (true, "z", 6),
+            (has_diameter, "Φ", 3),
+            (true, "depth", 2),
+            (has_position, "position", 5),
+        ];
+        let row = |(drawn, hole): (&DrawnHole, &Hole)| {
+            let [x, y, z] = hole.entry.map(|mm| signed(mm, 3));
+            let depth = if hole.through { "through".to_owned() } else { signed(hole.depth, 3) };
+            let position = drawn.position_deviation.map_or_else(String::new, |phi| format!("Φ{phi:.3}"));
+            let cells = [drawn.id.clone(), x, y, z, diameters(hole), depth, position];
+            let cells = cells.into_iter().zip(&columns).filter(|(_, (is_shown, ..))| *is_shown);
+            (drawn.status, cells.map(|(cell, _)| cell).collect())
+        };
+        let rows = shown().map(row).collect();
+        let columns = columns.iter().filter(|(is_shown, ..)| *is_shown);
+        HoleTable {
+            columns: columns.map(|(_, head, importance)| Column { head, importance: *importance }).collect(),
+            rows,
+        }
     }
 }
 
