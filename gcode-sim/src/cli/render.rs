@@ -14,6 +14,7 @@ use gcode_draw::{Arrangement, ColorBy, FluteView, Picture, Projection, StandardV
 use gcode_inspect::machine::Machine;
 use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_inspect::verify::{Answer, Tolerances, denied_words};
+use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_part::{Assumption, NominalPart, Reference, Stock, Total};
 use gcode_session::{Request, Run, Simulation};
@@ -240,7 +241,8 @@ fn of_path(
     };
     holes.lines.extend(errors.into_iter().chain(warnings));
     let stock = reference.and_then(|reference| reference.stock.clone()).or(request.machine.stock.clone());
-    let picture = hole_picture(arguments, views, holes, path, &simulation, &machine, stock)?;
+    let surroundings = (stock, request.settings.stroke_limits);
+    let picture = hole_picture(arguments, views, holes, path, &simulation, &machine, surroundings)?;
     let names = if views.is_empty() {
         vec![View::Top.name()]
     } else {
@@ -257,7 +259,7 @@ fn hole_picture(
     path: ToolPath,
     simulation: &Simulation,
     machine: &Machine,
-    stock: Option<Stock>,
+    (stock, strokes): (Option<Stock>, Option<StrokeLimits>),
 ) -> Result<Picture, UsageError> {
     match views {
         [View::Development] => {
@@ -301,7 +303,7 @@ fn hole_picture(
             Some(ColorMeaning::Depth) | None => ColorBy::Depth,
         },
     };
-    let path = tool_path::of_path(path, simulation, machine, stock);
+    let path = tool_path::of_path(path, simulation, machine, stock, strokes);
     Ok(gcode_draw::path_picture(&holes, &path, &arrangement))
 }
 

@@ -6,6 +6,7 @@ use super::top::side_along_holes;
 use gcode_draw::{DrawnTool, PathPlace, PathRun, PathView, RunKind, Side, Sign, TopView};
 use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool};
 use gcode_inspect::tool_path::{PathKind, ToolPath};
+use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Position;
 use gcode_lang::source::{SourceId, Span};
@@ -41,6 +42,7 @@ pub(crate) fn of_path(
     simulation: &Simulation,
     machine: &Machine,
     stock: Option<Stock>,
+    strokes: Option<StrokeLimits>,
 ) -> PathView {
     let run = &simulation.run;
     let mut names: BTreeMap<Option<u32>, usize> = BTreeMap::new();
@@ -72,6 +74,7 @@ pub(crate) fn of_path(
         programs: programs.into_iter().map(|(name, _)| name).collect(),
         places: places(&path, simulation),
         zeros: zeros(machine),
+        limits: strokes.map_or_else(Vec::new, |strokes| travel_limits(machine, &strokes)),
         stock,
         notes: notes(&path),
         points: path.points,
@@ -119,6 +122,26 @@ fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
         machine.forward(&at, &Setup::default()).tip.coords.into()
     };
     machine.offsets.iter().map(|offset| (offset.system.name(), zero(&offset.values))).collect()
+}
+
+/// Returns the travel limits of the tip along X and Y, where no head and no stated table rotates; that of Z changes with the
+/// tool.
+fn travel_limits(machine: &Machine, strokes: &StrokeLimits) -> Vec<(usize, f64)> {
+    let is_rotating = !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_))
+        || !machine.has_default_table && !machine.table.0.is_empty();
+    if is_rotating {
+        return Vec::new();
+    }
+    let ends = ["X", "Y"].into_iter().enumerate().filter_map(|(coordinate, name)| {
+        let axis = machine.axes.find(name.as_bytes()[0])?;
+        let tip = move |limit: f64| {
+            let mut at = Position::default();
+            at[axis] = limit;
+            (coordinate, machine.forward(&at, &Setup::default()).tip[coordinate])
+        };
+        Some([strokes.min[axis], strokes.max[axis]].into_iter().flatten().map(tip))
+    });
+    ends.flatten().collect()
 }
 
 /// Returns what the picture lacks, and the texts of the first stops.

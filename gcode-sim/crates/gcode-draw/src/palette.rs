@@ -107,6 +107,7 @@ pub(super) fn pen(pen: Pen, text: f64) -> Ink {
     let (color, width, dash) = match pen {
         Pen::Outline => (TEXT, 0.13, None),
         Pen::Edge => (TEXT, 0.1, None),
+        Pen::Thread => (TEXT, 0.06, dashed(0.3, 0.15)),
         Pen::Dimension => (THIN, 0.05, None),
         Pen::Centre => (THIN, 0.06, Some(chain)),
         Pen::Tool => (BLUE, 0.1, None),

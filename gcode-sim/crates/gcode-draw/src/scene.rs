@@ -159,6 +159,8 @@ pub enum Pen {
     Outline,
     /// Visible edge in a small sketch.
     Edge,
+    /// Thread seen along its axis.
+    Thread,
     /// Dimension line or leader.
     Dimension,
     /// Centre line of an axis of revolution.
@@ -193,7 +195,7 @@ pub enum Pen {
     Measured,
     /// Further actual curves of a graph.
     MeasuredOther,
-    /// Tolerance limit in a graph.
+    /// Limit of a tolerance in a graph, or of the machine's travel.
     Limit,
     /// Nominal curve of a graph.
     Nominal,

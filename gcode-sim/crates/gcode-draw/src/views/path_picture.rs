@@ -56,6 +56,13 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
         is_cut |= cut;
         scene.strokes.extend(rapids);
         scene.strokes.extend(drawer.feeds(placed));
+        scene.strokes.extend(limits(path, placed));
+        if placed.kind != StandardView::Isometric {
+            let circles = view.feature_circles(placed.side);
+            let moved =
+                |stroke: Stroke| Stroke { shape: stroke.shape.map(|point| placed.moved(point)), ..stroke };
+            scene.strokes.extend(circles.map(moved));
+        }
         scene.strokes.extend(zeros(path, placed, index == 0));
         scene.strokes.extend(places(path, placed, frames.extent, index == 0));
         scene.marks.extend(marks(view, placed, &mut labelled));
@@ -112,6 +119,25 @@ fn zeros(path: &PathView, view: &PlacedView, is_named: bool) -> Vec<Stroke> {
         ..Stroke::new(Pen::Edge, Shape::Zero(view.project(*at)))
     };
     seen.map(stroke).collect()
+}
+
+/// Draws the travel limits that cross a plane view as lines across its frame.
+fn limits(path: &PathView, view: &PlacedView) -> Vec<Stroke> {
+    let [low, high] = view.frame;
+    let line = |(axis, mm): &(usize, f64)| {
+        let mut unit = [0.0; 3];
+        unit[*axis] = 1.0;
+        // An axis of the part runs along one direction of a plane view, or towards the reader.
+        let seen = view.side.project(unit);
+        let along = (0..2).find(|direction| 0.5 < seen[*direction].abs())?;
+        let at = mm * seen[along];
+        let mut ends = [low, high];
+        ends.iter_mut().for_each(|end| end[along] = at);
+        let is_seen = low[along] < at && at < high[along];
+        is_seen.then(|| Stroke::new(Pen::Limit, Shape::Line(ends.map(|end| view.moved(end)).into())))
+    };
+    let is_plane = view.kind != StandardView::Isometric;
+    path.limits.iter().filter(|_| is_plane).filter_map(line).collect()
 }
 
 fn is_inside(view: &PlacedView, at: Point) -> bool {
@@ -233,7 +259,9 @@ fn legend(
         (has_pen(Pen::Rapid), Sample::Pen(Pen::Rapid), "rapid"),
         (has_pen(Pen::Probe), Sample::Pen(Pen::Probe), "probing move"),
         (has_tint(Tint::Pale), Sample::Line(Pen::Feed, pale), "swept by the cutter"),
+        (has_pen(Pen::Thread), Sample::Pen(Pen::Thread), "thread"),
         (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), outline),
+        (has_pen(Pen::Limit), Sample::Pen(Pen::Limit), "travel limit of the tip"),
         (has_zero, Sample::Zero, "work zero"),
         (has_sign(Sign::Start), Sample::Sign(Sign::Start), "start"),
         (has_sign(Sign::End), Sample::Sign(Sign::End), "end"),
@@ -333,6 +361,24 @@ mod tests {
             picture.scene.strokes.iter().filter_map(|stroke| stroke.style?.width).collect::<Vec<_>>()
         };
         assert_eq!((widths(StandardView::Top), widths(StandardView::Front)), (vec![10.0], vec![]));
+    }
+
+    /// The limit x 104 lies inside the frame, which reaches to 105 + 8.8, and y −20 outside; the limit of x is a point in the
+    /// right view.
+    #[test]
+    fn a_travel_limit_within_the_frame_is_a_line() {
+        let path = PathView { limits: vec![(0, 104.0), (1, -20.0)], ..slot() };
+        let limits = |view| {
+            let picture = picture(&path, &[view], Projection::Third);
+            picture.scene.strokes.into_iter().filter(|stroke| stroke.pen == Pen::Limit).collect::<Vec<_>>()
+        };
+        let top = limits(StandardView::Top);
+        let Shape::Line(line) = &top[0].shape else { panic!("a line") };
+        assert!(
+            (top.len(), limits(StandardView::Front).len(), limits(StandardView::Right).len()) == (1, 1, 0)
+        );
+        // The frame begins 13.8 mm left of x 0.
+        assert!((line[0][0] - 117.8).abs() < 1e-9 && (line[1][0] - 117.8).abs() < 1e-9, "{line:?}");
     }
 
     /// In the third angle the top is above the front, in the first below; both have the same abscissa.

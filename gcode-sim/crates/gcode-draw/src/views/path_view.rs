@@ -20,6 +20,8 @@ pub struct PathView {
     pub places: Vec<PathPlace>,
     /// Work zeros: name and position, mm.
     pub zeros: Vec<(String, [f64; 3])>,
+    /// Travel limits of the tip: index of the coordinate and its value, mm.
+    pub limits: Vec<(usize, f64)>,
     /// Solid material before the program runs.
     pub stock: Option<Stock>,
     /// What the picture lacks, one sentence each.

@@ -7,7 +7,7 @@ use crate::measure::plain;
 use crate::picture::{LegendItem, Picture, Sample, Title};
 use crate::scene::{Axis, HoleStatus, Mark, Pen, Scene, Shape, Stroke, ZoneDeviation};
 use crate::side::{Side, deviation};
-use gcode_part::Hole;
+use gcode_part::{FeatureKind, Hole};
 
 /// Contents of a top view; everything but the holes may be unknown.
 #[derive(Clone, Debug, Default)]
@@ -99,6 +99,9 @@ const PATHS: [(Pen, &str); 5] = [
 /// other.
 pub(super) const MAX_NUMBERED: usize = 60;
 
+/// Cosine of the largest angle between a hole and the line of sight at which its features are circles: 2.6°.
+const ALONG: f64 = 0.999;
+
 /// Largest number of construction circles; more would hide the holes.
 const MAX_CIRCLES: usize = 12;
 
@@ -116,6 +119,7 @@ pub fn top_view(view: &TopView) -> Picture {
     if view.cylinder.is_some() || view.purpose == PicturePurpose::Change {
         number_few(&mut scene.marks);
     }
+    scene.strokes.extend(view.feature_circles(view.side));
     if view.side == Side::Y {
         scene.strokes.extend(circles(&view.holes));
     }
@@ -178,6 +182,20 @@ impl TopView {
             [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
         });
         outline.into_iter().chain(sides)
+    }
+
+    /// Draws the diameters of the features of holes along the line of sight, those of threads broken.
+    pub(super) fn feature_circles(&self, side: Side) -> impl Iterator<Item = Stroke> {
+        let along = move |hole: &&Hole| ALONG < Vector3::from(hole.axis).dot(&side.towards());
+        self.holes.iter().filter_map(DrawnHole::shown).filter(along).flat_map(move |hole| {
+            hole.features.iter().map(move |feature| {
+                let is_thread = feature.kind == FeatureKind::Tap;
+                let pen = if is_thread { Pen::Thread } else { Pen::Edge };
+                let circle =
+                    Shape::Circle { centre: side.project(hole.entry), radius: feature.diameter / 2.0 };
+                Stroke::new(pen, circle)
+            })
+        })
     }
 
     /// Builds the title block; `more` is its last line.
@@ -327,6 +345,7 @@ fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
             Sample::Displacement,
             view.purpose.displacement_label(),
         ),
+        (has_pen(Pen::Thread), Sample::Pen(Pen::Thread), "thread"),
         (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), "part outline"),
         (has_pen(Pen::Construction), Sample::Pen(Pen::Construction), radius),
     ];
