@@ -30,12 +30,14 @@ fn on(family: &str, dialect: &str) -> Bench {
     Bench::of(&fewer.replacen("fanuc-31i", dialect, 1))
 }
 
-/// These blocks, as in MDI, and then a main program or the call of a macro. Events of unknown axes are left out: they move nothing.
+/// These blocks, as in MDI, and then a main program or the call of a macro. The start and events of unknown axes are left out: they move nothing.
 fn behind(bench: &Bench, blocks: &str, then: &str) -> (Run, Vec<EventKind>) {
     let mut recorder = Recorder::default();
     let run = bench.clone().with_main(1, &format!("{blocks}\n{then}")).run_to(1, &mut recorder);
     let kinds = recorder.0.into_iter().map(|(_, kind, _)| kind);
-    (run, kinds.filter(|kind| !matches!(kind, EventKind::PositionUnknown { .. })).collect())
+    (run, kinds
+        .filter(|kind| !matches!(kind, EventKind::Start { .. } | EventKind::PositionUnknown { .. }))
+        .collect())
 }
 
 /// The first call of a macro, as the main program has it.

@@ -42,7 +42,7 @@ fn shown(ran: &Ran) -> String {
     let mut at_machine_position = 0;
     for (span, kind, _) in &ran.recorder.0 {
         // The tool change shows the tool.
-        if let EventKind::ToolSelected { .. } = kind {
+        if let EventKind::ToolSelected { .. } | EventKind::Start { .. } = kind {
             continue;
         }
         if let EventKind::PositionUnknown { axes } = kind {
@@ -115,6 +115,7 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
             LengthCompensation::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
             LengthCompensation::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
         },
+        EventKind::Start { at: position, .. } => format!("start {}", at(position)),
         EventKind::PositionUnknown { axes: unknown } => {
             format!("not placed on the part: {}", axes.names(unknown.at_machine_position))
         }

@@ -173,6 +173,7 @@ impl EventSink for RunRecorder {
                 self.stops.push((stop, event.backtrace()));
             }
             EventKind::ToolLength { .. }
+            | EventKind::Start { .. }
             | EventKind::PositionUnknown { .. }
             | EventKind::Spindle { .. }
             | EventKind::ToolSelected { .. }

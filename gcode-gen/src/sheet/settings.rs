@@ -113,6 +113,7 @@ impl EventSink for RunTrace {
             EventKind::ToolChange { number } => self.tools.push(*number),
             EventKind::Stop { kind, text, .. } => self.stops.push((*kind, text.clone())),
             EventKind::ToolLength { .. }
+            | EventKind::Start { .. }
             | EventKind::PositionUnknown { .. }
             | EventKind::Spindle { .. }
             | EventKind::ToolSelected { .. }

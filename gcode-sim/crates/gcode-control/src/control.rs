@@ -155,7 +155,7 @@ impl Control {
         self.loop_detector.endless_loop = None;
         self.executor.log.max_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MIN_MOVE_LIMIT);
         if self.executor.log.blocks == 0 {
-            self.executor.state_unknown_axes(sink);
+            self.executor.state_start(sink);
         }
         while self.executor.log.blocks < limits.blocks
             && self.executor.log.moves <= self.executor.log.max_moves
@@ -202,7 +202,7 @@ impl Control {
         }
         self.executor.log.max_moves = u64::MAX;
         if self.executor.log.blocks == 0 {
-            self.executor.state_unknown_axes(sink);
+            self.executor.state_start(sink);
         }
         self.executor.registers.block_effects.set_pause(self.executor.log.blocks + 1);
         let result = self.execute_block(library, sink);

@@ -1,4 +1,4 @@
-//! Axes whose position on the part is unknown: commands that make it known, and the event that states the unknown ones.
+//! Axes whose position on the part is unknown: commands that make it known, and the events that state the unknown ones.
 use super::control::Control;
 use super::executor::Executor;
 use super::plan::BlockPlan;
@@ -61,11 +61,12 @@ impl Planner<'_> {
 }
 
 impl Executor {
-    /// Emits the axes that are unknown at the start of a run, before every other event.
-    pub(super) fn state_unknown_axes<S: EventSink>(&mut self, sink: &mut S) {
-        let axes = self.registers.state.unknown_on_machine();
-        self.registers.state.stated_unknown = axes;
-        self.emit(&EventKind::PositionUnknown { axes }, 0.0, sink);
+    /// Emits the position at the start of a run, before every other event.
+    pub(super) fn state_start<S: EventSink>(&mut self, sink: &mut S) {
+        let unknown = self.registers.state.unknown_on_machine();
+        self.registers.state.stated_unknown = unknown;
+        let at = self.registers.state.machine_position;
+        self.emit(&EventKind::Start { at, unknown }, 0.0, sink);
     }
 }
 

@@ -322,6 +322,10 @@ impl EventSink for PathRecorder<'_> {
             EventKind::Skip { to, .. } => self.motion(event, PathKind::Probe, to, None),
             EventKind::ToolChange { number } => self.setup.tool = Some(*number),
             EventKind::ToolLength { offset, .. } => self.setup.offset = *offset,
+            EventKind::Start { at, unknown } => {
+                self.at = *at;
+                self.positions.apply_event(self.machine, *unknown);
+            }
             EventKind::PositionUnknown { axes } => self.positions.apply_event(self.machine, *axes),
             EventKind::Stop { kind, text, variables } => {
                 let stop = PathStop { at: self.tip(), kind: *kind, text: text.clone(), block: event.block };

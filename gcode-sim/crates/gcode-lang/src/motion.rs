@@ -236,10 +236,16 @@ pub enum EventKind {
         /// Code and offset number that the offset comes from.
         compensation: LengthCompensation,
     },
+    /// Start of a run, before every other event.
+    Start {
+        /// Machine position of the axes; 0 for those that are unknown.
+        at: Position,
+        /// Axes whose position on the part is unknown, by cause.
+        unknown: UnknownAxes,
+    },
     /// Axes whose position on the part is unknown after the next move; causes no motion.
     ///
-    /// The first of a run precedes every other event and states the axes at the start. Later ones come where
-    /// the axes change; an event is repeated in place of a move without travel.
+    /// It comes where the axes change, and is repeated in place of a move without travel.
     PositionUnknown {
         /// Axes by cause.
         axes: UnknownAxes,
@@ -287,6 +293,7 @@ impl EventKind {
             | Self::ToolSelected { .. }
             | Self::ToolChange { .. }
             | Self::ToolLength { .. }
+            | Self::Start { .. }
             | Self::PositionUnknown { .. }
             | Self::Spindle { .. }
             | Self::Coolant { .. }

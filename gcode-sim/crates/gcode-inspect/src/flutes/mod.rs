@@ -358,6 +358,10 @@ impl EventSink for FluteTracker<'_> {
             EventKind::Rapid { to } => self.motion(event, true, to, None),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, false, to, Some(arc)),
+            EventKind::Start { at, unknown } => {
+                self.axis_position = *at;
+                self.positions.apply_event(self.machine, *unknown);
+            }
             EventKind::PositionUnknown { axes } => self.positions.apply_event(self.machine, *axes),
             EventKind::Spindle { .. } | EventKind::Auxiliary { .. } => {
                 self.wheel_state.apply_event(event.kind)

@@ -45,6 +45,7 @@ impl WheelState {
             | EventKind::Dwell { .. }
             | EventKind::ToolChange { .. }
             | EventKind::ToolLength { .. }
+            | EventKind::Start { .. }
             | EventKind::PositionUnknown { .. }
             | EventKind::ToolSelected { .. }
             | EventKind::Coolant { .. }

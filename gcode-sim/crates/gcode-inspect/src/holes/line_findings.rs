@@ -7,11 +7,11 @@ use super::metal::FeedPart;
 use super::rapids::format_point;
 use super::strokes::{CutKind, MIN_TOOL_COSINE};
 use super::tool_lines::rim;
-use super::unknown_axes::without_assumed;
+use super::unknown_axes::{unknown_position_finding, without_assumed};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{
     BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
-    RAPID_INTO_PART, TOOL_NOT_CHANGED,
+    RAPID_INTO_PART, START_UNKNOWN, TOOL_NOT_CHANGED,
 };
 use crate::machine::{HeadKind, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
@@ -130,15 +130,24 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns true if what a line removes is judged as milling: in a known body a feed across the tool, and one in a pocket.
+    /// At an unknown position nothing says what it removes.
     pub(super) fn is_milled(&self, line: &CuttingLine) -> bool {
         self.surface.is_some()
             && self.metal.holes.is_some()
+            && without_assumed(line.unknown_axes, self.machine).is_none()
             && (line.is_across_tool() || self.is_pocketing(line))
     }
 
-    /// Records a feed without retract, unless it belongs to a milled hole: an error `inside` the part, by its depth, a
-    /// warning if the surface is unknown.
+    /// Records a feed without retract, unless it belongs to a milled hole: an error `inside` the part, by its depth, or at an
+    /// unknown position, a warning if the surface is unknown.
     fn report_no_retract(&mut self, line: &CuttingLine, inside: Option<f64>, moves_on: bool) {
+        let unknown = without_assumed(line.unknown_axes, self.machine);
+        if self.metal.holes.is_some() && !unknown.is_none() {
+            self.findings.add(&START_UNKNOWN, line.backtrace(), u32::from(unknown.all()), |_| {
+                unknown_position_finding(&self.machine.axes, unknown, "a feed ends")
+            });
+            return;
+        }
         let Some(depth) = inside else {
             self.engagement.uncounted.add_unretracted(line.backtrace(), line.cut_depth());
             return;

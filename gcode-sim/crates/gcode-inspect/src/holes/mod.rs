@@ -144,8 +144,7 @@ pub struct HoleExtractor<'m> {
     pose: Pose,
     /// The spindle has turned with the tool in it.
     has_tool_turned: bool,
-    /// True once a block has ended at a known position, or the tool has been outside the part; before that the tool may
-    /// stand inside.
+    /// True once the tool has stood at a known position; before that it may stand inside the part.
     has_left_start: bool,
     /// Axes whose positions were known in a cut, as bits.
     cut_axes: u8,
@@ -376,7 +375,7 @@ impl<'m> HoleExtractor<'m> {
         self.update_start();
     }
 
-    /// Applies a known end of a motion.
+    /// Applies a known start, or a known end of a motion.
     fn update_start(&mut self) {
         self.has_left_start |= self.positions.is_known(self.machine);
     }
@@ -428,6 +427,13 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::ToolLength { offset, compensation } => {
                 self.update_setup(|setup| setup.offset = *offset);
                 self.cutting_state.compensation = *compensation;
+            }
+            EventKind::Start { at, unknown } => {
+                self.axis_position = *at;
+                self.frame = self.machine.part_frame(at);
+                self.pose = self.machine.tool_pose(at, &self.setup).relative_to(&self.frame);
+                self.positions.apply_event(self.machine, *unknown);
+                self.update_start();
             }
             EventKind::PositionUnknown { axes } => {
                 self.positions.apply_event(self.machine, *axes);

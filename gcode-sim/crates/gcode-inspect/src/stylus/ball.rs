@@ -51,6 +51,10 @@ impl Ball {
                     HeadMessage::Unrelated => BallUpdate::Unchanged,
                 }
             }
+            EventKind::Start { at, .. } => {
+                self.axis_position = *at;
+                BallUpdate::Unchanged
+            }
             EventKind::PositionUnknown { .. }
             | EventKind::Stop { .. }
             | EventKind::Dwell { .. }

@@ -304,7 +304,7 @@ impl<'m> Stylus<'m> {
 
 impl EventSink for Stylus<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        if let EventKind::PositionUnknown { axes } = event.kind {
+        if let EventKind::Start { unknown: axes, .. } | EventKind::PositionUnknown { axes } = event.kind {
             self.positions.apply_event(self.machine, *axes);
         }
         match self.ball.apply_event(self.machine, event) {

@@ -87,7 +87,7 @@ impl<'m> RapidChecker<'m> {
 
 impl EventSink for RapidChecker<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        if let EventKind::PositionUnknown { axes } = event.kind {
+        if let EventKind::Start { unknown: axes, .. } | EventKind::PositionUnknown { axes } = event.kind {
             self.positions.apply_event(self.machine, *axes);
         }
         let BallUpdate::Moved { from, to, arc, kind } = self.ball.apply_event(self.machine, event) else {
