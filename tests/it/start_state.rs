@@ -35,9 +35,12 @@ fn behind(bench: &Bench, blocks: &str, then: &str) -> (Run, Vec<EventKind>) {
     let mut recorder = Recorder::default();
     let run = bench.clone().with_main(1, &format!("{blocks}\n{then}")).run_to(1, &mut recorder);
     let kinds = recorder.0.into_iter().map(|(_, kind, _)| kind);
-    (run, kinds
-        .filter(|kind| !matches!(kind, EventKind::Start { .. } | EventKind::PositionUnknown { .. }))
-        .collect())
+    (
+        run,
+        kinds
+            .filter(|kind| !matches!(kind, EventKind::Start { .. } | EventKind::PositionUnknown { .. }))
+            .collect(),
+    )
 }
 
 /// The first call of a macro, as the main program has it.

@@ -318,6 +318,7 @@ impl Executor {
             let note = match syntax.node {
                 DialectSyntax::LowerCase => Note::LowerCase,
                 DialectSyntax::UnclosedComment => Note::UnclosedComment,
+                DialectSyntax::NestedComment => Note::NestedComment,
                 _ => continue,
             };
             self.log.note(note, self.flow.block);

@@ -27,6 +27,7 @@ gcode_lang::finding_kinds! {
     MACHINE_VALUE = "machine-value", Warning, "a value of the machine that nothing states";
     MAIN_REPEATS = "main-repeats", Error, "the main program ends with M99";
     MIRROR_ENDED = "mirror-ended", Note, "G50.1 without an axis";
+    NESTED_COMMENT = "nested-comment", Warning, "a word behind a comment inside a comment";
     NO_ANGLE = "no-angle", Warning, "G68 without R";
     NO_AXIS = "no-axis", Warning, "a code without an axis";
     NO_INTERRUPT = "no-interrupt", Warning, "the macro of M96 is never called";
@@ -125,6 +126,8 @@ pub enum Note {
     NoKinematics(u32),
     /// A comment extends to the end of its block.
     UnclosedComment,
+    /// A comment with a comment inside has a word behind it, which a control may read.
+    NestedComment,
     /// A block, or the rest of one, after `/`, which depends on a switch of block skip.
     BlockSkip {
         /// Number of the switch.
@@ -182,6 +185,7 @@ impl Note {
             Self::NoKinematics(code @ (542 | 544)) => (&NO_KINEMATICS, format!("the offsets of {} are taken as 0: nothing states them, and where X, Y and Z are on the part is unknown", name(code)), "write the offset into a work offset, or end it with P0"),
             Self::NoKinematics(code) => (&NO_KINEMATICS, format!("{} without the rotary axes of the machine: X, Y and Z go on as if a table had turned the part, and where they and the rotary axes are on the machine is unknown", name(code)), "describe [[table]] or [[head.axis]], and [head], in the machine file"),
             Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),
+            Self::NestedComment => (&NESTED_COMMENT, "a comment stands inside a comment: a control ends it at the first ), and reads the words behind that".to_owned(), "take the inner brackets out"),
             Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
             Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
             Self::DrillsAlongZ(code) => (&DRILL_PLANE, format!("the cycle drills along Z while G{} is in force: a control may drill along the normal of that plane", spelled(code)), "write G17, or give --control FXY=1 for a control that drills along the normal"),

@@ -348,7 +348,9 @@ impl Recorder {
                 self.length = *offset;
                 StepKind::Length(Box::new(*offset))
             }
-            EventKind::Start { .. } | EventKind::PositionUnknown { .. } | EventKind::ToolSelected { .. } => return,
+            EventKind::Start { .. } | EventKind::PositionUnknown { .. } | EventKind::ToolSelected { .. } => {
+                return;
+            }
             EventKind::Spindle { direction, speed, .. } => {
                 // The speed of a stopped spindle is recorded when it starts.
                 let is_off = *direction == SpindleDirection::Off;

@@ -11,6 +11,8 @@ pub enum DialectSyntax {
     LowerCase,
     /// Comment without its closing bracket.
     UnclosedComment,
+    /// Comment inside a comment, with a word behind it.
+    NestedComment,
     /// Abbreviated keyword: `WH[…]DO1`, `GO 5`.
     ShortWord,
     /// Relation signs in a condition: `=`, `<>`, `<`, `&`.
@@ -48,7 +50,7 @@ impl DialectSyntax {
         let undocumented = &settings.undocumented;
         match self {
             Self::LowerCase => undocumented.reads_lower_case,
-            Self::UnclosedComment => true,
+            Self::UnclosedComment | Self::NestedComment => true,
             Self::ShortWord => undocumented.allows_short_words,
             Self::RelationSigns => undocumented.allows_relation_signs,
             Self::SeveralAssignments => undocumented.allows_several_assignments,
@@ -70,6 +72,7 @@ impl DialectSyntax {
         match self {
             Self::LowerCase => Alarm::LowerCase,
             Self::UnclosedComment => Alarm::NotSimulated { what: "a comment without `)`".into() },
+            Self::NestedComment => Alarm::NotSimulated { what: "a comment inside a comment".into() },
             Self::ShortWord => Alarm::ShortWord,
             Self::RelationSigns => Alarm::RelationSymbol,
             Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },

@@ -74,6 +74,19 @@ pub struct Comment {
     pub mark: CommentMark,
 }
 
+impl Comment {
+    /// Returns the text behind a comment inside this one if it has a word: a control ends the comment at its first `)`.
+    pub fn word_behind_inner(&self) -> Option<&[u8]> {
+        let close =
+            self.text.iter().position(|byte| *byte == b')').filter(|_| self.mark == CommentMark::Round)?;
+        let behind = self.text[close + 1..].trim_ascii();
+        let is_word = |pair: &[u8]| {
+            pair[0].is_ascii_alphabetic() && matches!(pair[1], b'0'..=b'9' | b'.' | b'+' | b'-' | b'#' | b'[')
+        };
+        behind.windows(2).any(is_word).then_some(behind)
+    }
+}
+
 /// Notation of a comment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CommentMark {

@@ -42,6 +42,9 @@ impl Lowering {
         if let Some(comment) = block.comments.iter().find(unclosed) {
             self.record_syntax(DialectSyntax::UnclosedComment, comment.span);
         }
+        if let Some(comment) = block.comments.iter().find(|comment| comment.word_behind_inner().is_some()) {
+            self.record_syntax(DialectSyntax::NestedComment, comment.span);
+        }
         let kind = self.lower_kind(block).unwrap_or_else(OpKind::Alarm);
         let skip = block.skip.as_ref().map(|s| s.node);
         let body = match skip.is_some() || !self.dialect_syntax.is_empty() {
