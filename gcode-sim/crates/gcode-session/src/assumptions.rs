@@ -60,7 +60,11 @@ fn follow<S: EventSink>(
     let mut slice = Slice::new(stated_values(request), &request.settings, &request.variables);
     let mut events = MarkedEvents::new(sink(), slice.motion());
     control.run_observed(request.limits, &mut NoLibrary, &mut events, &mut slice);
-    Some((slice.into_reads(), events.sink, events.strokes))
+    // What mills decides as much as what makes a hole.
+    let fed: Marks = events.strokes.iter().copied().collect();
+    let mut reads = slice.into_reads();
+    reads.iter_mut().enumerate().for_each(|(index, read)| read.decides_further_cuts |= fed.contains(index));
+    Some((reads, events.sink, events.strokes))
 }
 
 impl Dependencies {

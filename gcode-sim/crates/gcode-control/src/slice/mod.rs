@@ -89,7 +89,7 @@ pub struct OutsideRead {
     pub value: Option<f64>,
     /// Block of the first read.
     pub place: Backtrace,
-    /// Another value may make the run cut where it has not cut.
+    /// Another value may make the run cut where it has not cut, or change a feed.
     pub decides_further_cuts: bool,
 }
 
