@@ -1,6 +1,7 @@
 //! State that a run leaves for the next program: variables, modes, offsets, parameters, outputs and counters.
 use super::control::Control;
 use super::data::{STANDARD_SYSTEMS, system_index};
+use super::state::{Modal, State};
 use gcode_lang::control::{Dialect, ParameterId};
 use gcode_lang::program::modes::{DynamicOffset, GROUPS, ModalGroup, WorkSystem};
 
@@ -45,21 +46,46 @@ pub fn additional_system_name(dialect: Dialect, number: usize) -> String {
     format!("{code} P{number}")
 }
 
+impl State {
+    /// Returns the state at the start of a program behind another that has ended in the state `left`.
+    fn behind(&self, left: &Self, keeps_modes: bool) -> Self {
+        let State { g92_shift, unknown_g92_shift, .. } = *left;
+        let shifted = Self { g92_shift, unknown_g92_shift, ..*self };
+        if !keeps_modes {
+            return shifted;
+        }
+        let Modal { feed_mode, scaling, rotation, polar, mirror, .. } = left.modal;
+        Self {
+            modal: Modal { feed_mode, scaling, rotation, polar, mirror, ..self.modal },
+            transform: left.transform,
+            polar: left.polar,
+            g52_shift: left.g52_shift,
+            ..shifted
+        }
+    }
+}
+
 impl Control {
-    /// Takes over the offsets that another run has left: tables, and the shift of G92. The end of a program cancels G52.
-    pub fn take_offsets(&mut self, left: &Self) {
+    /// Takes over what another run has left for the next start: the tables of offsets, the shift of G92, and, on a control whose
+    /// M30 keeps modes (3402#6 CLR and 1202#3 RLC at 0), G52, G16, G51, G51.1, G68 and the mode of the feed.
+    pub fn take_left_state(&mut self, left: &Self) {
+        let keeps_modes = self.keeps_modes();
         let (own, left) = (&mut self.executor.registers, &left.executor.registers);
         own.data.offsets.clone_from(&left.data.offsets);
         own.data.set_offsets.clone_from(&left.data.set_offsets);
-        own.state.g92_shift = left.state.g92_shift;
-        own.state.unknown_g92_shift = left.state.unknown_g92_shift;
+        *own.state = own.state.behind(&left.state, keeps_modes);
         own.update_after_offset_change();
     }
 
-    /// Returns true if [`Self::take_offsets`] would change nothing but which offsets count as set.
-    pub fn has_offsets_of(&self, left: &Self) -> bool {
-        let (own, left) = (&self.executor.registers, &left.executor.registers);
-        own.data.offsets == left.data.offsets && own.state.g92_shift == left.state.g92_shift
+    /// Returns true if [`Self::take_left_state`] would change nothing but which offsets count as set.
+    pub fn has_state_of(&self, left: &Self) -> bool {
+        let (own, other) = (&self.executor.registers, &left.executor.registers);
+        own.data.offsets == other.data.offsets
+            && *own.state == own.state.behind(&other.state, self.keeps_modes())
+    }
+
+    fn keeps_modes(&self) -> bool {
+        self.executor.registers.data.settings.dialect != Dialect::HaasNgc
     }
 
     /// Returns all values that aren't vacant or 0, and all modes.

@@ -174,7 +174,7 @@ fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionE
     set_up_control_behind(request, memory, None)
 }
 
-/// Returns a control set up like [`set_up_control`], with the offsets that the run before has left.
+/// Returns a control set up like [`set_up_control`], with the offsets and modes that the run before has left.
 fn set_up_control_behind(
     request: &Request,
     memory: Memory,
@@ -190,7 +190,7 @@ fn set_up_control_behind(
         control.set_variable(number, value).map_err(refused(number))?;
     }
     if let Some(left) = left {
-        control.take_offsets(left);
+        control.take_left_state(left);
     }
     for (axis, position) in &request.machine.start {
         control.set_start(*axis, *position);
@@ -342,9 +342,10 @@ pub fn simulate_observed<S: EventSink>(
 ) -> Result<Simulation, SessionError> {
     let metal = metal.into();
     let mut extractor = extractor(request, metal.clone());
-    let run = run_observed(request, library, &mut (&mut extractor, sink), observer)?;
+    let mut feeds = second_start::FeedTrace::default();
+    let run = run_observed(request, library, &mut (&mut extractor, (&mut feeds, sink)), observer)?;
     let mut extracted = extractor.finish();
-    extracted.findings.extend(second_start::finding(request, &run, &metal, &extracted));
+    extracted.findings.extend(second_start::finding(request, &run, &metal, (&extracted, feeds)));
     extracted.findings.extend(run.findings());
     Ok(Simulation { run, extracted, metal })
 }

@@ -1,11 +1,14 @@
-//! Second start of a program, with the offsets that its first run leaves.
+//! Second start of a program, with the offsets and modes that its first run leaves.
 use std::sync::Arc;
 
 use super::{Request, Run, extractor, set_up_control, set_up_control_behind};
-use gcode_control::{Limits, Outcome, ResidualKind, ResidualValue};
+use gcode_control::{Limits, Outcome, ResidualKind, ResidualValue, mode_name};
 use gcode_inspect::findings::SECOND_START;
 use gcode_inspect::holes::{DrilledHole, HoleExtraction};
 use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::{Event, EventSink, MAX_AXES};
+use gcode_lang::program::g_codes::name;
+use gcode_lang::program::modes::ModalGroup;
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_part::Metal;
 
@@ -18,18 +21,36 @@ const MAX_BLOCKS_RATIO: u64 = 2;
 /// Largest number of offsets in a message.
 const MAX_NAMED: usize = 3;
 
-/// Returns the warning that the program leaves an offset changed and its second start makes other holes.
+/// Trace of all feeds of a run: two runs with the same trace feed from place to place at the same rates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct FeedTrace(u64);
+
+impl FeedTrace {
+    fn add(&mut self, number: f64) {
+        self.0 = (self.0.rotate_left(5) ^ number.to_bits()).wrapping_mul(0x517c_c1b7_2722_0a95);
+    }
+}
+
+impl EventSink for FeedTrace {
+    fn event(&mut self, event: &Event<'_>) {
+        let Some((rate, to)) = event.kind.rate().zip(event.kind.end()) else { return };
+        self.add(rate.0);
+        (0..MAX_AXES).for_each(|axis| self.add(to[axis]));
+    }
+}
+
+/// Returns the warning that the program leaves an offset or a mode changed and its second start makes other holes or feeds.
 pub(super) fn finding(
     request: &Request,
     run: &Run,
     metal: &Metal,
-    extracted: &HoleExtraction,
+    (extracted, feeds): (&HoleExtraction, FeedTrace),
 ) -> Option<Diagnostic> {
     if !matches!(run.outcome, Outcome::End) || extracted.holes.is_empty() {
         return None;
     }
     let start = set_up_control(request, Memory::default()).ok()?;
-    if start.has_offsets_of(&run.control) {
+    if start.has_state_of(&run.control) {
         return None;
     }
     let mut control =
@@ -39,7 +60,9 @@ pub(super) fn finding(
     }
     let mut extractor = extractor(request, metal.clone());
     let limits = Limits { blocks: request.limits.blocks.min(MAX_BLOCKS_RATIO * run.control.blocks()) };
-    let outcome = control.run_observed(limits, &mut NoLibrary, &mut extractor, &mut ());
+    let mut feeds_again = FeedTrace::default();
+    let mut sinks = (&mut extractor, &mut feeds_again);
+    let outcome = control.run_observed(limits, &mut NoLibrary, &mut sinks, &mut ());
     if control.is_cancelled() {
         return None;
     }
@@ -51,7 +74,8 @@ pub(super) fn finding(
             let pairs = extracted.holes.iter().zip(&again);
             let aside = pairs.filter(|(one, other)| !is_same(one, other)).count();
             match aside + extracted.holes.len().abs_diff(again.len()) {
-                0 => return None,
+                0 if feeds == feeds_again => return None,
+                0 => "its holes are the same, and other feeds are elsewhere or at another rate".to_owned(),
                 1 => "one hole is elsewhere".to_owned(),
                 count => format!("{count} holes are elsewhere"),
             }
@@ -62,8 +86,18 @@ pub(super) fn finding(
     Some(
         Diagnostic::new(&SECOND_START, message)
             .with_backtrace(run.control.backtrace())
-            .help("set the offset to its number before its first use, or restore it before M30"),
+            .note("M30 keeps modes and the shift of G52 unless parameters 3402#6 (CLR) and 1202#3 (RLC) clear them")
+            .help("set the offset or the mode before its first use, or restore it before M30"),
     )
+}
+
+/// Groups whose modes a control keeps behind M30, without those that are an assumption of the first start.
+const LEFT_GROUPS: [ModalGroup; 5] =
+    [ModalGroup::FeedMode, ModalGroup::Scaling, ModalGroup::Rotation, ModalGroup::Polar, ModalGroup::Mirror];
+
+fn is_left_mode(value: &ResidualValue) -> bool {
+    let is_named = |group: ModalGroup| mode_name(group.number()) == value.name;
+    value.kind == ResidualKind::Mode && LEFT_GROUPS.into_iter().any(is_named)
 }
 
 /// Returns true if two holes are at one place, of one depth and by one tool.
@@ -74,12 +108,17 @@ fn is_same(one: &DrilledHole, other: &DrilledHole) -> bool {
         && one.tool == other.tool
 }
 
-/// Returns `G54 X at 20, which was 0 at its start`, for the first offsets that differ.
+/// Returns `G54 X at 20, which was 0 at its start`, for the first offsets that differ, else the codes of the modes that do.
 fn changes(before: &[ResidualValue], after: &[ResidualValue]) -> String {
     let is_offset =
         |value: &&ResidualValue| matches!(value.kind, ResidualKind::WorkOffset | ResidualKind::ToolOffset);
-    let value_in = |values: &[ResidualValue], name: &str| {
-        values.iter().filter(is_offset).find(|value| value.name == name).map_or(0.0, |value| value.value)
+    if before.iter().filter(is_offset).eq(after.iter().filter(is_offset)) {
+        let modes = after.iter().filter(|value| is_left_mode(value) && !before.contains(value));
+        let codes: Vec<String> = modes.map(|value| name((value.value * 10.0).round() as u32)).collect();
+        return format!("{} in force", codes.join(" and "));
+    }
+    let value_in = |values: &[ResidualValue], of: &str| {
+        values.iter().filter(is_offset).find(|value| value.name == of).map_or(0.0, |value| value.value)
     };
     let mut names: Vec<&str> =
         after.iter().chain(before).filter(is_offset).map(|value| value.name.as_str()).collect();
@@ -94,4 +133,43 @@ fn changes(before: &[ResidualValue], after: &[ResidualValue]) -> String {
         _ => String::new(),
     };
     format!("{}{more}", shown.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate;
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::control::Dialect;
+
+    /// Returns the message about the second start of a program with one hole and these blocks behind it.
+    fn message(dialect: Dialect, blocks: &str) -> Option<String> {
+        let text = format!(
+            "O1\nG90 G17 G21 G94 S1000 M03\nG0 X20. Y0. Z50.\nG81 X20. Z-5. R2. F100.\nG80 Z50.\n{blocks}\nM30\n"
+        );
+        let mut request = Request::new("O1.nc", text.as_bytes(), Machine::default());
+        request.settings.apply_dialect(dialect);
+        let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
+        let mut findings = simulation.extracted.findings.into_iter();
+        findings.find(|finding| finding.kind == &SECOND_START).map(|finding| finding.message)
+    }
+
+    #[test]
+    fn m30_of_a_haas_resets_the_modes() {
+        assert_eq!(message(Dialect::HaasNgc, "G68 X0 Y0 R90."), None);
+        assert_eq!(
+            message(Dialect::Fanuc31i, "G68 X0 Y0 R90.").unwrap(),
+            "the program leaves G68 in force: started again, one hole is elsewhere"
+        );
+    }
+
+    /// The groove lies 0.1 deeper with each start, and the hole where it was.
+    #[test]
+    fn feeds_beside_the_holes_count() {
+        let groove = "G43 H5 Z5.\nG1 Z-1. F80.\nX40.\nG0 Z50.\nG49\nG91 G10 L11 P5 R-0.1\nG90";
+        let found = message(Dialect::Fanuc31i, groove).unwrap();
+        assert!(found.contains("H5 wear at -0.1") && found.contains("other feeds are elsewhere"), "{found}");
+        let set = groove.replace("G43 H5", "G90 G10 L11 P5 R0\nG43 H5");
+        assert_eq!(message(Dialect::Fanuc31i, &set), None);
+    }
 }
