@@ -52,6 +52,9 @@ Examples:
         /// The file to write [default: standard output]
         #[arg(short, long, value_name = "JOB.toml")]
         output: Option<PathBuf>,
+        /// Replace the file if it exists
+        #[arg(long)]
+        force: bool,
     },
 
     /// Write the O-programs and the machine file of a job
@@ -132,7 +135,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
 
 fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
     match &arguments.command {
-        Command::New { family, output } => new::run(family, output.as_deref()),
+        Command::New { family, output, force } => new::run(family, output.as_deref(), *force),
         Command::Emit { job, out, format } => emit::run(job, out, *format),
         Command::Sheet { job, output, rates, format } => sheet::run(job, output, rates.as_deref(), *format),
         Command::Schema(name) => schema::print(&name.name, FORMATS),

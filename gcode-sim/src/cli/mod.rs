@@ -11,6 +11,7 @@ pub mod format;
 mod holes;
 pub mod input;
 pub mod library;
+mod new;
 mod options;
 pub mod output;
 pub mod overwrite_guard;
@@ -125,6 +126,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Check(arguments) => check::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Budget(arguments) => budget::run(&arguments),
         Command::Settings(arguments) => settings::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
