@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::conditions::ProgramArguments;
 use super::library::Folders;
-use super::{UsageError, input, overwrite_guard, page, unused_machine};
+use super::{UsageError, input, output, overwrite_guard, page, unused_machine};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_lang::motion::{Axes, AxisIndex};
@@ -156,9 +156,21 @@ pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
     Machine::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))
 }
 
-/// Reads a hole list or a job file.
-pub(super) fn read_nominal(path: &Path) -> Result<NominalPart, UsageError> {
-    NominalPart::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))
+/// Reads a hole list or a job file, and says what a list leaves out. Depths that it leaves out are those of the program's holes.
+pub(super) fn read_nominal(
+    path: &Path,
+    request: &Request,
+    folders: &mut Folders,
+) -> Result<NominalPart, UsageError> {
+    let text = input::table(path)?;
+    let mut nominal = NominalPart::parse(&text).map_err(|error| UsageError::in_file(path, error))?;
+    if let NominalPart::Holes(reference) = &mut nominal {
+        if let Some(note) = &reference.note {
+            output::print_message(&format!("note: {}: {note}\n", path.display()));
+        }
+        gcode_session::complete_depths(request, folders, reference)?;
+    }
+    Ok(nominal)
 }
 
 /// Checks the value of a tolerance flag.

@@ -120,7 +120,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (program, _) = arguments.program.completed()?;
     let (mut request, mut folders) =
         options::checked_request(&program, arguments.reference.as_deref(), Some(&arguments.output), None)?;
-    let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
+    let reference = arguments.reference.as_deref();
+    let nominal = reference.map(|path| options::read_nominal(path, &request, &mut folders)).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
     let drawn = match nominal {

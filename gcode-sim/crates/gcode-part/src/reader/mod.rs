@@ -1,6 +1,7 @@
 //! Reads keys of a TOML file. Every error names the key, its line and the allowed values.
 pub mod bounds;
 mod keys;
+mod similar;
 mod wording;
 
 use std::fmt::Display;
@@ -14,6 +15,7 @@ use toml::de::{DeTable, DeValue};
 pub use keys::{
     AxisSign, Bounded, FileKey, FixedArray, Items, OUT_OF_RANGE, Optional, Section, TableOf, Word, WordList,
 };
+pub use similar::similar;
 
 /// Reason for which a file is unusable: one sentence with the key or the place, its line and the allowed
 /// values.
