@@ -26,7 +26,7 @@ pub(super) struct Emitted {
 
 /// Reads a job, emits its programs and verifies them; the reasons of a failure are printed.
 pub(super) fn emit_verified(path: &Path) -> Result<Emitted, UsageError> {
-    let job = Job::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))?;
+    let job = Job::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))?;
     let package = families::emit(&job);
     let name = path.display();
     let (checked, reasons) = match check(&job, &package) {

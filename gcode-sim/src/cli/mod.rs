@@ -40,6 +40,7 @@ use crate::report::diagnostic;
 use gcode_draw::PictureError;
 use gcode_inspect::verify::{Answer, Conclusion, Ending};
 use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_part::reader::FileError;
 use gcode_session::{GrindingError, Run, SessionError};
 
 /// Outcome of a request, the same for both programs.
@@ -97,6 +98,15 @@ impl UsageError {
     /// Builds the error of a file's contents.
     pub fn in_file(path: &Path, error: impl Display) -> Self {
         Self::new(format!("{}, {error}", path.display()))
+    }
+
+    /// Builds the error of a TOML file's contents; a key that another file or family has is named with its home.
+    pub fn in_toml(path: &Path, error: &FileError) -> Self {
+        let homes = error.unknown_key().map(crate::schema::homes_of).unwrap_or_default();
+        match homes.as_slice() {
+            [] => Self::in_file(path, error),
+            homes => Self::in_file(path, format!("{error}; it is a key of {}", homes.join(", "))),
+        }
     }
 
     /// Builds the error of a file or folder that cannot be read.

@@ -1,6 +1,6 @@
 //! The columns of a list: the separator, their names, and what a list without some of them means.
 use crate::feature::FeatureKind;
-use crate::reader::similar;
+use gcode_lang::similar;
 
 /// Columns of a list, with other names of each; a feature's own columns are beside them.
 const COLUMNS: [(&str, &[&str]); 11] = [

@@ -1,10 +1,13 @@
 //! The known name that a misspelt one means.
 
 /// Returns the known name nearest to a misspelt one: one letter left out, added, changed or swapped with its neighbour, two of
-/// them in a name of six letters or more. Upper and lower case don't count; `None` if no name is so near.
+/// them in a name of six letters or more. Upper and lower case don't count, and digits have to agree: G53 is no slip of G54. `None`
+/// if no name is so near.
 pub fn similar<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let limit = if name.chars().count() < 6 { 1 } else { 2 };
-    let near = known.into_iter().map(|other| (distance(name, other), other));
+    let digits = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
+    let alike = known.into_iter().filter(|other| digits(other) == digits(name));
+    let near = alike.map(|other| (distance(name, other), other));
     // Of a name of two letters every other one is near.
     let near =
         near.filter(|(distance, other)| *distance <= limit && *distance < other.chars().count().min(3));
@@ -38,7 +41,7 @@ mod tests {
 
     #[test]
     fn a_slip_is_one_letter_left_out_added_changed_or_swapped() {
-        let known = ["depth", "diameter", "length", "x"];
+        let known = ["depth", "diameter", "length", "x", "G54"];
         for (slip, meant) in [
             ("dept", Some("depth")),
             ("depthh", Some("depth")),
@@ -49,6 +52,7 @@ mod tests {
             ("remark", None),
             ("y", None),
             ("deep", None),
+            ("G53", None),
         ] {
             assert_eq!(similar(slip, known), meant, "{slip}");
         }
