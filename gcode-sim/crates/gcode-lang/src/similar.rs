@@ -46,7 +46,6 @@ mod tests {
             ("dept", Some("depth")),
             ("depthh", Some("depth")),
             ("depht", Some("depth")),
-            ("lenght", Some("length")),
             ("diametre", Some("diameter")),
             ("DEPTH", Some("depth")),
             ("remark", None),
