@@ -71,6 +71,29 @@ pub const FORMATS: &[Format] = &[
     result::<ExplainReport>("explain", "the result of explain"),
 ];
 
+/// Returns the TOML files that have a key, by its path; those of jobs with their family.
+pub fn homes_of(key: &str) -> Vec<String> {
+    let has = |schema: &Value| {
+        let step = |schema: Value, name: &str| {
+            // A table of a list has the keys of the list.
+            let table = schema.get("items").cloned().unwrap_or(schema);
+            table.get("properties")?.get(name).cloned()
+        };
+        key.split('.').try_fold(schema.clone(), step).is_some()
+    };
+    let mut homes = Vec::new();
+    for format in FORMATS.iter().filter(|format| format.is_toml) {
+        let schema = format.schema();
+        let of_file = has(&schema).then(|| format.about.to_owned());
+        homes.extend(of_file);
+        let families = schema.get("oneOf").and_then(Value::as_array).into_iter().flatten();
+        let family =
+            |one: &Value| Some(format!("a job of {}", one["properties"]["family"]["enum"][0].as_str()?));
+        homes.extend(families.filter(|one| has(one)).filter_map(family));
+    }
+    homes
+}
+
 const fn file<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
     Format { name, about, is_toml: true, schema: toml::<T> }
 }

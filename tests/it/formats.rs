@@ -12,6 +12,7 @@ const COMMANDS: &[(&str, &str, &[&str])] = &[
     ("gcode-sim", "check", &["text", "json", "sarif"]),
     ("gcode-sim", "diff", &["text", "json", "sarif"]),
     ("gcode-sim", "test", &["text", "json", "junit", "sarif"]),
+    ("gcode-sim", "new", &[]),
     ("gcode-sim", "budget", &["text", "json"]),
     ("gcode-sim", "settings", &["text", "json"]),
     ("gcode-sim", "explain", &["text", "json"]),

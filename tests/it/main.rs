@@ -35,6 +35,7 @@ mod limits;
 mod misplaced;
 mod module_circles;
 mod mutations;
+mod new_files;
 mod one_verdict;
 #[cfg(feature = "browser")]
 mod page;

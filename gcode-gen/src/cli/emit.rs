@@ -9,6 +9,7 @@ use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
 
+use super::emitted_files::{self, EmittedFiles};
 use crate::check::{CheckError, CheckedPackage, check};
 use crate::families;
 use crate::package::{Package, file_name};
@@ -26,7 +27,7 @@ pub(super) struct Emitted {
 
 /// Reads a job, emits its programs and verifies them; the reasons of a failure are printed.
 pub(super) fn emit_verified(path: &Path) -> Result<Emitted, UsageError> {
-    let job = Job::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))?;
+    let job = Job::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))?;
     let package = families::emit(&job);
     let name = path.display();
     let (checked, reasons) = match check(&job, &package) {
@@ -46,7 +47,12 @@ pub(super) fn emit_verified(path: &Path) -> Result<Emitted, UsageError> {
     Ok(Emitted { job, package, checked, refused })
 }
 
-pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitStatus, UsageError> {
+pub(super) fn run(
+    path: &Path,
+    out: &Path,
+    force: bool,
+    format: TextFormat,
+) -> Result<ExitStatus, UsageError> {
     let Emitted { job, package, checked, refused } = emit_verified(path)?;
     let (Some(checked), None) = (&checked, &refused) else {
         if format == TextFormat::Json {
@@ -56,12 +62,28 @@ pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitSta
     };
     checked.warnings.iter().for_each(|warning| output::print_message(warning));
     let pictures = pictures(checked)?;
-    make_folder(out)?;
-    let mut files: Vec<(PathBuf, &[u8])> =
+    let programs: Vec<(PathBuf, &[u8])> =
         package.files().into_iter().map(|(name, text)| (out.join(name), text.as_bytes())).collect();
-    files.extend(pictures.iter().map(|(name, png)| (out.join(name), png.as_slice())));
+    let pictures = pictures.iter().map(|(name, png)| (out.join(name), png.as_slice()));
+    let files: Vec<_> = programs.iter().cloned().chain(pictures).collect();
     files.iter().try_for_each(|(file, _)| overwrite_guard::check_not_input(file, &[path]))?;
-    output::write_all(&files)?;
+    let emitted = EmittedFiles::of(out)?;
+    let edited = if force { Vec::new() } else { emitted.edited(&programs)? };
+    if !edited.is_empty() {
+        let refusal = emitted_files::refusal(&edited);
+        output::print_message(&refusal);
+        if format == TextFormat::Json {
+            let refused = Some(refusal.trim_end().to_owned());
+            output::json(&EmitReport::new(Some(checked), refused, Vec::new(), Vec::new()))?;
+        }
+        return Ok(ExitStatus::Failed);
+    }
+    let (list, digests) = emitted.with(out, &programs);
+    let mut all = files.clone();
+    all.push((list, digests.as_bytes()));
+    all.extend(emitted_files::ignored_by_git(out));
+    make_folder(out)?;
+    output::write_all(&all)?;
     let left_over = stale_files(&job, &package, out);
     let name = |path: &PathBuf| path.display().to_string();
     let written = files.iter().map(|(path, _)| name(path)).collect();

@@ -1,6 +1,7 @@
 //! The generator's command line: arguments in, exit status out. All printing and file access is in this
 //! module.
 mod emit;
+mod emitted_files;
 mod new;
 mod sheet;
 
@@ -29,7 +30,7 @@ struct Arguments {
 const EXIT_CODES: &str = "\
 Exit codes:
   0  done
-  1  refused: the programs of this job fail verification; nothing is written
+  1  refused: the programs of this job fail verification, or a file was edited since; nothing is written
   2  the request is invalid: bad flag, unreadable or malformed job, unwritable folder
 
 Results go to standard output, messages to standard error. --format json writes one document and nothing else; its
@@ -52,13 +53,19 @@ Examples:
         /// The file to write [default: standard output]
         #[arg(short, long, value_name = "JOB.toml")]
         output: Option<PathBuf>,
+        /// Replace the file if it exists
+        #[arg(long)]
+        force: bool,
     },
 
     /// Write the O-programs and the machine file of a job
     #[command(after_help = "\
 Examples:
   gcode-gen emit job.toml --out nc
-  gcode-sim verify nc/O8100.nc --reference job.toml --machine nc/machine.toml")]
+  gcode-sim verify nc/O8100.nc --reference job.toml --machine nc/machine.toml
+
+emitted.sha256 in the folder lists the files as they were written. A file with other contents is kept, and nothing is
+written, unless --force is given.")]
     Emit {
         /// The job file; '-' reads standard input
         #[arg(value_name = "JOB.toml")]
@@ -66,6 +73,9 @@ Examples:
         /// The folder for the programs; created if it does not exist
         #[arg(short, long, value_name = "DIR")]
         out: PathBuf,
+        /// Replace files of the folder that were edited, or that emit did not write
+        #[arg(long)]
+        force: bool,
         /// Output format
         #[arg(long, value_enum, default_value_t = TextFormat::Text)]
         format: TextFormat,
@@ -132,8 +142,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
 
 fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
     match &arguments.command {
-        Command::New { family, output } => new::run(family, output.as_deref()),
-        Command::Emit { job, out, format } => emit::run(job, out, *format),
+        Command::New { family, output, force } => new::run(family, output.as_deref(), *force),
+        Command::Emit { job, out, force, format } => emit::run(job, out, *force, *format),
         Command::Sheet { job, output, rates, format } => sheet::run(job, output, rates.as_deref(), *format),
         Command::Schema(name) => schema::print(&name.name, FORMATS),
         Command::Completions(shell) => packaging::completions::<Arguments>(shell),

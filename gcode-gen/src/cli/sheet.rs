@@ -17,7 +17,7 @@ pub(super) fn run(
 ) -> Result<ExitStatus, UsageError> {
     overwrite_guard::check_not_input(out, &std::iter::once(path).chain(rates).collect::<Vec<_>>())?;
     let read =
-        |path: &Path| Rates::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error));
+        |path: &Path| Rates::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error));
     let rates = rates.map(read).transpose()?;
     let Emitted { job, package, checked, refused } = emit_verified(path)?;
     let (Some(checked), None) = (&checked, &refused) else {

@@ -4,7 +4,7 @@ use clap::{Parser, Subcommand};
 
 use super::common::Colours;
 use super::{
-    budget, check, compare, diff, explain, holes, packaging, readings, reference, render, run, schema,
+    budget, check, compare, diff, explain, holes, new, packaging, readings, reference, render, run, schema,
     settings, test, verify,
 };
 
@@ -129,6 +129,16 @@ Examples:
 A case is a folder with a program (main.nc, or the only one in it that no other calls) and, optionally, lib/, machine.toml,
 control.toml, a reference (reference.json, reference.csv or job.toml), and accepted.json, which --accept writes.")]
     Test(test::Arguments),
+
+    /// Write a file to start from: a machine file, a list of holes, a project file
+    #[command(after_help = "\
+Examples:
+  gcode-sim new machine --kind trunnion -o machine.toml
+  gcode-sim new reference --from O1234.nc -o O1234.csv
+  gcode-sim new project -o gcode.toml
+
+A file that exists with other contents is kept, unless --force replaces it.")]
+    New(new::Arguments),
 
     /// Estimate the position error of each hole over many parts, on machines and set-ups with errors
     #[command(after_help = "\

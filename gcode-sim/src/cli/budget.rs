@@ -67,7 +67,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let files = [arguments.job.as_path(), arguments.errors.as_path()].into_iter().chain(machine);
         overwrite_guard::check_not_input(file.path(), &files.collect::<Vec<_>>())?;
     }
-    let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| in_job(&e))?;
+    let job =
+        Job::parse(&input::text(&arguments.job)?).map_err(|e| UsageError::in_toml(&arguments.job, &e))?;
     let reference = NominalPart::from_job(&job).map_err(|e| in_job(&e))?.into_holes();
     let reference =
         reference.ok_or_else(|| in_job(&"a budget needs holes, and this family's part has none"))?;
@@ -82,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         return Err(UsageError::new(message));
     }
     let sources = error_file(&input::text(&arguments.errors)?, &machine)
-        .map_err(|error| UsageError::in_file(&arguments.errors, error))?;
+        .map_err(|error| UsageError::in_toml(&arguments.errors, &error))?;
     let one = NonZeroUsize::MIN;
     let request = BudgetRequest {
         machine: &machine,

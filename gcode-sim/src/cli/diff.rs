@@ -5,6 +5,7 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
+use super::library::Folders;
 use super::picture_file::PictureFile;
 use super::project::{self, Project};
 use super::{ExitStatus, UsageError, options, output, page, render, unused_machine};
@@ -80,7 +81,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut old_request, mut old_folders) = options::request(&before.of(&arguments.old))?;
     let (mut new_request, mut new_folders) = options::request(&after.of(&arguments.new))?;
     unused_machine::warn_unused_machine(&after.of(&arguments.new), &new_request);
-    let reference = arguments.reference.as_deref().map(read_reference_holes).transpose()?;
+    let read = |path: &Path| read_reference_holes(path, &new_request, &mut new_folders);
+    let reference = arguments.reference.as_deref().map(read).transpose()?;
     let metal =
         |request: &Request| reference.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
     for request in [&mut old_request, &mut new_request] {
@@ -166,8 +168,12 @@ fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding>
 }
 
 /// Reads the page's reference.
-fn read_reference_holes(path: &Path) -> Result<Reference, UsageError> {
-    match options::read_nominal(path)? {
+fn read_reference_holes(
+    path: &Path,
+    request: &Request,
+    folders: &mut Folders,
+) -> Result<Reference, UsageError> {
+    match options::read_nominal(path, request, folders)? {
         NominalPart::Holes(reference) => Ok(reference),
         NominalPart::Flutes(_) => Err(UsageError::new(format!(
             "--reference {}: a page verifies holes, and this is a burr: omit the reference",

@@ -106,6 +106,12 @@ pub fn text(path: &Path) -> Result<String, UsageError> {
     Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned))
 }
 
+/// Reads the text of a list, which a spreadsheet may write in the encoding of its system.
+pub(super) fn table(path: &Path) -> Result<String, UsageError> {
+    let text = String::from_utf8_lossy(&to_utf8(bytes(path)?)).into_owned();
+    Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

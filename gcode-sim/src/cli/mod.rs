@@ -11,6 +11,7 @@ pub mod format;
 mod holes;
 pub mod input;
 pub mod library;
+mod new;
 mod options;
 pub mod output;
 pub mod overwrite_guard;
@@ -40,6 +41,7 @@ use crate::report::diagnostic;
 use gcode_draw::PictureError;
 use gcode_inspect::verify::{Answer, Conclusion, Ending};
 use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_part::reader::FileError;
 use gcode_session::{GrindingError, Run, SessionError};
 
 /// Outcome of a request, the same for both programs.
@@ -99,6 +101,15 @@ impl UsageError {
         Self::new(format!("{}, {error}", path.display()))
     }
 
+    /// Builds the error of a TOML file's contents; a key that another file or family has is named with its home.
+    pub fn in_toml(path: &Path, error: &FileError) -> Self {
+        let homes = error.unknown_key().map(crate::schema::homes_of).unwrap_or_default();
+        match homes.as_slice() {
+            [] => Self::in_file(path, error),
+            homes => Self::in_file(path, format!("{error}; it is a key of {}", homes.join(", "))),
+        }
+    }
+
     /// Builds the error of a file or folder that cannot be read.
     pub(crate) fn unreadable(path: &Path, error: impl Display) -> Self {
         Self::new(format!("{} cannot be read: {error}", path.display()))
@@ -126,6 +137,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Check(arguments) => check::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Budget(arguments) => budget::run(&arguments),
         Command::Settings(arguments) => settings::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

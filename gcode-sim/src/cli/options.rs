@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::conditions::ProgramArguments;
 use super::library::Folders;
-use super::{UsageError, input, overwrite_guard, page, unused_machine};
+use super::{UsageError, input, output, overwrite_guard, page, unused_machine};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_lang::motion::{Axes, AxisIndex};
@@ -39,7 +39,7 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     }
     if let Some(path) = &arguments.control_file {
         control_file::apply(&input::text(path)?, &mut request.settings, arguments.dialect.is_none())
-            .map_err(|error| UsageError::in_file(path, error))?;
+            .map_err(|error| UsageError::in_toml(path, &error))?;
     }
     let settings = [
         ("--control", arguments.control.clone()),
@@ -106,7 +106,7 @@ fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result
             "--part: --control SKIP=… or --skip already sets the skip signal: omit one of them",
         ));
     }
-    let part = ProbedPart::parse(&input::text(path)?).map_err(|error| refused(&error))?;
+    let part = ProbedPart::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))?;
     match (&request.machine.probe, part.radius) {
         (None, Some(radius)) => request.machine.probe = Some(Probe::new(radius)),
         (None, None) => {
@@ -153,12 +153,24 @@ fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), Stri
 
 /// Reads a machine file.
 pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
-    Machine::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))
+    Machine::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))
 }
 
-/// Reads a hole list or a job file.
-pub(super) fn read_nominal(path: &Path) -> Result<NominalPart, UsageError> {
-    NominalPart::parse(&input::text(path)?).map_err(|error| UsageError::in_file(path, error))
+/// Reads a hole list or a job file, and says what a list leaves out. Depths that it leaves out are those of the program's holes.
+pub(super) fn read_nominal(
+    path: &Path,
+    request: &Request,
+    folders: &mut Folders,
+) -> Result<NominalPart, UsageError> {
+    let text = input::table(path)?;
+    let mut nominal = NominalPart::parse(&text).map_err(|error| UsageError::in_toml(path, &error))?;
+    if let NominalPart::Holes(reference) = &mut nominal {
+        if let Some(note) = &reference.note {
+            output::print_message(&format!("note: {}: {note}\n", path.display()));
+        }
+        gcode_session::complete_depths(request, folders, reference)?;
+    }
+    Ok(nominal)
 }
 
 /// Checks the value of a tolerance flag.

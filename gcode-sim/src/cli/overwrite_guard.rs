@@ -1,9 +1,9 @@
-//! Guards inputs: a result never overwrites one of them, and standard input is read once.
+//! Guards files: a result never overwrites an input or a file with other contents, and standard input is read once.
 #![expect(clippy::disallowed_methods, reason = "the command line compares files")]
 
 use std::path::Path;
 
-use super::UsageError;
+use super::{UsageError, input, output};
 
 /// Refuses a `result` that is one of `inputs`, with links resolved.
 pub fn check_not_input(result: &Path, inputs: &[&Path]) -> Result<(), UsageError> {
@@ -21,6 +21,18 @@ pub fn check_not_input(result: &Path, inputs: &[&Path]) -> Result<(), UsageError
     }
 }
 
+/// Writes a file to start from. One with other contents is the user's and is kept, unless `force` replaces it.
+pub fn write_new(path: &Path, text: &str, force: bool) -> Result<(), UsageError> {
+    let is_kept = |bytes: Vec<u8>| !bytes.is_empty() && bytes != text.as_bytes();
+    if !force && path.is_file() && is_kept(input::bytes(path)?) {
+        let name = path.display();
+        return Err(UsageError::new(format!(
+            "{name} already exists: name another file, or replace it by --force"
+        )));
+    }
+    output::write(path, text.as_bytes())
+}
+
 /// Refuses two inputs that are both standard input: the second would be empty.
 pub(super) fn one_pipe(inputs: &[&Path]) -> Result<(), UsageError> {
     if inputs.iter().filter(|path| **path == Path::new("-")).count() > 1 {
@@ -32,7 +44,6 @@ pub(super) fn one_pipe(inputs: &[&Path]) -> Result<(), UsageError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::output;
 
     #[test]
     fn an_input_is_not_overwritten() {
@@ -44,6 +55,19 @@ mod tests {
         assert!(check_not_input(&other, &[&program]).is_ok(), "no file yet");
         output::write(&other, b"").unwrap();
         assert!(check_not_input(&other, &[&program, Path::new("-")]).is_ok());
+    }
+
+    #[test]
+    fn a_file_with_other_contents_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("machine.toml");
+        let kept = |text| write_new(&path, text, false).is_err();
+        output::write(&path, b"").unwrap();
+        assert!(!kept("one") && !kept("one"), "an empty file, and the same contents");
+        assert!(kept("two"));
+        assert_eq!(input::bytes(&path).unwrap(), b"one");
+        write_new(&path, "two", true).unwrap();
+        assert_eq!(input::bytes(&path).unwrap(), b"two");
     }
 
     #[test]

@@ -43,7 +43,7 @@ impl Project {
         let shown = shown(root);
         let path = shown.join(PROJECT_FILE);
         let file =
-            ProjectFile::parse(&input::text(&path)?).map_err(|error| UsageError::in_file(&path, error))?;
+            ProjectFile::parse(&input::text(&path)?).map_err(|error| UsageError::in_toml(&path, &error))?;
         let found = FoundFile { folder: root.to_owned(), shown, file };
         Ok(Self { program: below.join(name), found: Some(found) })
     }

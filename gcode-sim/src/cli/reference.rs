@@ -24,7 +24,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let path = &arguments.job;
-    let job = Job::parse(&input::text(path)?).map_err(|e| UsageError::in_file(path, e))?;
+    let job = Job::parse(&input::text(path)?).map_err(|e| UsageError::in_toml(path, &e))?;
     match NominalPart::from_job(&job).map_err(|e| UsageError::in_file(path, e))? {
         NominalPart::Holes(reference) => holes::print(&reference.list(), Origin::Surface, arguments.format)?,
         NominalPart::Flutes(flutes) => {

@@ -126,7 +126,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         Some(arguments.output.path()),
         None,
     )?;
-    let nominal = arguments.reference.as_deref().map(options::read_nominal).transpose()?;
+    let reference = arguments.reference.as_deref();
+    let nominal = reference.map(|path| options::read_nominal(path, &request, &mut folders)).transpose()?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
     let drawn = match nominal {

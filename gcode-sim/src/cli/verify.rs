@@ -82,10 +82,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let results = (arguments.picture.as_ref().map(PictureFile::path), arguments.page.as_deref());
-    let (mut request, folders) =
+    let (mut request, mut folders) =
         options::checked_request(&arguments.program, Some(path), results.0, results.1)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
-    match options::read_nominal(path)? {
+    match options::read_nominal(path, &request, &mut folders)? {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);
             tolerances.depth = depth.unwrap_or(tolerances.depth);

@@ -27,7 +27,10 @@ pub mod control;
 pub mod diag;
 pub mod motion;
 pub mod program;
+mod similar;
 pub mod source;
 pub mod syntax;
 pub mod units;
 mod unknown_axes;
+
+pub use similar::similar;

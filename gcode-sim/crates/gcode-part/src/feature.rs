@@ -84,7 +84,7 @@ const CONE_TOLERANCE: f64 = 0.1;
 
 impl FeatureKind {
     /// All kinds.
-    const ALL: [Self; 6] =
+    pub(crate) const ALL: [Self; 6] =
         [Self::Drill, Self::Ream, Self::Bore, Self::Counterbore, Self::Countersink, Self::Tap];
 
     /// Returns the name in files and messages.

@@ -55,6 +55,8 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, FileError> {
         stock: None,
         process_limits,
         pattern: Some(pattern),
+        open_depths: Vec::new(),
+        note: None,
     })
 }
 

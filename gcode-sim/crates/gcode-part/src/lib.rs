@@ -36,6 +36,7 @@
 mod assumption;
 mod clusters;
 mod contact;
+mod csv_list;
 mod distance;
 mod entry_planes;
 mod feature;
@@ -64,6 +65,7 @@ mod touch_uncertainty;
 pub use assumption::{Assumption, AssumptionPlace, Total};
 pub use clusters::Clusters;
 pub use contact::Frustum;
+pub use csv_list::STOPPED;
 pub use entry_planes::{
     Collar, EntryPlanes, MAX_BREAK_THROUGH, MAX_EDGE_BREAK, Metal, PARALLEL_COSINE, POINT_LENGTH, Step,
 };
@@ -78,7 +80,6 @@ pub use overlap::overlaps;
 pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
-pub use read::STOPPED;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
 pub use solid::{NearestPoint, Rod, Taper, shares_between, shares_within};
 pub use stock::{Pocket, Stock, StockAxis};

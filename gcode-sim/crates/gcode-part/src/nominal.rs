@@ -1,4 +1,5 @@
 //! The nominal part, computed from the geometry of a job or read from a list of holes.
+use super::csv_list;
 use super::flutes::Flutes;
 use super::read;
 use super::reference::Reference;
@@ -30,12 +31,8 @@ impl NominalPart {
         if text.trim_start().starts_with('{') {
             return Reference::of_list(read::json(text)?).map(Self::Holes);
         }
-        if read::is_csv(text) {
-            return Reference::of_list(read::csv(text)?).map(Self::Holes);
-        }
-        if read::has_semicolons(text) {
-            let message = "the columns are separated by ';': use ',' between them, and points in the numbers";
-            return Err(FileError { line: Some(1), message: message.to_owned() });
+        if csv_list::is_csv(text) {
+            return Reference::of_csv(csv_list::csv(text)?).map(Self::Holes);
         }
         if !text.contains("family") {
             let message = "neither a hole list (JSON or CSV) nor a job file with its key 'family'".to_owned();

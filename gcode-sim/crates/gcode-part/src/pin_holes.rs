@@ -30,6 +30,8 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
         stock: None,
         process_limits,
         pattern: None,
+        open_depths: Vec::new(),
+        note: None,
     })
 }
 

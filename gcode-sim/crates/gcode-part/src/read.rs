@@ -1,25 +1,15 @@
-//! Reads lists of nominal holes as JSON and CSV in the schema of `hole`, and rejects implausible entries with
-//! their location.
+//! Reads lists of nominal holes as JSON in the schema of `hole`, and rejects implausible entries of any list.
 use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
 use super::feature::{Feature, FeatureKind};
-use super::hole::{Hole, HoleList, Unit};
+use super::hole::{Hole, HoleList};
 use crate::reader::FileError;
 
 fn error(line: Option<usize>, message: impl Into<String>) -> FileError {
     FileError { line, message: message.into() }
 }
-
-/// Columns of a list; the last three may be left out.
-const COLUMNS: [&str; 11] = ["id", "x", "y", "z", "i", "j", "k", "depth", "diameter", "features", "through"];
-
-/// Beginning of the last line of a CSV list whose run stopped before its end.
-pub const STOPPED: &str = "# stopped: ";
-
-/// Columns that every list has.
-const REQUIRED: usize = 8;
 
 pub(super) fn json(text: &str) -> Result<HoleList, FileError> {
     serde_json::from_str(text).map_err(|e| {
@@ -27,97 +17,6 @@ pub(super) fn json(text: &str) -> Result<HoleList, FileError> {
         let message = message.split(" at line ").next().unwrap_or_default();
         error(Some(e.line()), format!("column {}: {message}", e.column()))
     })
-}
-
-/// Returns true if the first line looks like a header of columns: a comma and no `=`, unlike the first line
-/// of a job file.
-pub(super) fn is_csv(text: &str) -> bool {
-    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
-    first.contains(',') && !first.contains('=') && !first.trim_start().starts_with('#')
-}
-
-/// Returns true for a list that a spreadsheet wrote with the comma as decimal point.
-pub(super) fn has_semicolons(text: &str) -> bool {
-    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
-    let columns: Vec<_> = first.split(';').map(|name| name.trim().trim_matches('"')).collect();
-    1 < columns.len() && columns.iter().any(|name| COLUMNS.contains(name))
-}
-
-pub(super) fn csv(text: &str) -> Result<HoleList, FileError> {
-    let (text, stopped) = match text.trim_end().rsplit_once('\n') {
-        Some((before, last)) if last.starts_with(STOPPED) => (before, last.strip_prefix(STOPPED)),
-        _ => (text, None),
-    };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
-    let columns = COLUMNS.map(|name| (name, header.iter().position(|h| h == name)));
-    for (name, place) in &columns[..REQUIRED] {
-        if place.is_none() {
-            let all = COLUMNS[..=REQUIRED].join(",");
-            return Err(error(Some(1), format!("column '{name}' is missing: the header is {all}")));
-        }
-    }
-    if let Some(other) = header.iter().find(|h| !COLUMNS.contains(h)) {
-        return Err(error(
-            Some(1),
-            format!("column '{other}' is unknown: the columns are {}", COLUMNS.join(",")),
-        ));
-    }
-    let [id, x, y, z, i, j, k, depth, diameter, feature_list, through] = columns;
-    let mut holes = Vec::new();
-    let mut record = csv::StringRecord::new();
-    while reader.read_record(&mut record).map_err(|e| csv_error(&e))? {
-        let line = record.position().map(|p| p.line() as usize);
-        let field = |(_, place): (&str, Option<usize>)| {
-            place.and_then(|place| record.get(place)).unwrap_or_default().trim()
-        };
-        let number = |column: (&str, Option<usize>)| {
-            let (name, text) = (column.0, field(column));
-            text.parse::<f64>().map_err(|_| error(line, format!("column '{name}' is '{text}': a number")))
-        };
-        holes.push(Hole {
-            id: Some(field(id).to_owned()).filter(|id| !id.is_empty()),
-            entry: [number(x)?, number(y)?, number(z)?],
-            axis: [number(i)?, number(j)?, number(k)?],
-            depth: if field(depth).is_empty() && !field(feature_list).is_empty() {
-                0.0
-            } else {
-                number(depth)?
-            },
-            diameter: if field(diameter).is_empty() { None } else { Some(number(diameter)?) },
-            features: features(field(feature_list))
-                .map_err(|message| error(line, format!("column 'features': {message}")))?,
-            through: match field(through) {
-                "" | "false" => false,
-                "true" => true,
-                other => return Err(error(line, format!("column 'through' is '{other}': true or false"))),
-            },
-            ..Hole::default()
-        });
-        let last = holes.len() - 1;
-        complete(&mut holes[last]);
-        check(&holes[last], last).map_err(|message| error(line, message))?;
-    }
-    if holes.is_empty() && stopped.is_none() {
-        return Err(error(None, "no hole after the header: one line for each"));
-    }
-    Ok(HoleList {
-        unit: Unit::Mm,
-        holes,
-        stock: None,
-        assumptions: None,
-        stopped: stopped.map(str::to_owned),
-    })
-}
-
-fn csv_error(e: &csv::Error) -> FileError {
-    let line = e.position().map(|p| p.line() as usize);
-    match e.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            error(line, format!("{len} columns, the header has {expected_len}"))
-        }
-        _ => error(line, e.to_string()),
-    }
 }
 
 /// Returns the holes with an id each and axes normalised to length 1, or the first error.
@@ -140,14 +39,9 @@ pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, FileError> {
     Ok(holes)
 }
 
-/// Parses the features of a CSV cell, separated by `;`.
-fn features(cell: &str) -> Result<Vec<Feature>, String> {
-    cell.split(';').map(str::trim).filter(|text| !text.is_empty()).map(Feature::parse).collect()
-}
-
 /// Sets a depth that is left out, or that is less than that of a feature, to that of the deepest one. That of a through hole
 /// is the thickness of the part.
-fn complete(hole: &mut Hole) {
+pub(super) fn complete(hole: &mut Hole) {
     let deepest = hole.features.iter().map(Feature::bottom).fold(0.0, f64::max);
     if hole.depth == 0.0 || (!hole.through && 0.0 < hole.depth && hole.depth < deepest) {
         hole.depth = deepest;
@@ -155,7 +49,7 @@ fn complete(hole: &mut Hole) {
 }
 
 /// Checks one hole for finite, plausible values.
-fn check(hole: &Hole, index: usize) -> Result<(), String> {
+pub(super) fn check(hole: &Hole, index: usize) -> Result<(), String> {
     find_fault(hole).map_or(Ok(()), |fault| {
         let name = match &hole.id {
             Some(id) => format!("hole {} (id '{id}')", index + 1),
@@ -295,17 +189,18 @@ mod tests {
             (row("1,0,0"), "line 3: 3 columns, the header has 9"),
             (
                 "id,x,y,z,i,j,depth,diameter\n".to_owned(),
-                "line 1: column 'k' is missing: the header is id,x,y,z,i,j,k,depth,diameter",
+                "line 1: column 'k' is missing: i, j and k together are the axis; a list begins with its columns, for \
+                 example: id,x,y,depth,diameter, and below them: 1,30,10,15,6",
             ),
             (
-                "id,x,y,z,i,j,k,depth,through\n1,0,0,0,0,1,0,5,yes\n".to_owned(),
-                "line 2: column 'through' is 'yes': true or false",
+                "id,x,y,z,i,j,k,depth,through\n1,0,0,0,0,1,0,5,maybe\n".to_owned(),
+                "line 2: column 'through' is 'maybe': true or false",
             ),
             (
                 "id,x,y,z,i,j,k,depth,features\n1,0,0,0,0,1,0,5,drill 6 15; cbore 10 5\n".to_owned(),
                 "line 2: column 'features': 'cbore' is no kind of feature: one of drill, ream",
             ),
-            ("id,x,y,z,i,j,k,depth,features\n1,0,0,0,0,1,0,,\n".to_owned(), "line 2: column 'depth' is ''"),
+            ("id,x,y,depth,through\n1,0,0,,true\n".to_owned(), "line 2: column 'depth' is ''"),
             (
                 "id,x,y,z,i,j,k,depth,diameter,features\n1,0,0,0,0,1,0,15,7,drill 6 15\n".to_owned(),
                 "line 2: hole 1 (id '1'): the diameter is 7, which no feature has: leave it out",

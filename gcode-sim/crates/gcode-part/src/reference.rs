@@ -1,6 +1,7 @@
 //! Nominal holes with their tolerances, and the limits of the process.
 use std::sync::Arc;
 
+use super::csv_list::CsvList;
 use super::entry_planes::{EntryPlanes, Metal};
 use super::hole::{Hole, HoleList, Unit};
 use super::nominal_axes::NominalAxes;
@@ -28,6 +29,10 @@ pub struct Reference {
     pub process_limits: ProcessLimits,
     /// Nominal relation of neighbouring holes; `None` for parts without a pattern.
     pub pattern: Option<Pattern>,
+    /// Holes whose depth a list leaves out, by their indices: those of the program count, and are not compared.
+    pub open_depths: Vec<usize>,
+    /// What the reader of a list took for granted, in one sentence.
+    pub note: Option<String>,
 }
 
 impl Reference {
@@ -59,7 +64,23 @@ impl Reference {
             stock: list.stock,
             process_limits: ProcessLimits { hole_axes, ..ProcessLimits::default() },
             pattern: None,
+            open_depths: Vec::new(),
+            note: None,
         })
+    }
+
+    /// Returns the reference of a list read as CSV.
+    pub(super) fn of_csv(list: CsvList) -> Result<Self, FileError> {
+        let CsvList { holes, open_depths, note } = list;
+        Ok(Self { open_depths, note, ..Self::of_list(holes)? })
+    }
+
+    /// Sets depths of holes, by their indices, whose list leaves them out.
+    pub fn set_depths(&mut self, depths: impl IntoIterator<Item = (usize, f64)>) {
+        for (hole, depth) in depths {
+            self.holes[hole].depth = depth;
+        }
+        self.process_limits.hole_axes = Arc::new(NominalAxes::of(&self.holes));
     }
 
     /// Returns what is known to be metal; `of_machine` is the stock of the machine file, which that of the reference

@@ -26,6 +26,7 @@ mod causes;
 mod completion;
 mod error;
 mod marked_events;
+mod open_depths;
 mod outside_text;
 mod second_start;
 mod trace;
@@ -34,6 +35,7 @@ use std::sync::Arc;
 
 pub use assumptions::Dependencies;
 pub use error::SessionError;
+pub use open_depths::complete_depths;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Observer, Outcome, Progress};

@@ -2,7 +2,7 @@
 #![expect(clippy::disallowed_methods, reason = "the command line finds files")]
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::main_program::{self, MainProgram};
 use crate::cli::conditions::RunConditions;
@@ -129,7 +129,8 @@ impl Case {
         }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(own);
         let reference = reference.or_else(|| project.reference());
-        let nominal = reference.as_deref().map(options::read_nominal).transpose()?;
+        let read = |path: &Path| options::read_nominal(path, &request, &mut folders);
+        let nominal = reference.as_deref().map(read).transpose()?;
         let metal = match &nominal {
             Some(NominalPart::Holes(reference)) => {
                 request.process_limits = reference.process_limits.clone();

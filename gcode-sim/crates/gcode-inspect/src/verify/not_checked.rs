@@ -58,6 +58,11 @@ pub(super) fn list(
 ) -> Vec<NotChecked> {
     let HoleInspection { comparison, extraction, reference, machine, .. } = inspection;
     let mut all = diameters(comparison, machine);
+    let open: Vec<&str> = reference.open_depths.iter().map(|index| comparison.id(*index)).collect();
+    if !open.is_empty() {
+        let what = format!("the depth of {}", hole_names(&open));
+        all.push(NotChecked::gap(what, "the list has none, and that of the program counts"));
+    }
     if !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none()) {
         let what = "the tool in the spindle at the start";
         all.push(NotChecked::gap(what, "it cuts before the first tool change"));

@@ -6,13 +6,14 @@ use super::{
     ToolAxisChoice,
 };
 use crate::motion::{Axes, MAX_AXES, Position};
+use crate::similar::similar;
 use crate::units::MmPerMin;
 
 /// Reason why a setting is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingError {
     /// No setting has this key.
-    #[error("no setting '{key}': see `gcode-sim settings`")]
+    #[error("no setting '{key}'{}: see `gcode-sim settings`", meant(key))]
     Unknown {
         /// Key as given.
         key: String,
@@ -27,6 +28,12 @@ pub enum SettingError {
         /// Permitted values.
         allowed: String,
     },
+}
+
+/// Returns a question for the setting that a misspelt key means.
+fn meant(key: &str) -> String {
+    let keys = ROWS.iter().map(|row| row.key).filter(|key| !key.starts_with(|c: char| c.is_ascii_digit()));
+    similar(key, keys).map(|meant| format!(" (did you mean '{meant}'?)")).unwrap_or_default()
 }
 
 /// Named setting.
@@ -354,7 +361,9 @@ impl Settings {
             let set = value.trim().parse().ok().and_then(|v| self.code_calls.set_parameter(number, v));
             return set.ok_or_else(|| bad(&"the code that calls, 0 for none"));
         }
-        if !key.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        // What follows is about codes: G201, M-3, T.
+        let is_code = |rest: &str| rest.chars().all(|c| c.is_ascii_digit() || ['-', '.'].contains(&c));
+        if !key.starts_with(|c: char| c.is_ascii_alphabetic()) || !is_code(&key[1..]) {
             return Err(unknown());
         }
         if let Some(effect) = choice(value.trim(), &DeclaredEffect::ALL) {
@@ -450,7 +459,9 @@ mod tests {
         let mut settings = Settings::default();
         let error = |r: Result<(), SettingError>| r.unwrap_err().to_string();
         assert_eq!(error(settings.set("NAT", "2")), "setting NAT is '2': 0 or 1");
-        assert!(error(settings.set("NOPE", "1")).starts_with("no setting 'NOPE'"));
+        assert!(error(settings.set("NOPE", "1")).starts_with("no setting 'NOPE': see"));
+        assert!(error(settings.set("NATT", "1")).starts_with("no setting 'NATT' (did you mean 'NAT'?): see"));
+        assert!(error(settings.set("dialekt", "fanuc-31i")).contains("(did you mean 'DIALECT'?)"));
         assert!(error(settings.set("ROA", "X")).contains("letters of rotary axes"));
     }
 

@@ -197,7 +197,10 @@ mod tests {
     #[test]
     fn a_refused_key_is_named_with_its_line() {
         for (text, message) in [
-            ("NAT = 1\nNATT = 1\n", "line 2: no setting 'NATT': see `gcode-sim settings`"),
+            (
+                "NAT = 1\nNATT = 1\n",
+                "line 2: no setting 'NATT' (did you mean 'NAT'?): see `gcode-sim settings`",
+            ),
             ("NAT = 2\n", "line 1: setting NAT is '2': 0 or 1"),
             ("\nNAT = [1]\n", "line 2: key 'NAT': a number or a text in quotes"),
         ] {

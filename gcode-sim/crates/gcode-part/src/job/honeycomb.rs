@@ -399,7 +399,7 @@ depth = 12.0
             (
                 "[drill]",
                 "[dril]",
-                "line 15: key 'dril' is unknown; allowed: family, control, machine, tolerance, cylinder, \
+                "line 15: key 'dril' is unknown (did you mean 'drill'?); allowed: family, control, machine, tolerance, cylinder, \
                  pattern, drill, sheet",
             ),
             (

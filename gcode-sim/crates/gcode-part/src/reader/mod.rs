@@ -1,6 +1,7 @@
 //! Reads keys of a TOML file. Every error names the key, its line and the allowed values.
 pub mod bounds;
 mod keys;
+mod slips;
 mod wording;
 
 use std::fmt::Display;
@@ -24,6 +25,15 @@ pub struct FileError {
     pub line: Option<usize>,
     /// The sentence, without the line.
     pub message: String,
+}
+
+impl FileError {
+    /// Returns the key that the error names as unknown, unless it names the one that is meant.
+    pub fn unknown_key(&self) -> Option<&str> {
+        let quoted = |before: &str| self.message.strip_prefix(before)?.split_once('\'');
+        let (key, rest) = quoted("key '").or_else(|| quoted("no setting '"))?;
+        (rest.starts_with(" is unknown; ") || rest.starts_with(": see ")).then_some(key)
+    }
 }
 
 /// A value with its location in the text.
@@ -74,6 +84,12 @@ impl Reader<'_> {
     /// Returns the error of the TOML reader in the words of a job file, with its line.
     pub fn syntax(&self, error: &toml::de::Error) -> FileError {
         let line = error.span().map(|s| self.line(s.start));
+        let is_syntax = DeTable::parse(self.text).is_err();
+        if let Some((line, message)) =
+            line.filter(|_| is_syntax).and_then(|line| slips::syntax_slip(self.text, line))
+        {
+            return FileError { line: Some(line), message };
+        }
         FileError { line, message: wording::reword(self.text, error.span(), error.message().trim()) }
     }
 

@@ -4,6 +4,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::OUT_OF_RANGE;
+use gcode_lang::similar;
 
 /// Rewords `message` about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
@@ -18,14 +19,15 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
             name => format!("key '{}' is missing", name.join(".")),
         };
     }
-    if message.starts_with("invalid fraction") {
-        return "a number needs a digit behind its point: 5.0 or 5, not 5.".to_owned();
-    }
     let name = place.join(".");
     if message.starts_with("unknown field ") {
         let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);
         let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
-        return format!("key '{name}' is unknown; allowed: {allowed}");
+        let own = place.last().map_or("", String::as_str);
+        return match similar(own, allowed.split(", ")) {
+            Some(meant) => format!("key '{name}' is unknown (did you mean '{meant}'?); allowed: {allowed}"),
+            None => format!("key '{name}' is unknown; allowed: {allowed}"),
+        };
     }
     if let Some((found, required)) =
         message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
@@ -45,8 +47,20 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         "a table" | "a map" => "a table, { key = value },",
         other => other,
     };
-    let found = if found == "sequence" { "a list".to_owned() } else { found.replace('`', "") };
-    format!("key '{name}' is {found}: {expected} is required")
+    // A number that is written as text.
+    let text = found.strip_prefix("string \"").and_then(|rest| rest.strip_suffix('"'));
+    let number = text.map(|text| text.replacen(',', ".", 1)).filter(|number| number.parse::<f64>().is_ok());
+    let advice = match number.filter(|_| expected.contains("number")) {
+        Some(number) => format!("; write {number} without quotes"),
+        None if found == "map" && expected.starts_with("a list") => format!("; write [[{name}]]"),
+        None => String::new(),
+    };
+    let found = match found {
+        "sequence" => "a list".to_owned(),
+        "map" => "a table".to_owned(),
+        _ => found.replace('`', ""),
+    };
+    format!("key '{name}' is {found}: {expected} is required{advice}")
 }
 
 /// Returns the path of the key that begins at this byte, or whose value or an item of it does.
@@ -85,7 +99,7 @@ mod tests {
     #[test]
     fn a_key_is_named_with_its_table() {
         let unknown_shif = "unknown field `shif`, expected `shift` or `tilt`";
-        let is_unknown = "key 'part.shif' is unknown; allowed: shift, tilt";
+        let is_unknown = "key 'part.shif' is unknown (did you mean 'shift'?); allowed: shift, tilt";
         for (text, place, message, expected) in [
             (JOB, "[machine]", "missing field `head`", "key 'machine.head' is missing"),
             (JOB, "{ letter", "missing field `sign`", "key 'machine.rotary.sign' is missing"),
@@ -100,7 +114,7 @@ mod tests {
                 JOB,
                 "sgn",
                 "unknown field `sgn`, expected one of `letter`, `sign`",
-                "key 'machine.rotary.sgn' is unknown; allowed: letter, sign",
+                "key 'machine.rotary.sgn' is unknown (did you mean 'sign'?); allowed: letter, sign",
             ),
             (
                 JOB,

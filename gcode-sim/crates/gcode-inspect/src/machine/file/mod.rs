@@ -297,7 +297,7 @@ tilt = [0.0, 0.0, 1.0]
     fn an_unusable_key_is_named_with_its_line() {
         let cases = r#"
 tables = []
-=> line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, start, part, probe, rapid, stock, errors
+=> line 1: key 'tables' is unknown (did you mean 'table'?); allowed: control, table, head, wheel, tool, offsets, start, part, probe, rapid, stock, errors
 
 [[table]]
 letter = "B"

@@ -98,7 +98,8 @@ mod tests {
     #[test]
     fn a_point_without_a_digit_behind_it_is_explained() {
         let error = crate::machine::Machine::parse("[offsets.G54]\nX = 5.\n").unwrap_err();
-        assert_eq!(error.to_string(), "line 2: a number needs a digit behind its point: 5.0 or 5, not 5.");
+        let expected = "line 2: key 'offsets.G54.X' is 5.: a number has a digit on both sides of its point; write X = 5.0";
+        assert_eq!(error.to_string(), expected);
     }
 
     #[test]

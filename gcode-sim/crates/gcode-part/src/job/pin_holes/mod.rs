@@ -357,7 +357,7 @@ depth = 15.0
             (
                 "[control]\n",
                 "[contrl]\n",
-                "line 2: key 'contrl' is unknown; allowed: family, control, machine, surface, tolerance, \
+                "line 2: key 'contrl' is unknown (did you mean 'control'?); allowed: family, control, machine, surface, tolerance, \
                  hole, tool, macro, sheet",
             ),
         ] {

@@ -1,0 +1,171 @@
+//! The columns of a list: the separator, their names, and what a list without some of them means.
+use crate::feature::FeatureKind;
+use gcode_lang::similar;
+
+/// Columns of a list, with other names of each; a feature's own columns are beside them.
+const COLUMNS: [(&str, &[&str]); 11] = [
+    ("id", &["hole", "no", "nr", "no.", "nr."]),
+    ("x", &[]),
+    ("y", &[]),
+    ("z", &[]),
+    ("i", &[]),
+    ("j", &[]),
+    ("k", &[]),
+    ("depth", &[]),
+    ("diameter", &["dia", "d", "ø", "φ"]),
+    ("features", &[]),
+    ("through", &[]),
+];
+
+/// Further values of a feature with columns of its own: `tap pitch`.
+pub(super) const FEATURE_COLUMNS: [&str; 5] = ["depth", "to", "angle", "pitch", "hand"];
+
+/// Returns true if the first line looks like a header of columns, unlike the first line of a job file.
+pub(crate) fn is_csv(text: &str) -> bool {
+    let first = first_line(text);
+    if first.trim_start().starts_with('#') {
+        return false;
+    }
+    let separator = separator(first);
+    let names: Vec<_> = first.split(separator).map(column_name).collect();
+    let has = |name: &str| names.iter().any(|other| other == name);
+    let is_header = 1 < names.len() && (has("x") || has("y"));
+    is_header || separator == ',' && 1 < names.len() && !first.contains('=')
+}
+
+/// Returns the first line with columns: Excel may write the separator as a line before it.
+pub(super) fn first_line(text: &str) -> &str {
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    lines.find(|line| !is_separator_line(line)).unwrap_or_default()
+}
+
+fn is_separator_line(line: &str) -> bool {
+    line.trim().trim_matches('"').to_lowercase().starts_with("sep=")
+}
+
+/// Returns the character between the columns of a header.
+pub(super) fn separator(header: &str) -> char {
+    let count = |separator: char| header.matches(separator).count();
+    [',', ';', '\t'].into_iter().rev().max_by_key(|separator| count(*separator)).unwrap_or(',')
+}
+
+/// Returns the name of a column in lower case, without quotes and a unit in brackets; another unit than mm stays.
+pub(super) fn column_name(cell: &str) -> String {
+    let name = cell.trim().trim_matches('"').trim().to_lowercase().replace(['_', '-'], " ");
+    let bracket = name.find(['[', '(']).filter(|at| matches!(&name[at + 1..], "mm]" | "mm)" | "°]" | "°)"));
+    name[..bracket.unwrap_or(name.len())].trim().to_owned()
+}
+
+/// Returns a line that would be right below these columns; without columns, a short list.
+pub(super) fn example(names: &[String], separator: char) -> String {
+    let text = separator.to_string();
+    if names.is_empty() {
+        let lines = ["id,x,y,depth,diameter", "1,30,10,15,6"].map(|line| line.replace(',', &text));
+        return format!(
+            "a list begins with its columns, for example: {}, and below them: {}",
+            lines[0], lines[1]
+        );
+    }
+    let point = if separator == ',' { "." } else { "," };
+    let cell = |name: &String| match name.as_str() {
+        "id" | "k" => "1".to_owned(),
+        "x" => format!("30{point}5"),
+        "y" => "10".to_owned(),
+        "z" | "i" | "j" => "0".to_owned(),
+        "depth" => "15".to_owned(),
+        "diameter" => "6".to_owned(),
+        "through" => "false".to_owned(),
+        "features" => "drill 6 15".to_owned(),
+        _ => String::new(),
+    };
+    let line: Vec<_> = names.iter().map(cell).collect();
+    format!("a right line: {}", line.join(&text))
+}
+
+/// The columns of a list by their names, other names and unused columns among them.
+pub(super) struct Columns {
+    pub(super) names: Vec<String>,
+    unused: Vec<String>,
+    pub(super) separator: char,
+}
+
+impl Columns {
+    /// Returns the columns; refuses a list without x and y, one with a column twice, and misspelt names.
+    pub(super) fn new(mut names: Vec<String>, separator: char) -> Result<Self, String> {
+        for (name, others) in COLUMNS {
+            if !names.iter().any(|other| other == name)
+                && let Some(place) = names.iter().position(|other| others.contains(&other.as_str()))
+            {
+                name.clone_into(&mut names[place]);
+            }
+        }
+        let kinds = FeatureKind::ALL.map(FeatureKind::name);
+        let of_features =
+            kinds.iter().flat_map(|kind| FEATURE_COLUMNS.map(|value| format!("{kind} {value}")));
+        let known: Vec<String> = COLUMNS
+            .iter()
+            .map(|(name, _)| (*name).to_owned())
+            .chain(kinds.map(str::to_owned))
+            .chain(of_features)
+            .collect();
+        let mut unused = Vec::new();
+        for (index, name) in names.iter().enumerate() {
+            if known.contains(name) {
+                if names[..index].contains(name) {
+                    return Err(format!("column '{name}' is there twice"));
+                }
+                continue;
+            }
+            if name.contains(['(', '[']) && known.iter().any(|known| name.starts_with(known.as_str())) {
+                return Err(format!("column '{name}': lengths are in mm"));
+            }
+            match similar(name, known.iter().map(String::as_str))
+                .filter(|known| !names.iter().any(|name| name == known))
+            {
+                Some(meant) => return Err(format!("column '{name}' is unknown (did you mean '{meant}'?)")),
+                None if name.is_empty() => {}
+                None => unused.push(name.clone()),
+            }
+        }
+        let columns = Self { names, unused, separator };
+        if let Some(missing) = ["x", "y"].into_iter().find(|name| !columns.has(name)) {
+            return Err(format!("column '{missing}' is missing"));
+        }
+        let axis = ["i", "j", "k"];
+        match axis.into_iter().find(|name| !columns.has(name)) {
+            Some(missing) if axis.into_iter().any(|name| columns.has(name)) => {
+                Err(format!("column '{missing}' is missing: i, j and k together are the axis"))
+            }
+            _ => Ok(columns),
+        }
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.place(name).is_some()
+    }
+
+    pub(super) fn place(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|other| other == name)
+    }
+
+    /// Returns what the reader takes for granted.
+    pub(super) fn note(&self, has_open_depths: bool, has_comma: bool) -> Option<String> {
+        let mut facts = Vec::new();
+        if !self.has("z") {
+            facts.push("z is 0: no column z".to_owned());
+        }
+        if !self.has("i") {
+            facts.push("the axis is 0, 0, 1: no columns i, j, k".to_owned());
+        }
+        if has_open_depths {
+            facts.push("depths that are left out are not compared".to_owned());
+        }
+        if has_comma {
+            facts.push("commas in numbers are decimal commas".to_owned());
+        }
+        if !self.unused.is_empty() {
+            facts.push(format!("unused: {}", self.unused.join(", ")));
+        }
+        (!facts.is_empty()).then(|| facts.join("; "))
+    }
+}

@@ -1,0 +1,242 @@
+//! Lists of holes as CSV, as spreadsheets and people write them: columns in any order, decimal commas, features in columns of their own.
+mod columns;
+#[cfg(test)]
+mod tests;
+
+pub(super) use columns::is_csv;
+use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator};
+
+use super::feature::{DepthTo, Feature, FeatureKind, Hand};
+use super::hole::{Hole, HoleList, Unit};
+use super::read::{check, complete};
+use crate::reader::FileError;
+
+/// Beginning of the last line of a list whose run stopped before its end.
+pub const STOPPED: &str = "# stopped: ";
+
+/// Depth of a hole whose list gives none, until that of the program is known, mm.
+const OPEN_DEPTH: f64 = 1.0;
+
+/// A list with what its reader assumed.
+#[derive(Debug)]
+pub(super) struct CsvList {
+    pub(super) holes: HoleList,
+    /// Holes without a depth, by their indices.
+    pub(super) open_depths: Vec<usize>,
+    /// What the reader took for granted, in one sentence; `None` for a list with all columns and no others.
+    pub(super) note: Option<String>,
+}
+
+fn error(line: Option<usize>, message: impl Into<String>) -> FileError {
+    FileError { line, message: message.into() }
+}
+
+/// Parses the text of a list.
+pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
+    let (text, stopped) = match text.trim_end().rsplit_once('\n') {
+        Some((before, last)) if last.starts_with(STOPPED) => (before, last.strip_prefix(STOPPED)),
+        _ => (text, None),
+    };
+    let header = first_line(text);
+    let separator = separator(header);
+    let start = text.find(header).unwrap_or_default();
+    let mut reader = csv::ReaderBuilder::new()
+        .flexible(true)
+        .delimiter(separator as u8)
+        .from_reader(&text.as_bytes()[start..]);
+    // A record begins behind the empty lines that its position counts in.
+    let line_of = |position: Option<&csv::Position>| {
+        let from = start + position?.byte() as usize;
+        let is_break = |byte: &&u8| matches!(byte, b'\r' | b'\n');
+        let from = from + text.as_bytes()[from..].iter().take_while(is_break).count();
+        Some(text[..from].matches('\n').count() + 1)
+    };
+    let wrong = |e: &csv::Error| error(line_of(e.position()), e.to_string());
+    let names = reader.headers().map_err(|e| wrong(&e))?.iter().map(column_name).collect();
+    let columns = Columns::new(names, separator).map_err(|message| {
+        error(line_of(Some(&csv::Position::new())), format!("{message}; {}", example(&[], separator)))
+    })?;
+    let mut list = CsvList {
+        holes: HoleList {
+            unit: Unit::Mm,
+            holes: Vec::new(),
+            stock: None,
+            assumptions: None,
+            stopped: stopped.map(str::to_owned),
+        },
+        open_depths: Vec::new(),
+        note: None,
+    };
+    let mut cells =
+        Cells { columns: &columns, record: csv::StringRecord::new(), has_comma: false, has_point: false };
+    while reader.read_record(&mut cells.record).map_err(|e| wrong(&e))? {
+        if cells.record.iter().all(|cell| cell.trim().is_empty()) {
+            continue;
+        }
+        let index = list.holes.holes.len();
+        let hole = cells.hole(index).map_err(|message| {
+            error(
+                line_of(cells.record.position()),
+                format!("{message}; {}", example(&columns.names, separator)),
+            )
+        })?;
+        if hole.is_open {
+            list.open_depths.push(index);
+        }
+        list.holes.holes.push(hole.hole);
+    }
+    if list.holes.holes.is_empty() && stopped.is_none() {
+        let example = example(&columns.names, separator);
+        return Err(error(None, format!("no hole after the header: one line for each; {example}")));
+    }
+    let has_comma = cells.has_comma;
+    list.note = columns.note(!list.open_depths.is_empty(), has_comma);
+    Ok(list)
+}
+
+/// A hole of a list.
+struct CsvHole {
+    hole: Hole,
+    /// The list gives it no depth.
+    is_open: bool,
+}
+
+/// The cells of one line.
+struct Cells<'c> {
+    columns: &'c Columns,
+    record: csv::StringRecord,
+    has_comma: bool,
+    has_point: bool,
+}
+
+impl Cells<'_> {
+    fn text(&self, column: &str) -> &str {
+        self.columns.place(column).and_then(|place| self.record.get(place)).unwrap_or_default().trim()
+    }
+
+    /// Returns a number; `None` for an empty cell.
+    fn number(&mut self, column: &str) -> Result<Option<f64>, String> {
+        let text = self.text(column).to_owned();
+        if text.is_empty() { Ok(None) } else { self.parse(column, &text).map(Some) }
+    }
+
+    /// Parses a number, which has a decimal comma where commas are no separators.
+    fn parse(&mut self, column: &str, text: &str) -> Result<f64, String> {
+        let (has_comma, has_point) = (text.contains(','), text.contains('.'));
+        if has_comma && self.columns.separator == ',' {
+            return Err(format!(
+                "column '{column}' is '{text}': a number with a point, because commas are separators"
+            ));
+        }
+        self.has_comma |= has_comma;
+        self.has_point |= has_point;
+        // One of the two could separate thousands.
+        if self.columns.separator != ',' && self.has_comma && self.has_point {
+            return Err(format!(
+                "column '{column}' is '{text}': the list has commas and points in its numbers"
+            ));
+        }
+        text.replacen(',', ".", 1).parse().map_err(|_| format!("column '{column}' is '{text}': a number"))
+    }
+
+    fn required(&mut self, column: &str, default: Option<f64>) -> Result<f64, String> {
+        match (self.number(column)?, default.filter(|_| !self.columns.has(column))) {
+            (Some(number), _) | (None, Some(number)) => Ok(number),
+            (None, None) => Err(format!("column '{column}' is '': a number")),
+        }
+    }
+
+    /// Returns the hole of the line.
+    fn hole(&mut self, index: usize) -> Result<CsvHole, String> {
+        let (count, expected) = (self.record.len(), self.columns.names.len());
+        let has_more = self.record.iter().skip(expected).any(|cell| !cell.trim().is_empty());
+        if count < expected || has_more {
+            return Err(format!("{count} columns, the header has {expected}"));
+        }
+        let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
+        let axis =
+            [self.required("i", Some(0.0))?, self.required("j", Some(0.0))?, self.required("k", Some(1.0))?];
+        let mut hole = Hole {
+            id: Some(self.text("id").to_owned()).filter(|id| !id.is_empty()),
+            entry,
+            axis,
+            diameter: self.number("diameter")?,
+            features: self.features()?,
+            through: match self.text("through").to_lowercase().as_str() {
+                "" | "false" | "no" => false,
+                "true" | "yes" => true,
+                other => return Err(format!("column 'through' is '{other}': true or false")),
+            },
+            ..Hole::default()
+        };
+        let depth = self.number("depth")?;
+        let is_open = depth.is_none() && hole.features.is_empty();
+        if is_open && hole.through {
+            return Err("column 'depth' is '': a through hole needs the thickness of the part".to_owned());
+        }
+        hole.depth = depth.unwrap_or(if is_open { OPEN_DEPTH } else { 0.0 });
+        complete(&mut hole);
+        check(&hole, index)?;
+        Ok(CsvHole { hole, is_open })
+    }
+
+    /// Returns the features of the line: those of the column `features`, then those with columns of their own.
+    fn features(&mut self) -> Result<Vec<Feature>, String> {
+        let mut cell = self.text("features").to_owned();
+        if self.columns.separator != ',' {
+            self.has_comma |= cell.contains(',');
+            cell = cell.replace(',', ".");
+        }
+        let in_column = cell.split(';').map(str::trim).filter(|text| !text.is_empty());
+        let mut features = in_column
+            .map(|text| Feature::parse(text).map_err(|message| format!("column 'features': {message}")))
+            .collect::<Result<Vec<_>, _>>()?;
+        for kind in FeatureKind::ALL {
+            features.extend(self.feature(kind)?);
+        }
+        Ok(features)
+    }
+
+    /// Returns the feature of a kind that has columns of its own: `tap`, `tap depth`, `tap pitch`.
+    fn feature(&mut self, kind: FeatureKind) -> Result<Option<Feature>, String> {
+        let name = kind.name();
+        let own = |value: &str| format!("{name} {value}");
+        let text = self.text(name).to_lowercase();
+        if text.is_empty() {
+            return match FEATURE_COLUMNS.map(own).into_iter().find(|column| !self.text(column).is_empty()) {
+                Some(column) => {
+                    Err(format!("column '{column}' is '{}': '{name}' is empty", self.text(&column)))
+                }
+                None => Ok(None),
+            };
+        }
+        // M10x1.5 is a thread with its pitch.
+        let (diameter, pitch) = match text.strip_prefix('m').and_then(|size| size.split_once(['x', '×', '*']))
+        {
+            Some((diameter, pitch)) if kind == FeatureKind::Tap => {
+                (self.parse(name, diameter.trim())?, Some(self.parse(name, pitch.trim())?))
+            }
+            _ => (self.parse(name, &text)?, None),
+        };
+        let to = own("to");
+        let hand = own("hand");
+        let feature = Feature {
+            diameter,
+            depth: self.number(&own("depth"))?,
+            angle: self.number(&own("angle"))?,
+            pitch: self.number(&own("pitch"))?.or(pitch),
+            to: match self.text(&to) {
+                "" | "point" => DepthTo::Point,
+                "full" => DepthTo::Full,
+                other => return Err(format!("column '{to}' is '{other}': full or point")),
+            },
+            hand: match self.text(&hand) {
+                "" | "right" => Hand::Right,
+                "left" => Hand::Left,
+                other => return Err(format!("column '{hand}' is '{other}': right or left")),
+            },
+            ..Feature::of(kind)
+        };
+        Ok(Some(feature))
+    }
+}

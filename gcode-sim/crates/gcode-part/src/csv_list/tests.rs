@@ -1,0 +1,116 @@
+//! Lists as spreadsheets write them, and lists that are refused.
+use super::columns::{column_name, example, separator};
+use super::*;
+
+fn read(text: &str) -> CsvList {
+    csv(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn refused(text: &str) -> String {
+    csv(text).unwrap_err().to_string()
+}
+
+#[test]
+fn x_and_y_suffice_for_a_plate() {
+    let list = read("x,y\n30,10\n-30.5,10\n");
+    let holes = &list.holes.holes;
+    assert_eq!([holes[0].entry, holes[1].entry], [[30.0, 10.0, 0.0], [-30.5, 10.0, 0.0]]);
+    assert_eq!((holes[0].axis, holes[0].id.clone()), ([0.0, 0.0, 1.0], None));
+    assert_eq!(list.open_depths, [0, 1]);
+    let note = "z is 0: no column z; the axis is 0, 0, 1: no columns i, j, k; depths that are left out are not compared";
+    assert_eq!(list.note.as_deref(), Some(note));
+}
+
+/// The same two holes as spreadsheets of several countries write them.
+#[test]
+fn separators_decimal_commas_case_units_and_a_line_with_the_separator_are_read() {
+    let plain = read("id,x,y,z,depth,diameter\nA,30.5,10,0,15.25,6\nB,-30,10,0,15,6\n");
+    for text in [
+        "ID;X;Y;Z;Depth;Diameter\r\nA;30,5;10;0;15,25;6\r\nB;-30;10;0;15;6\r\n;;;;;\r\n",
+        "Hole\tX [mm]\tY [mm]\tZ (mm)\tDepth\tDia\nA\t30,5\t10\t0\t15,25\t6\nB\t-30\t10\t0\t15\t6\n",
+        "Hole\tX\tY\tZ\tDepth\tØ\nA\t30.5\t10\t0\t15.25\t6\nB\t-30\t10\t0\t15\t6\n",
+        "sep=;\n\"Nr\";\"x\";\"y\";\"z\";\"depth\";\"d\"\n\"A\";\"30,5\";10;0;\"15,25\";6\nB;-30;10;0;15;6\n",
+        "depth,diameter,remark,y,x,z,id\n15.25,6,\"left, top\",10,30.5,0,A\n15,6,,10,-30,0,B\n",
+    ] {
+        assert!(is_csv(text), "{text}");
+        assert_eq!(read(text).holes, plain.holes, "{text}");
+    }
+    let list = read("x;y;z;i;j;k;depth;remark\n1,5;2;0;0;0;1;5;top\n");
+    assert_eq!(list.note.as_deref(), Some("commas in numbers are decimal commas; unused: remark"));
+}
+
+#[test]
+fn features_have_columns_of_their_own() {
+    let cell = read(
+        "id,x,y,depth,features\n1,30,10,30,drill 8.5 30 to=full; countersink 12 angle=90; tap 10 22 pitch=1.5\n",
+    );
+    for text in [
+        "id,x,y,depth,drill,drill depth,drill to,tap,tap depth,tap pitch,countersink,countersink angle\n\
+         1,30,10,30,8.5,30,full,10,22,1.5,12,90\n",
+        "id;x;y;depth;Drill;Drill_depth;Drill-to;Tap;Tap depth;Countersink;Countersink angle\n\
+         1;30;10;30;8,5;30;full;M10x1,5;22;12;90\n",
+    ] {
+        assert_eq!(read(text).holes, cell.holes, "{text}");
+    }
+    // A line without a feature of the column has none.
+    let list = read("x,y,depth,drill,drill depth,tap,tap depth\n1,2,20,8.5,20,M10x1.5,15\n5,2,20,8.5,20,,\n");
+    assert_eq!(list.holes.holes.iter().map(|hole| hole.features.len()).collect::<Vec<_>>(), [2, 1]);
+}
+
+#[test]
+fn an_error_shows_a_line_that_is_right() {
+    for (text, expected) in [
+        ("x,y,dept\n1,2,3\n", "line 1: column 'dept' is unknown (did you mean 'depth'?); a list begins with"),
+        ("x,y,x\n1,2,3\n", "line 1: column 'x' is there twice; "),
+        (
+            "id,x\n1,2\n",
+            "line 1: column 'y' is missing; a list begins with its columns, for example: id,x,y,depth",
+        ),
+        (
+            "x;z;depth\n1;2;3\n",
+            "line 1: column 'y' is missing; a list begins with its columns, for example: id;x;y;depth",
+        ),
+        ("x [in],y,depth\n1,2,3\n", "line 1: column 'x [in]': lengths are in mm; "),
+        ("x,y,i,j,depth\n1,2,0,0,5\n", "line 1: column 'k' is missing: i, j and k together are the axis; "),
+        ("id,x,y,depth\n1,2\n", "line 2: 2 columns, the header has 4; a right line: 1,30.5,10,15"),
+        ("id,x,y,depth\n1,2,3,4,5\n", "line 2: 5 columns, the header has 4; a right line: 1,30.5,10,15"),
+        (
+            "\nid;x;y;depth\n\n1;2.5;3,5;4\n",
+            "line 4: column 'y' is '3,5': the list has commas and points in its numbers; a right line: 1;30,5;10;15",
+        ),
+        ("x;y;depth\n3,5;1.250;4\n", "line 2: column 'y' is '1.250': the list has commas and points"),
+        (
+            "x,y,depth\n\"3,5\",1,4\n",
+            "line 2: column 'x' is '3,5': a number with a point, because commas are separators; a right line: 30.5,10,15",
+        ),
+        ("x,y,depth\n3.5,left,4\n", "line 2: column 'y' is 'left': a number; a right line: 30.5,10,15"),
+        ("x,y,depth\n3.5,,4\n", "line 2: column 'y' is '': a number; "),
+        ("x,y,z,depth\n3.5,1,,4\n", "line 2: column 'z' is '': a number; "),
+        ("x,y,depth,tap depth\n1,2,20,15\n", "line 2: column 'tap depth' is '15': 'tap' is empty; "),
+        ("x,y,depth,tap,tap depth\n1,2,20,M10,15\n", "line 2: column 'tap' is 'm10': a number; "),
+        ("x,y,tap,tap depth\n1,2,10,15\n", "line 2: hole 1: its tap has no pitch: give it in mm; "),
+        ("x,y,depth\n", "no hole after the header: one line for each; a right line: 30.5,10,15"),
+    ] {
+        let found = refused(text);
+        assert!(found.starts_with(expected), "{text}\n  says {found:?}\n  not  {expected:?}");
+    }
+}
+
+/// What the right line shows is right.
+#[test]
+fn the_right_line_is_read() {
+    for header in ["x,y,depth,remark", "id;x;y;z;i;j;k;depth;diameter;through", "id\tx\ty\tfeatures"] {
+        let separator = separator(header);
+        let names: Vec<String> = header.split(separator).map(column_name).collect();
+        let line = example(&names, separator);
+        let text = format!("{header}\n{}\n", line.strip_prefix("a right line: ").unwrap());
+        assert_eq!(read(&text).holes.holes[0].entry[0], 30.5, "{text}");
+    }
+}
+
+#[test]
+fn a_job_file_is_no_list() {
+    for text in ["family = \"pin-holes\"\n", "# x, y\nfamily = \"burr\"\n", "family = [1, 2]\n", "one\n"] {
+        assert!(!is_csv(text), "{text}");
+    }
+}

@@ -1,0 +1,254 @@
+//! Slips of TOML: a line that the reader of TOML refuses, and the line that is meant.
+//!
+//! Each repair changes the line in one way that people get wrong. The first after which the line is TOML is the one that is meant.
+use toml::Table;
+
+/// A repair: what is wrong, and the value or the line put right; `None` if the line isn't wrong in this way.
+type Repair = (&'static str, fn(&str) -> Option<String>);
+
+/// Repairs of a value.
+const OF_VALUE: [Repair; 9] = [
+    ("text has straight quotes on both sides", straight_quotes),
+    ("a number has a point, not a comma", decimal_point),
+    ("a number has a digit on both sides of its point", digits_at_point),
+    ("a line ends without ';'", without_semicolon),
+    ("a comment begins with #", with_comment),
+    ("a number has no unit", without_unit),
+    ("'=' stands once", |value| value.strip_prefix('=').map(|rest| rest.trim().to_owned())),
+    ("what is in brackets is separated by commas, and text has quotes", in_brackets),
+    ("text has quotes on both sides", with_quotes),
+];
+
+/// Returns what is wrong with the line that the reader of TOML refuses, with the line that is right; the error may show in the
+/// next line only.
+pub(super) fn syntax_slip(text: &str, line: usize) -> Option<(usize, String)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let at = |line: usize| lines.get(line.checked_sub(1)?).copied().filter(|line| !line.trim().is_empty());
+    let before = (1..line).rev().find(|line| at(*line).is_some());
+    std::iter::once(line).chain(before).find_map(|line| {
+        let slip = doubled_table(&lines, line).or_else(|| of_line(at(line)?, section(&lines[..line])))?;
+        Some((line, slip))
+    })
+}
+
+/// Returns the table in which a line stands, as a prefix of its keys.
+fn section(lines: &[&str]) -> String {
+    let header = lines.iter().rev().find_map(|line| line.trim().strip_prefix('['));
+    let name = header.and_then(|rest| rest.trim_start_matches('[').split(']').next());
+    name.map(|name| format!("{}.", name.trim())).unwrap_or_default()
+}
+
+/// Returns the slip of a header of a table that is there twice: a list has double brackets.
+fn doubled_table(lines: &[&str], line: usize) -> Option<String> {
+    let header = |line: &str| line.split('#').next().map(|head| head.trim().to_owned());
+    let own = header(lines.get(line.checked_sub(1)?)?).filter(|own| own.starts_with('['))?;
+    let others = lines[..line - 1].iter().filter_map(|other| header(other));
+    let is_twice = !own.starts_with("[[") && others.into_iter().any(|other| other == own);
+    is_twice.then(|| format!("{own} is there twice: a table of a list has double brackets; write [{own}]"))
+}
+
+/// Returns the slip of one line.
+fn of_line(line: &str, section: String) -> Option<String> {
+    let line = line.trim();
+    if is_toml(line) {
+        return None;
+    }
+    if line.starts_with('[') {
+        let (head, _) = line.split_once('#').unwrap_or((line, ""));
+        let brackets = if line.starts_with("[[") { "]]" } else { "]" };
+        let closed = format!("{}{brackets}", head.trim().trim_end_matches(']'));
+        return is_toml(&closed)
+            .then(|| format!("{}: a table ends with its bracket; write {closed}", head.trim()));
+    }
+    let is_key = |key: &str| {
+        !key.is_empty()
+            && key.chars().all(|c| c.is_ascii_alphanumeric() || ['_', '-', '.', '#', '"', ' '].contains(&c))
+    };
+    let Some((key, value)) = line.split_once('=').filter(|(key, _)| is_key(key.trim())) else {
+        // `key: value` and `key value`.
+        let (key, value) = line.split_once([':', ' ', '\t']).filter(|(key, _)| is_key(key.trim()))?;
+        let right = format!("{} = {}", key.trim(), value.trim().trim_start_matches([':', '=']).trim());
+        return is_toml(&right).then(|| format!("key '{section}{}' has no '='; write {right}", key.trim()));
+    };
+    let (key, value) = (key.trim(), value.trim());
+    if value.is_empty() || value.starts_with('#') {
+        return Some(format!("key '{section}{key}' has no value"));
+    }
+    let right = |value: &str| Some(format!("{key} = {value}")).filter(|line| is_toml(line));
+    let (code, _) = value.split_once(" #").unwrap_or((value, ""));
+    let code = code.trim();
+    OF_VALUE.iter().find_map(|(fault, repair)| {
+        let right = right(&repair(code)?)?;
+        Some(format!("key '{section}{key}' is {code}: {fault}; write {right}"))
+    })
+}
+
+fn is_toml(line: &str) -> bool {
+    line.parse::<Table>().is_ok()
+}
+
+fn straight_quotes(value: &str) -> Option<String> {
+    let is_curly = |c: char| matches!(c, '“' | '”' | '„' | '«' | '»' | '‘' | '’' | '＂');
+    value.contains(is_curly).then(|| value.replace(is_curly, "\""))
+}
+
+/// Returns a number with its comma as a point: 300,0 and 1,5e-3.
+fn decimal_point(value: &str) -> Option<String> {
+    let right = value.replacen(',', ".", 1);
+    (right != value && right.parse::<f64>().is_ok()).then(|| whole(&right))
+}
+
+fn digits_at_point(value: &str) -> Option<String> {
+    value.parse::<f64>().is_ok().then(|| whole(value))
+}
+
+/// Returns a number with digits on both sides of its point.
+fn whole(number: &str) -> String {
+    let right = match number.split_once('.') {
+        Some((before, after)) if !after.starts_with(|c: char| c.is_ascii_digit()) => {
+            format!("{before}.0{after}")
+        }
+        _ => number.to_owned(),
+    };
+    let unsigned = right.trim_start_matches(['+', '-']);
+    if unsigned.starts_with('.') { right.replacen('.', "0.", 1) } else { right }
+}
+
+fn without_unit(value: &str) -> Option<String> {
+    let number =
+        value.trim_end_matches(|c: char| c.is_alphabetic() || ['°', '"', '\'', ' ', '/'].contains(&c));
+    let number = decimal_point(number).unwrap_or_else(|| whole(number));
+    (number.len() < value.len() && number.parse::<f64>().is_ok()).then_some(number)
+}
+
+fn without_semicolon(value: &str) -> Option<String> {
+    value.strip_suffix(';').map(|rest| rest.trim().to_owned())
+}
+
+fn with_comment(value: &str) -> Option<String> {
+    let start = [" (", " //", " ;", ";"].iter().filter_map(|mark| value.find(mark)).min()?;
+    let comment = value[start..].trim().trim_start_matches(['(', '/', ';']).trim_end_matches(')').trim();
+    Some(format!("{} # {comment}", value[..start].trim()))
+}
+
+/// Returns an inline table or a list with commas, quotes round its words, and its closing bracket.
+fn in_brackets(value: &str) -> Option<String> {
+    let closing = match value.chars().next()? {
+        '{' => '}',
+        '[' => ']',
+        _ => return None,
+    };
+    let inside = value[1..].trim_end_matches([closing, ' ']);
+    let item = |item: &str| {
+        let (key, value) =
+            item.split_once('=').map_or((None, item), |(key, value)| (Some(key.trim()), value));
+        let value = value.trim();
+        let value = if is_toml(&format!("k = {value}")) { value.to_owned() } else { with_quotes(value)? };
+        Some(key.map_or(value.clone(), |key| format!("{key} = {value}")))
+    };
+    let items: Option<Vec<String>> = inside.split([',', ';']).map(item).collect();
+    let items = items?.join(", ");
+    Some(if closing == '}' { format!("{{ {items} }}") } else { format!("[{items}]") })
+}
+
+fn with_quotes(value: &str) -> Option<String> {
+    let word = value.trim_matches(['"', '\'']);
+    let is_number = word.starts_with(|c: char| c.is_ascii_digit()) && word.contains([' ', '.']);
+    let is_word = !word.is_empty() && !is_number && !word.contains(['"', '{', '}', '[', ']', '=', ',', '\\']);
+    is_word.then(|| format!("\"{word}\""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_is_named_with_the_line_that_is_right() {
+        let cases = [
+            (
+                "length = 300,0",
+                "key 'drill.length' is 300,0: a number has a point, not a comma; write length = 300.0",
+            ),
+            (
+                "length = 300,0  # mm",
+                "key 'drill.length' is 300,0: a number has a point, not a comma; write length = 300.0",
+            ),
+            (
+                "length = .5",
+                "key 'drill.length' is .5: a number has a digit on both sides of its point; write length = 0.5",
+            ),
+            (
+                "length = -5.",
+                "key 'drill.length' is -5.: a number has a digit on both sides of its point; write length = -5.0",
+            ),
+            ("length = 300 mm", "key 'drill.length' is 300 mm: a number has no unit; write length = 300"),
+            ("length = 12,5mm", "key 'drill.length' is 12,5mm: a number has no unit; write length = 12.5"),
+            (
+                "length = 300.0;",
+                "key 'drill.length' is 300.0;: a line ends without ';'; write length = 300.0",
+            ),
+            (
+                "length = 300.0 (OF IT)",
+                "key 'drill.length' is 300.0 (OF IT): a comment begins with #; write length = 300.0 # OF IT",
+            ),
+            (
+                "length = 300.0 // of it",
+                "key 'drill.length' is 300.0 // of it: a comment begins with #; write length = 300.0 # of it",
+            ),
+            ("length == 300.0", "key 'drill.length' is = 300.0: '=' stands once; write length = 300.0"),
+            ("length =", "key 'drill.length' has no value"),
+            ("length: 300.0", "key 'drill.length' has no '='; write length = 300.0"),
+            ("length 300.0", "key 'drill.length' has no '='; write length = 300.0"),
+            (
+                "kind = drill\"",
+                "key 'drill.kind' is drill\": text has quotes on both sides; write kind = \"drill\"",
+            ),
+            (
+                "kind = \"drill",
+                "key 'drill.kind' is \"drill: text has quotes on both sides; write kind = \"drill\"",
+            ),
+            (
+                "kind = spot-drill",
+                "key 'drill.kind' is spot-drill: text has quotes on both sides; write kind = \"spot-drill\"",
+            ),
+            (
+                "kind = “drill”",
+                "key 'drill.kind' is “drill”: text has straight quotes on both sides; write kind = \"drill\"",
+            ),
+            (
+                "rotary = { letter = B; sign = 1 }",
+                "key 'drill.rotary' is { letter = B; sign = 1 }: what is in brackets is separated by commas, and text has \
+                 quotes; write rotary = { letter = \"B\", sign = 1 }",
+            ),
+            ("[tool", "[tool: a table ends with its bracket; write [tool]"),
+            ("[[tool]", "[[tool]: a table ends with its bracket; write [[tool]]"),
+        ];
+        for (line, expected) in cases {
+            let text = format!("[drill]\n{line}\n");
+            assert!(text.parse::<Table>().is_err(), "{line}");
+            assert_eq!(syntax_slip(&text, 2), Some((2, expected.to_owned())), "{line}");
+        }
+    }
+
+    /// The reader of TOML notices an open bracket in the next line, and a second table where it begins.
+    #[test]
+    fn a_slip_of_the_line_before_and_a_doubled_table_are_named() {
+        let text = "rotary = { letter = \"B\", sign = 1\n\nlength = 3\n";
+        let (line, slip) = syntax_slip(text, 3).unwrap();
+        assert_eq!(
+            (line, slip.ends_with("write rotary = { letter = \"B\", sign = 1 }")),
+            (1, true),
+            "{slip}"
+        );
+        let text = "[hole] # first\nx = 1\n[hole]\nx = 2\n";
+        let slip = "[hole] is there twice: a table of a list has double brackets; write [[hole]]";
+        assert_eq!(syntax_slip(text, 3), Some((3, slip.to_owned())));
+    }
+
+    #[test]
+    fn a_line_without_a_likely_slip_is_left_to_the_reader_of_toml() {
+        for line in ["length = 3", "= 5", "length = {{", "length = 1.234,5", "  1, 2 ],", "length = 1 2 3"] {
+            assert_eq!(syntax_slip(&format!("{line}\n"), 1), None, "{line}");
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! `gcode-sim new reference`: the holes that a program makes now, as a list for `verify`.
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{ExitStatus, OutputFile, UsageError};
+use crate::cli::conditions::{ProgramArguments, RunConditions};
+use crate::cli::{options, output, progress};
+use crate::report::holes as report;
+use gcode_part::{Hole, HoleList};
+use gcode_session::{Request, Simulation};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The program; '-' reads standard input
+    #[arg(long, value_name = "PROGRAM.nc")]
+    from: PathBuf,
+
+    /// Distance of the R point level from the surface, mm: entries lie so far below the start of the feed
+    #[arg(long, value_name = "MM")]
+    clearance: Option<f64>,
+
+    #[command(flatten)]
+    file: OutputFile,
+
+    #[command(flatten)]
+    conditions: RunConditions,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let is_json = is_json(&arguments.file)?;
+    let clearance = arguments.clearance.unwrap_or_default();
+    if !(clearance.is_finite() && clearance >= 0.0) {
+        return Err(UsageError::new(format!("--clearance {clearance}: a length of 0 mm or more")));
+    }
+    let program =
+        ProgramArguments { program: arguments.from.clone(), conditions: arguments.conditions.clone() };
+    let (program, _) = program.completed()?;
+    let (mut request, mut folders) = options::checked_request(&program, None, arguments.file.path(), None)?;
+    let simulation =
+        progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))?;
+    if let Some(stop) = simulation.run.stop_finding() {
+        super::super::findings(std::iter::once(&stop), &simulation.run);
+        output::print_message("error: nothing is written: the run stopped, and holes may be missing\n");
+        return Ok(ExitStatus::Stopped);
+    }
+    let (list, entries) = list(&simulation, &request, arguments.clearance)?;
+    if list.holes.is_empty() {
+        output::print_message("error: nothing is written: the program makes no hole\n");
+        return Ok(ExitStatus::Failed);
+    }
+    let text = if is_json { json(&list)? } else { report::csv(&list) };
+    arguments.file.write(&text)?;
+    let count = list.holes.len();
+    let plural = if count == 1 { "" } else { "s" };
+    output::print_message(&format!("note: {count} hole{plural} as the program makes them; {entries}\n"));
+    if list.holes.iter().any(|hole| hole.diameter.is_none()) {
+        output::print_message(
+            "note: without a diameter: holes whose tool is not in the machine file; write those of the drawing\n",
+        );
+    }
+    Ok(ExitStatus::Passed)
+}
+
+/// Returns true for a file with the ending of JSON; refuses other endings than those of lists.
+fn is_json(file: &OutputFile) -> Result<bool, UsageError> {
+    let Some(path) = file.path() else { return Ok(false) };
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    match ending.as_deref() {
+        Some("json") => Ok(true),
+        Some("csv") => Ok(false),
+        _ => Err(UsageError::new(format!("{}: a list of holes ends with .csv or .json", path.display()))),
+    }
+}
+
+fn json(list: &HoleList) -> Result<String, UsageError> {
+    let text = serde_json::to_string_pretty(list);
+    text.map(|text| text + "\n")
+        .map_err(|error| UsageError::new(format!("the list cannot be written as JSON: {error}")))
+}
+
+/// Returns the holes, each once, with a number as their id, and how their entries are found.
+fn list(
+    simulation: &Simulation,
+    request: &Request,
+    clearance: Option<f64>,
+) -> Result<(HoleList, String), UsageError> {
+    let mut list = simulation.hole_list();
+    let is_first =
+        |index: usize| simulation.extracted.holes.get(index).is_none_or(|hole| hole.first_on_line == index);
+    let mut index = 0..;
+    list.holes.retain(|_| index.next().is_some_and(is_first));
+    let body = request.part.or_else(|| request.machine.stock.as_ref()?.body(None));
+    let entries = match (body, clearance) {
+        (Some(_), Some(_)) => {
+            return Err(UsageError::new("--clearance: the surface is known: omit the flag"));
+        }
+        (Some(surface), None) => {
+            list.enter_at(&surface);
+            "entries lie on the surface of the part".to_owned()
+        }
+        (None, Some(clearance)) => {
+            for hole in &mut list.holes {
+                sink(hole, clearance)?;
+            }
+            format!("entries lie {clearance} mm below the start of the feed")
+        }
+        (None, None) => {
+            "entries lie where the feed begins (R point level): give --clearance MM, or [stock] in the \
+                         machine file"
+                .to_owned()
+        }
+    };
+    for (index, hole) in list.holes.iter_mut().enumerate() {
+        hole.id = Some((index + 1).to_string());
+        hole.from = None;
+        hole.entry = hole.entry.map(|value| rounded(value, 1e4));
+        hole.axis = hole.axis.map(|value| rounded(value, 1e6));
+        hole.depth = rounded(hole.depth, 1e4);
+        hole.diameter = hole.diameter.map(|diameter| rounded(diameter, 1e4));
+    }
+    Ok((list, entries))
+}
+
+/// Moves the entry of a hole into the part; its bottom stays.
+fn sink(hole: &mut Hole, clearance: f64) -> Result<(), UsageError> {
+    if hole.depth <= clearance {
+        let depth = hole.depth;
+        return Err(UsageError::new(format!(
+            "--clearance {clearance}: a feed is only {depth:.3} mm long: give a shorter distance, or [stock] in \
+             the machine file"
+        )));
+    }
+    hole.depth -= clearance;
+    for (entry, out) in hole.entry.iter_mut().zip(hole.axis) {
+        *entry -= out * clearance;
+    }
+    Ok(())
+}
+
+/// Rounds to a multiple of 1/`parts`; −0 becomes 0.
+fn rounded(value: f64, parts: f64) -> f64 {
+    (value * parts).round() / parts + 0.0
+}
