@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_narrow_panel_leaves_the_least_important_column_out() {
-        assert_eq!(texts(&table(3), 75.0, 300.0)[..3], ["hole", "x", "1"]);
+        assert_eq!(texts(&table(3), 90.0, 300.0)[..3], ["hole", "x", "1"]);
         assert!(texts(&table(3), 300.0, 60.0).is_empty(), "too low for three rows");
     }
 }

@@ -193,3 +193,50 @@ fn deflated(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
     encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("a vector takes all bytes")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Align, Pen, Scene, Shape, Stroke};
+
+    /// Returns the content of the page of a scene at 2 units a millimetre, its zero point 30 units from the top.
+    fn content(shape: Shape) -> (String, BTreeMap<u16, (char, f32)>) {
+        let scene = Scene { strokes: vec![Stroke::new(Pen::Outline, shape)], ..Scene::default() };
+        let sheet = Sheet::to_scale(&scene, [100.0, 50.0], [0.0, 30.0], 2.0, 10.0);
+        let mut writing =
+            Writing { content: Content::new(), font: Font::embedded(), glyphs: BTreeMap::new() };
+        sheet.commands.iter().for_each(|command| writing.put(command));
+        (String::from_utf8_lossy(&writing.content.finish()).into_owned(), writing.glyphs)
+    }
+
+    #[test]
+    fn a_line_and_a_circle_are_paths_at_their_positions() {
+        let (line, _) = content(Shape::Line(vec![[0.0, 0.0], [10.0, 5.0]]));
+        assert!(line.contains("0 30 m\n20 20 l\nS"), "{line}");
+        // Four arcs through the ends of the diameters, 6 units from (20, 20).
+        let (circle, _) = content(Shape::Circle { centre: [10.0, 5.0], radius: 3.0 });
+        assert!(circle.contains("26 20 m\n") && circle.matches(" c\n").count() == 4, "{circle}");
+        for end in [" 20 26 c", " 14 20 c", " 20 14 c", " 26 20 c"] {
+            assert!(circle.contains(end), "{circle}");
+        }
+    }
+
+    /// DejaVu Sans: a digit is 1303/2048 of the em wide.
+    #[test]
+    fn a_text_keeps_its_characters_and_widths() {
+        let (_, glyphs) =
+            content(Shape::Text { at: [0.0, 0.0], align: Align::Left, text: "Φ88".to_owned() });
+        let used: Vec<_> = glyphs.values().map(|(character, width)| (*character, width.round())).collect();
+        assert!(used.len() == 2 && used.contains(&('8', 636.0)), "{used:?}");
+    }
+
+    #[test]
+    fn a_file_has_one_page_of_the_sheet_s_size() {
+        let sheet = Sheet::to_scale(&Scene::default(), [1600.0, 1200.0], [0.0, 0.0], 1.0, 10.0);
+        let file = pdf(&sheet, "O8100.nc");
+        let text = String::from_utf8_lossy(&file);
+        assert!(text.starts_with("%PDF-1.7") && text.contains("/MediaBox [0 0 1200 900]"), "{text}");
+        assert!(text.contains("/Title (O8100.nc)") && text.trim_end().ends_with("%%EOF"));
+        assert_eq!(file, pdf(&sheet, "O8100.nc"), "the same bytes for the same sheet");
+    }
+}

@@ -279,13 +279,15 @@ impl TopView {
         };
         let has_diameter = shown().any(|(_, hole)| !diameters(hole).is_empty());
         let has_position = shown().any(|(hole, _)| hole.position_deviation.is_some());
+        // Without a nominal hole the depth counts from where the feed begins.
+        let is_fed = shown().all(|(hole, _)| hole.nominal.is_none());
         let columns = [
             (true, "hole", 9),
             (true, "x", 8),
             (true, "y", 7),
             (true, "z", 6),
             (has_diameter, "Φ", 3),
-            (true, "depth", 2),
+            (true, if is_fed { "feed length" } else { "depth" }, 2),
             (has_position, "position", 5),
         ];
         let row = |(drawn, hole): (&DrawnHole, &Hole)| {
