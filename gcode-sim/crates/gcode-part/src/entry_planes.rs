@@ -238,6 +238,12 @@ impl Collar {
         self.rod.piece(from, to, (-self.floor(), self.rod.length - skin), taper)
     }
 
+    /// Returns shares of two travels outside which no point between them is in the collar, deeper than `skin` below the entry
+    /// plane.
+    pub fn span(&self, travels: [&[Point3<f64>; 2]; 2], skin: f64) -> Option<[f64; 2]> {
+        self.rod.span(travels, (-self.floor(), self.rod.length - skin), self.rod.radius)
+    }
+
     /// Returns the thickness of the metal below the bottom, mm.
     pub fn floor(&self) -> f64 {
         if self.is_through { 0.0 } else { WALL }

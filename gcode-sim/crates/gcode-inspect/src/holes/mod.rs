@@ -1,6 +1,7 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
 mod arc_run;
 mod axis_box;
+mod bar_shift;
 mod chord_run;
 mod circles;
 mod clamping;
@@ -22,6 +23,7 @@ mod machine_requests;
 mod metal;
 mod milled;
 mod milling;
+mod near_metal;
 pub(crate) mod per_block;
 mod profile;
 mod rapid_paths;
@@ -30,12 +32,13 @@ mod removed_metal;
 mod room;
 mod shares;
 pub(crate) mod spindle;
+mod strip;
 mod strokes;
 mod swallowed;
+mod swept_tool;
 #[cfg(test)]
 mod tests;
 mod thread_walls;
-mod tool_lines;
 pub(crate) mod unknown_axes;
 mod wall_cut;
 
@@ -46,13 +49,16 @@ pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
-pub(crate) use rapid_paths::UnsearchedRapids;
-pub(crate) use tool_lines::ring;
+pub(crate) use rapid_paths::UnsearchedMotions;
+pub(crate) use swept_tool::ring;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
+
+use std::cell::Cell;
 
 use nalgebra::Point3;
 
 use self::axis_box::SearchBudget;
+use self::bar_shift::BarShift;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
@@ -100,8 +106,12 @@ pub struct HoleExtraction {
     pub(crate) process_limits: ProcessLimits,
     /// The stock or the surface is known, and all motion was compared with it.
     pub(crate) is_metal_known: bool,
-    /// Rapids whose paths are not searched to the end; `None` if there are none.
-    pub(crate) unsearched_rapids: Option<UnsearchedRapids>,
+    /// Rapids whose paths are not searched to the end.
+    pub(crate) unsearched_rapids: UnsearchedMotions,
+    /// Feeds beside which the metal is not compared with all of the tool.
+    pub(crate) unsearched_feeds: UnsearchedMotions,
+    /// Probing moves through metal.
+    pub(crate) probes_in_metal: UnsearchedMotions,
     /// Tools of unknown diameter that mill a known body: what they remove is unknown.
     pub(crate) unsized_mills: Vec<Option<u32>>,
     /// Indices of the nominal holes whose entries are under metal that no feed removes.
@@ -165,8 +175,15 @@ pub struct HoleExtractor<'m> {
     /// Number of probing moves.
     probe_count: u64,
     search_budget: SearchBudget,
-    /// Rapids whose paths are not searched to the end; `None` if there are none.
-    unsearched_rapids: Option<UnsearchedRapids>,
+    /// Rapids whose paths are not searched to the end.
+    unsearched_rapids: UnsearchedMotions,
+    /// Feeds beside which the metal is not compared with all of the tool.
+    unsearched_feeds: UnsearchedMotions,
+    /// Probing moves through metal.
+    probes_in_metal: UnsearchedMotions,
+    /// The search for the current feed was given up.
+    is_feed_unsearched: Cell<bool>,
+    bar_shift: BarShift,
 }
 
 /// Kind of a motion.
@@ -217,7 +234,11 @@ impl<'m> HoleExtractor<'m> {
             length_mismatches: Vec::new(),
             probe_count: 0,
             search_budget: SearchBudget::default(),
-            unsearched_rapids: None,
+            unsearched_rapids: UnsearchedMotions::default(),
+            unsearched_feeds: UnsearchedMotions::default(),
+            probes_in_metal: UnsearchedMotions::default(),
+            is_feed_unsearched: Cell::default(),
+            bar_shift: BarShift::default(),
         }
     }
 
@@ -286,6 +307,8 @@ impl<'m> HoleExtractor<'m> {
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
             unsearched_rapids: self.unsearched_rapids,
+            unsearched_feeds: self.unsearched_feeds,
+            probes_in_metal: self.probes_in_metal,
             unsized_mills: self.unsized_mills,
             covered_entries,
             milled_strokes,
@@ -339,7 +362,9 @@ impl<'m> HoleExtractor<'m> {
                     if !is_rotating {
                         self.remove_by_arc(event, &travel, was.union(is).is_none());
                     }
-                    self.check_curved(event, &travel, kind);
+                    if !self.check_curved(event, &travel, kind) && is_rotating {
+                        self.check_turning_feed(event, (&from, to));
+                    }
                     let arc = self.part_arc(&travel, &before.tip);
                     self.engagement.add_unknown_axes(was.union(is));
                     self.engage(event, &before.tip, Path::Curved(arc));
@@ -354,6 +379,8 @@ impl<'m> HoleExtractor<'m> {
         }
         self.check_thread_wall(event, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);
+        let is_on_line = self.current_line.as_ref().is_some_and(|line| line.is_bar_shifted());
+        self.follow_bar_shift(event, kind, &before.tip, is_on_line);
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
@@ -364,7 +391,11 @@ impl<'m> HoleExtractor<'m> {
                 }
                 self.remove_by_feed(event, &[before.tip, self.pose.tip], was.union(is).is_none());
             }
-            _ => {}
+            (MotionKind::Probe, _) => {
+                if was.union(is).is_none() && self.metal.uncut(&[before.tip, self.pose.tip]).is_some() {
+                    self.probes_in_metal.count(event);
+                }
+            }
         }
         match kind {
             MotionKind::Feed => self.engage(event, &before.tip, Path::Straight),
@@ -418,7 +449,11 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Rapid { to } => self.motion(event, MotionKind::Rapid, to, None),
             EventKind::Feed { to, .. } => self.motion(event, MotionKind::Feed, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
-            EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
+            EventKind::Skip { to, .. } => {
+                // Tools of all kinds cut.
+                let is_cutter = self.machine.kind_of(self.setup.tool).is_some();
+                self.motion(event, if is_cutter { MotionKind::Feed } else { MotionKind::Probe }, to, None);
+            }
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
                 self.check_tool_known(event, *number);
