@@ -124,7 +124,12 @@ impl Rod {
 impl Rod {
     /// Returns shares of two travels outside which no point between them is within a radius of this axis and between two heights
     /// above the base.
-    pub(super) fn span(&self, travels: [&[Point3<f64>; 2]; 2], (low, high): (f64, f64), radius: f64) -> Option<[f64; 2]> {
+    pub(super) fn span(
+        &self,
+        travels: [&[Point3<f64>; 2]; 2],
+        (low, high): (f64, f64),
+        radius: f64,
+    ) -> Option<[f64; 2]> {
         let axis = self.axis.into_inner();
         let height = |p: &Point3<f64>| (p - self.base).dot(&axis);
         let between = |low: f64, high: f64| {

@@ -7,15 +7,16 @@ use crate::machine::{TOUCH_DEPTH, ToolKind};
 use gcode_lang::motion::{Event, SpindleDirection};
 use gcode_lang::source::Span;
 
-/// Shift of a boring bar.
+/// Shift of a boring bar. A shift before the bar goes down a hole counts if a cycle makes both, or if the machine file says that the
+/// tool is a boring bar.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BarShift {
+    /// The bar has cut backwards and is shifted by the current motion.
+    pub is_back_bored: bool,
     /// Tip before the shift, while the bar is shifted.
     home: Option<Point3<f64>>,
-    /// The same after the current motion, if that begins or ends a shift.
-    next: Option<Option<Point3<f64>>>,
-    /// Block of the last motion.
-    last_block: Option<Span>,
+    /// The same after the current motion, if that begins or ends a shift, and its block.
+    next: Option<(Option<Point3<f64>>, Span)>,
 }
 
 impl HoleExtractor<'_> {
@@ -34,12 +35,13 @@ impl HoleExtractor<'_> {
         may_be_bar && self.cutting_state.spindle_direction == SpindleDirection::Off
     }
 
-    /// Follows a motion that begins or ends a shift. A bar is shifted on the line that it has cut, or before it goes down a hole:
-    /// by a cycle, or if the machine file says that it is one.
-    pub(super) fn follow_bar_shift(&mut self, event: &Event<'_>, kind: MotionKind, from: &Point3<f64>, is_on_line: bool) {
-        let is_same_block = self.bar_shift.last_block.replace(event.block) == Some(event.block);
-        if let Some(next) = self.bar_shift.next.take() {
-            self.bar_shift.home = next;
+    /// Follows a motion that begins or ends a shift, on the line that the bar has cut or before it goes down a hole.
+    pub(super) fn follow_bar_shift(&mut self, event: &Event<'_>, kind: MotionKind, from: &Point3<f64>) {
+        let is_shifted = self.current_line.as_ref().is_some_and(|line| line.is_bar_shifted());
+        let is_on_line = std::mem::take(&mut self.bar_shift.is_back_bored) || is_shifted;
+        if let Some((next, block)) = self.bar_shift.next.take() {
+            let is_meant = self.machine.kind_of(self.setup.tool).is_some() || event.block == block;
+            self.bar_shift.home = next.filter(|_| is_meant);
         }
         if !self.may_be_shifted() {
             self.bar_shift.home = None;
@@ -56,15 +58,13 @@ impl HoleExtractor<'_> {
             return;
         }
         match self.bar_shift.home {
-            Some(home) if split(&home).1 <= TOUCH_DEPTH => self.bar_shift.next = Some(None),
+            Some(home) if split(&home).1 <= TOUCH_DEPTH => self.bar_shift.next = Some((None, event.block)),
             Some(_) => self.bar_shift.home = None,
             None if is_on_line => self.bar_shift.home = Some(*from),
-            None => {
-                let is_meant = is_same_block || self.machine.kind_of(self.setup.tool).is_some();
-                if is_meant && along <= TOUCH_DEPTH && across <= MAX_BAR_SHIFT {
-                    self.bar_shift.next = Some(Some(*from));
-                }
+            None if along <= TOUCH_DEPTH && across <= MAX_BAR_SHIFT => {
+                self.bar_shift.next = Some((Some(*from), event.block));
             }
+            None => {}
         }
     }
 }

@@ -120,7 +120,9 @@ impl HoleExtractor<'_> {
 
     /// Checks the body of the tool in a feed while an axis rotates; the feed is counted where it meets metal that may go.
     pub(super) fn check_turning_feed(&mut self, event: &Event<'_>, (from, to): (&Position, &Position)) {
-        let Some(body) = self.surface.filter(|_| self.has_left_start && self.metal.holes.is_some()) else { return };
+        let Some(body) = self.surface.filter(|_| self.has_left_start && self.metal.holes.is_some()) else {
+            return;
+        };
         let (setup, axis) = (self.setup, self.pose.axis);
         let Some(axis) = axis.filter(|_| self.positions.is_known(self.machine)) else { return };
         let path = AxisBox::line(self.machine, &setup, from, to);
@@ -273,7 +275,8 @@ impl HoleExtractor<'_> {
                     _ => {
                         self.shank_on_line(&wider, &axis, &chord)?;
                         let fine = piece.windows(2).map(|fine| [fine[0], fine[1]]);
-                        fine.filter_map(|fine| self.shank_on_line(part, &axis, &fine)).reduce(PointInMetal::deeper)
+                        fine.filter_map(|fine| self.shank_on_line(part, &axis, &fine))
+                            .reduce(PointInMetal::deeper)
                     }
                 }
             })
@@ -282,7 +285,12 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the contact of a part that doesn't cut on a straight feed.
-    fn shank_on_line(&self, part: &ToolPart, axis: &Unit<Vector3<f64>>, travel: &Line) -> Option<PointInMetal> {
+    fn shank_on_line(
+        &self,
+        part: &ToolPart,
+        axis: &Unit<Vector3<f64>>,
+        travel: &Line,
+    ) -> Option<PointInMetal> {
         if !self.may_cut(part, travel, axis) {
             return None;
         }
@@ -298,7 +306,7 @@ impl HoleExtractor<'_> {
             let [from, to] = travel.map(|tip| tip + axis.into_inner() * part.from);
             return self.metal.is_touched(&from, &to, axis, part.radius());
         };
-        let height = self.metal.removed.height_of_metal(&travel[0], axis);
+        let height = self.metal.removed.height_of_round(&travel[0], axis, part.radius());
         let to = if self.metal.is_endless(part) { part.from + height } else { part.to };
         let part = ToolPart { to, ..*part };
         part.cuts(&body, (&travel[0], axis), &(travel[1] - travel[0]))

@@ -9,7 +9,7 @@ use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
-use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NearestPoint, PARALLEL_COSINE, Surface, Taper};
+use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NOISE, NearestPoint, PARALLEL_COSINE, Surface, Taper};
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
 pub(super) const MAX_OFFSET: f64 = 0.5;
@@ -100,7 +100,8 @@ impl KnownMetal {
         radius: f64,
     ) -> bool {
         if let Some(body) = &self.body {
-            let (length, taper) = (self.removed.height_of_metal(from, axis), Taper::cylinder(radius));
+            let length = self.removed.height_of_round(from, axis, radius);
+            let taper = Taper::cylinder(radius);
             return body.touches(&Frustum { base: *from, axis: *axis, length, taper }, &(to - from));
         }
         let Some(holes) = &self.holes else { return false };
@@ -195,10 +196,33 @@ impl KnownMetal {
         part.is_cutter && part.to <= part.from
     }
 
-    /// Returns true if metal that is left at a height above a tool of this direction stands on metal that is left below it, as
-    /// far as the body reaches.
-    pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
-        self.body.is_some() && self.removed.is_open_along(axis)
+    /// Returns true if nothing of the body is above a pocket, seen along a tool, that is not in another pocket.
+    pub(super) fn are_pockets_open(&self, axis: &Unit<Vector3<f64>>) -> bool {
+        let Some(body) = &self.body else { return false };
+        let up = axis.iamax();
+        if axis[up].abs() < 1.0 - NOISE {
+            return self.pockets.is_empty();
+        }
+        let side = usize::from(0.0 < axis[up]);
+        let height = |corners: &[Point3<f64>; 2], side: usize| corners[side][up] * axis[up].signum();
+        let [min, max] = body.bounds();
+        let of_body = |pocket: &Surface| {
+            let [low, high] = pocket.bounds();
+            (matches!(pocket, Surface::Block { .. }), [low.sup(&min), high.inf(&max)])
+        };
+        let mut pockets: Vec<(bool, [Point3<f64>; 2])> = self.pockets.iter().map(of_body).collect();
+        pockets.sort_by(|a, b| height(&b.1, side).total_cmp(&height(&a.1, side)));
+        let face = height(&[min, max], side);
+        let is_open = |index: usize| {
+            let (_, pocket) = &pockets[index];
+            let top = height(pocket, side) + TOUCH_DEPTH;
+            let is_over = |(is_block, other): &(bool, [Point3<f64>; 2])| {
+                let holds = |i: usize| i == up || other[0][i] <= pocket[0][i] && pocket[1][i] <= other[1][i];
+                *is_block && height(other, 1 - side) <= top && (0..3).all(holds)
+            };
+            face <= top || pockets[..index].iter().any(is_over)
+        };
+        (0..pockets.len()).all(is_open)
     }
 
     /// Returns true if all metal on a line is in one pocket.

@@ -345,6 +345,12 @@ impl<'m> HoleExtractor<'m> {
         self.axis_position = *to;
         self.pose = self.machine.tool_pose(to, &self.setup).relative_to(&self.frame);
         let (was, is) = self.positions.advance(self.machine);
+        let kind = match kind {
+            MotionKind::Probe if was.union(is).is_none() && !is_rotating => {
+                self.kind_of_probing(event, &before.tip)
+            }
+            kind => kind,
+        };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             // With the same axes unknown the motion itself is known.
@@ -379,8 +385,7 @@ impl<'m> HoleExtractor<'m> {
         }
         self.check_thread_wall(event, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);
-        let is_on_line = self.current_line.as_ref().is_some_and(|line| line.is_bar_shifted());
-        self.follow_bar_shift(event, kind, &before.tip, is_on_line);
+        self.follow_bar_shift(event, kind, &before.tip);
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
@@ -391,11 +396,7 @@ impl<'m> HoleExtractor<'m> {
                 }
                 self.remove_by_feed(event, &[before.tip, self.pose.tip], was.union(is).is_none());
             }
-            (MotionKind::Probe, _) => {
-                if was.union(is).is_none() && self.metal.uncut(&[before.tip, self.pose.tip]).is_some() {
-                    self.probes_in_metal.count(event);
-                }
-            }
+            (MotionKind::Probe, _) => {}
         }
         match kind {
             MotionKind::Feed => self.engage(event, &before.tip, Path::Straight),
@@ -405,6 +406,20 @@ impl<'m> HoleExtractor<'m> {
             self.check_upright(&from);
         }
         self.update_start();
+    }
+
+    /// Returns the kind of a probing move: a feed if a tool of some kind goes through metal, since tools of all kinds cut. Other ones
+    /// through metal are counted.
+    fn kind_of_probing(&mut self, event: &Event<'_>, from: &Point3<f64>) -> MotionKind {
+        let is_cutter = self.machine.kind_of(self.setup.tool).is_some();
+        match self.metal.uncut(&[*from, self.pose.tip]) {
+            Some(_) if is_cutter => MotionKind::Feed,
+            Some(_) => {
+                self.probes_in_metal.count(event);
+                MotionKind::Probe
+            }
+            None => MotionKind::Probe,
+        }
     }
 
     /// Applies a known end of a motion.
@@ -449,11 +464,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Rapid { to } => self.motion(event, MotionKind::Rapid, to, None),
             EventKind::Feed { to, .. } => self.motion(event, MotionKind::Feed, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
-            EventKind::Skip { to, .. } => {
-                // Tools of all kinds cut.
-                let is_cutter = self.machine.kind_of(self.setup.tool).is_some();
-                self.motion(event, if is_cutter { MotionKind::Feed } else { MotionKind::Probe }, to, None);
-            }
+            EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
                 self.check_tool_known(event, *number);

@@ -1,15 +1,14 @@
 //! Metal near a motion that is judged: shares of lines and strips in it, and an exact search of strips for it.
 use std::cell::OnceCell;
-use std::collections::VecDeque;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::metal::{KnownMetal, MAX_OFFSET, PointInMetal, ROUNDING, SIDE_SLACK};
 use super::removed_metal::NearSweeps;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
 use crate::machine::TOUCH_DEPTH;
-use gcode_part::{Collar, Step, Taper};
+use gcode_part::{Collar, NOISE, Step, Taper};
 
 /// Margin above a hole within which its room is looked for, mm.
 pub(super) const MAX_HEIGHT: f64 = 50.0;
@@ -19,6 +18,9 @@ const MIN_PIECE: f64 = 1e-3;
 
 /// Largest number of strips that are halved in one search.
 const MAX_HALVED: usize = 4000;
+
+/// Number of steps to the deepest point once there is one.
+const DEPTH_STEPS: u32 = 12;
 
 /// Part of the tool whose feed is judged.
 #[derive(Clone, Copy, Debug)]
@@ -66,8 +68,12 @@ impl<'m> NearMetal<'m> {
     }
 
     /// Returns the metal near some strips.
-    pub(super) fn of_strips(metal: &'m KnownMetal, strips: &[Strip], judged: Judged<'m>) -> Self {
-        let all = strips.iter().map(Strip::bounds);
+    pub(super) fn of_strips<'s>(
+        metal: &'m KnownMetal,
+        strips: impl IntoIterator<Item = &'s Strip>,
+        judged: Judged<'m>,
+    ) -> Self {
+        let all = strips.into_iter().map(Strip::bounds);
         let bounds = all.reduce(|[low, high], [p, q]| [low.inf(&p), high.sup(&q)]);
         Self::new(metal, bounds.unwrap_or([Point3::origin(); 2]), judged)
     }
@@ -77,29 +83,45 @@ impl<'m> NearMetal<'m> {
         self.metal.deepest(line, &self.shares(&Strip::line(*line)))
     }
 
-    /// Finds metal on some strips: its deepest point on an edge, or else a point between two edges.
+    /// Finds metal on some strips: its deepest point on an edge, or else between two edges.
     pub(super) fn contact(&self, strips: &[Strip]) -> Contact {
-        let mut pending: VecDeque<Strip> =
-            strips.iter().filter(|strip| !self.is_clear(strip)).copied().collect();
+        let is_open = |strip: &Strip| !self.is_clear(strip);
+        let mut pending: Vec<Strip> = strips.iter().copied().filter(is_open).collect();
         let edges = pending.iter().flat_map(|strip| &strip.edges);
         if let Some(found) = edges.filter_map(|line| self.on_line(line)).reduce(PointInMetal::deeper) {
             return Contact::Metal(found);
         }
         let mut halved = 0;
-        while let Some(strip) = pending.pop_front() {
-            if strip.width() <= TOUCH_DEPTH {
-                continue;
-            }
-            if halved == MAX_HALVED {
+        while !pending.is_empty() {
+            pending.retain(|strip| TOUCH_DEPTH < strip.width());
+            halved += pending.len();
+            if MAX_HALVED < halved {
                 return Contact::Unknown;
             }
-            halved += 1;
-            if let Some(found) = self.on_line(&strip.middle()) {
-                return Contact::Metal(found);
+            let found = pending.iter().filter_map(|strip| Some((self.on_line(&strip.middle())?, strip)));
+            if let Some((found, strip)) = found.reduce(|a, b| if a.0.depth < b.0.depth { b } else { a }) {
+                return Contact::Metal(self.deepest_about(strip, found));
             }
-            pending.extend(strip.halves().into_iter().filter(|half| !self.is_clear(half)));
+            pending = pending.iter().flat_map(Strip::halves).filter(is_open).collect();
         }
         Contact::Clear
+    }
+
+    /// Returns the deepest point of a strip about the one that is found on its middle.
+    fn deepest_about(&self, strip: &Strip, mut found: PointInMetal) -> PointInMetal {
+        let ([mut low, mut high], mut middle) = (strip.edges, strip.middle());
+        for _ in 0..DEPTH_STEPS {
+            let sides = [low, high].map(|edge| Strip::between(edge, middle).middle());
+            let depths = sides.map(|line| self.on_line(&line));
+            let [one, other] = depths.map(|at| at.map_or(f64::NEG_INFINITY, |at| at.depth));
+            (low, middle, high) = match () {
+                () if found.depth < one && other <= one => (low, sides[0], middle),
+                () if found.depth < other => (middle, sides[1], high),
+                () => (sides[0], middle, sides[1]),
+            };
+            found = depths.into_iter().flatten().fold(found, PointInMetal::deeper);
+        }
+        found
     }
 
     /// Returns true if no metal is on a strip, false if there may be some.
@@ -116,14 +138,20 @@ impl<'m> NearMetal<'m> {
         }
     }
 
-    fn uncut(&self, strip: &Strip, hole: Option<&Collar>) -> Shares {
-        let mut shares = self.metal.solid(strip, |_| true);
-        if let Some(hole) = hole {
-            shares.take_away(strip.piece(|[from, to]| hole.piece_below_entry(from, to)));
-        }
+    /// Returns shares of a strip outside which it is in no metal, cut or not, or which its first edge decides.
+    fn solid(&self, strip: &Strip, is_counted: impl Fn(usize) -> bool) -> Shares {
+        let mut shares = self.metal.solid(strip, is_counted);
         if strip.is_on_first {
             let [from, to] = &strip.edges[0];
             shares.take_away(self.metal.body.and_then(|body| body.piece(from, to, TOUCH_DEPTH)));
+        }
+        shares
+    }
+
+    fn uncut(&self, strip: &Strip, hole: Option<&Collar>) -> Shares {
+        let mut shares = self.solid(strip, |_| true);
+        if let Some(hole) = hole {
+            shares.take_away(strip.piece(|[from, to]| hole.piece_below_entry(from, to)));
         }
         self.uncover(strip, false, &mut shares);
         shares
@@ -132,7 +160,7 @@ impl<'m> NearMetal<'m> {
     fn kept(&self, strip: &Strip, part: FeedPart) -> Shares {
         let Some(holes) = self.metal.holes.as_deref() else { return Shares::default() };
         // Without a diameter the wall of a hole is unknown.
-        let mut shares = self.metal.solid(strip, |hole| holes.collar(hole).has_diameter);
+        let mut shares = self.solid(strip, |hole| holes.collar(hole).has_diameter);
         for pocket in &self.metal.pockets {
             if shares.is_empty() {
                 return shares;
@@ -167,6 +195,18 @@ impl<'m> NearMetal<'m> {
         // Many feeds may have been here: they come last.
         self.uncover(strip, true, &mut shares);
         shares
+    }
+
+    /// Returns true if metal that is left in the body stands on metal that is left below it, seen along a tool.
+    pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
+        let has_room = match self.judged {
+            Judged::Uncut(_) => true,
+            Judged::Kept(part) => {
+                let is_along = |hole: &&Collar| 1.0 - NOISE <= hole.rod.axis.dot(axis);
+                self.metal.are_pockets_open(axis) && self.rooms(part).iter().all(is_along)
+            }
+        };
+        has_room && self.metal.removed.is_open_along(axis)
     }
 
     /// Returns the nominal holes in or above whose room the motion may be.

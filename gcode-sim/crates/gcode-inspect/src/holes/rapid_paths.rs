@@ -182,10 +182,11 @@ impl HoleExtractor<'_> {
             return;
         }
         let sides = match path.len() < 2 {
-            true => is_straight.then(|| (begin, vec![tip - begin])),
+            true => Some((begin, vec![tip - begin])),
             false => path.sides(),
         };
-        let paths = sides.and_then(|(start, sides)| TipPaths::in_box(start, &sides, &axis));
+        let paths =
+            sides.filter(|_| is_straight).map(|(start, sides)| TipPaths::in_box(start, &sides, &axis));
         let contact = match self.surface.is_none() && is_straight {
             true if !self.metal.is_touched(&begin, &tip, &axis, self.body_radius()) => Contact::Clear,
             _ => self.body_contact(path, paths, &axis),
@@ -202,12 +203,12 @@ impl HoleExtractor<'_> {
         self.tool_body.iter().map(ToolPart::radius).fold(0.0, f64::max)
     }
 
-    /// Finds metal that a part of the tool meets on some paths; `paths` are those of a tool that keeps its direction, if a
-    /// search of what is removed knows them. Otherwise metal at the deepest point in the body decides.
+    /// Finds metal that a part of the tool meets on some paths; `paths` are those of its tip while nothing rotates, `Some(None)` if
+    /// they are oblique to the tool in several ways: the deepest point in the body decides on them.
     pub(super) fn body_contact(
         &mut self,
         path: &AxisBox<'_>,
-        paths: Option<TipPaths>,
+        paths: Option<Option<TipPaths>>,
         axis: &Unit<Vector3<f64>>,
     ) -> Contact {
         let surface = self.surface;
@@ -217,14 +218,15 @@ impl HoleExtractor<'_> {
         let is_shifted = self.tool_radius().is_none();
         let mut budget = std::mem::take(&mut self.search_budget);
         let mut in_part = |part: &ToolPart| match (paths, surface) {
-            (Some(paths), _) => contact(part, axis, &paths, &self.metal, Judged::Uncut(None)),
-            (None, None) => if path.sides().is_some() { Contact::Unknown } else { Contact::Clear },
-            (None, Some(body)) => {
+            (Some(Some(paths)), _) => contact(part, axis, &paths, &self.metal, Judged::Uncut(None)),
+            (Some(None), None) => Contact::Unknown,
+            (None, None) => Contact::Clear,
+            (_, Some(body)) => {
                 match path.with_tool(*part).deepest(&distance_from(&body), TOUCH_DEPTH, &mut budget) {
                     Deepest::Clear => Contact::Clear,
                     Deepest::Unknown => Contact::Unknown,
                     // What is removed is not followed while an axis rotates.
-                    Deepest::Metal(DeepPoint { point, depth, .. }) if path.sides().is_none() => {
+                    Deepest::Metal(DeepPoint { point, depth, .. }) if paths.is_none() => {
                         Contact::Metal(PointInMetal { point, depth })
                     }
                     Deepest::Metal(at) => {
@@ -257,7 +259,7 @@ impl HoleExtractor<'_> {
         let stands = TipPaths::line(&[*tip, *tip]);
         let (setup, at) = (self.setup, self.axis_position);
         let at = AxisBox::line(self.machine, &setup, &at, &at);
-        let contact = self.body_contact(&at, Some(stands), &axis);
+        let contact = self.body_contact(&at, Some(Some(stands)), &axis);
         if let Some(cut) = self.in_rapid(event, contact) {
             self.report_side(event, cut, Severity::Error, "");
         }

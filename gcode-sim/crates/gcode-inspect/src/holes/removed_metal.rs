@@ -6,7 +6,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::profile::Profile;
 use super::shares::Shares;
-use super::strip::Strip;
+use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
 use gcode_part::{shares_between, shares_within};
 
@@ -123,7 +123,7 @@ impl RemovedMetal {
         let axis = sweep.axis.into_inner();
         let top = profile.parts.iter().map(|part| part.to).fold(0.0, f64::max);
         for p in [sweep.from, sweep.to] {
-            let end = p + axis * top.min(self.height_of_metal(&p, &axis));
+            let end = p + axis * top.min(self.height_of_round(&p, &axis, profile.radius));
             (low, high) = (low.inf(&end), high.sup(&end));
         }
         let margin = Vector3::repeat(profile.radius + TOUCH_DEPTH);
@@ -136,13 +136,37 @@ impl RemovedMetal {
 
     /// Returns the height above a point beyond which there is no metal along a direction.
     pub(super) fn height_of_metal(&self, p: &Point3<f64>, out: &Vector3<f64>) -> f64 {
-        let [low, high] = &self.bounds;
-        let exit = |i: usize| match out[i] {
-            out if 1e-9 < out => (high[i] - p[i]) / out,
-            out if out < -1e-9 => (low[i] - p[i]) / out,
-            _ => f64::INFINITY,
+        self.height_of_round(p, out, 0.0)
+    }
+
+    /// Returns the height above a point beyond which there is no metal within a radius of a line through it.
+    pub(super) fn height_of_round(&self, p: &Point3<f64>, out: &Vector3<f64>, radius: f64) -> f64 {
+        let exit = |i: usize| {
+            let margin = radius * (1.0 - out[i] * out[i]).max(0.0).sqrt();
+            self.exit(p, out, i).map_or(f64::INFINITY, |exit| exit + margin / out[i].abs())
         };
         (0..3).map(exit).fold(self.max_height, f64::min).max(0.0)
+    }
+
+    /// Returns the distance along a direction to the face of the bounds on an axis; `None` without one.
+    fn exit(&self, p: &Point3<f64>, out: &Vector3<f64>, i: usize) -> Option<f64> {
+        let face = self.bounds[usize::from(0.0 < out[i])][i];
+        (1e-9 < out[i].abs() && face.is_finite()).then(|| (face - p[i]) / out[i])
+    }
+
+    /// Returns the shares of a line above which there may be metal along a direction, and the heights above their ends beyond
+    /// which there is none.
+    pub(super) fn above_line(&self, [from, to]: &Line, up: &Vector3<f64>) -> Option<([f64; 2], [f64; 2])> {
+        let faces = (0..3).filter_map(|i| Some((self.exit(from, up, i)?, self.exit(to, up, i)?)));
+        let all: Vec<(f64, f64)> = faces.map(|(start, end)| (start, end - start)).collect();
+        let shares = all
+            .iter()
+            .try_fold([0.0, 1.0], |shares, exit| shares_between(shares, *exit, (0.0, f64::INFINITY)))?;
+        let middle = f64::midpoint(shares[0], shares[1]);
+        let at = |share: f64| move |(start, gain): &(f64, f64)| start + gain * share;
+        let nearest = all.iter().min_by(|a, b| at(middle)(a).total_cmp(&at(middle)(b)));
+        let height = |share: f64| nearest.map_or(f64::INFINITY, at(share)).min(self.max_height);
+        Some((shares, shares.map(height)))
     }
 
     /// Returns true if what is removed at a height above a tool of this direction is removed wherever it is above that.

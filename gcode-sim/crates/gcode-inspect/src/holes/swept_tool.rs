@@ -119,7 +119,11 @@ pub(crate) fn ring(
 }
 
 /// Returns the directions from the axis to the outline of a part, each with the shift of its centre.
-fn outline(part: &ToolPart, axis: &Unit<Vector3<f64>>, paths: &TipPaths) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+fn outline(
+    part: &ToolPart,
+    axis: &Unit<Vector3<f64>>,
+    paths: &TipPaths,
+) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let (none, aside) = (Vector3::zeros(), paths.aside);
     if part.radius() <= 0.0 {
         return if aside == none { vec![(none, none)] } else { vec![(none, none), (none, aside)] };
@@ -144,37 +148,64 @@ fn outline(part: &ToolPart, axis: &Unit<Vector3<f64>>, paths: &TipPaths) -> Vec<
     all
 }
 
-/// Returns strips that hold the surface of all that a part of the tool sweeps up to where the metal ends.
-fn strips(part: &ToolPart, axis: &Unit<Vector3<f64>>, paths: &TipPaths, metal: &KnownMetal, is_open: bool) -> Vec<Strip> {
+/// Returns strips that hold the surface of all that a part of the tool sweeps: those of its lower end, and those from there up to
+/// where the metal ends.
+fn strips(
+    part: &ToolPart,
+    axis: &Unit<Vector3<f64>>,
+    paths: &TipPaths,
+    metal: &KnownMetal,
+) -> (Vec<Strip>, Vec<Strip>) {
     let out = axis.into_inner();
     let low = part.taper.at(part.from);
-    let length = if metal.is_endless(part) { f64::INFINITY } else { part.to - part.from + paths.rise };
     let [start, end] = [paths.start, paths.end()].map(|tip| tip + out * part.from);
+    let along = paths.travel.dot(&out);
+    let lower = if along < 0.0 { end } else { start };
+    let is_across = TOUCH_DEPTH < (paths.travel - out * along).norm();
+    let length = match is_across {
+        _ if metal.is_endless(part) => f64::INFINITY,
+        true => part.to - part.from + paths.rise,
+        // Along its axis a part sweeps no more than its place at the lower end, but for a cylinder that is shorter than the way.
+        false => (part.to - part.from).max(if part.taper.slope == 0.0 { along.abs() } else { 0.0 }),
+    };
     let outline = outline(part, axis, paths);
-    let rim: Vec<Line> = outline
-        .iter()
-        .map(|(direction, shift)| [start, end].map(|base| base + direction * low + shift))
-        .collect();
-    let mut strips = Vec::new();
-    let is_ring = 2 < rim.len() && 0.0 < low;
-    let count = if is_ring { rim.len() } else { rim.len().saturating_sub(1) };
-    let next = rim.iter().cycle().skip(1);
-    strips.extend(rim.iter().zip(next).take(count).map(|(one, other)| Strip::between(*one, *other)));
-    if count == 0 {
-        strips.extend(rim.iter().map(|line| Strip::line(*line)));
-    }
-    for (line, (direction, _)) in rim.iter().zip(&outline) {
-        let up = direction * part.taper.slope + out;
-        let top = line.map(|base| base + up * length.min(metal.removed.height_of_metal(&base, &up)));
-        if top != *line {
-            strips.push(Strip { is_on_first: is_open, ..Strip::between(*line, top) });
+    let line = |(direction, shift): &(Vector3<f64>, Vector3<f64>)| {
+        [start, end].map(|base| base + direction * low + shift)
+    };
+    let up = |(direction, _): &(Vector3<f64>, Vector3<f64>)| direction * part.taper.slope + out;
+    let (mut strips, mut flanks): (Vec<Strip>, Vec<Strip>) = (Vec::new(), Vec::new());
+    if is_across {
+        let rim: Vec<Line> = outline.iter().map(line).collect();
+        strips.extend(between(&rim, 0.0 < low));
+        for (line, up) in rim.iter().zip(outline.iter().map(up)) {
+            let Some((shares, heights)) = metal.removed.above_line(line, &up) else { continue };
+            let below = shares.map(|share| line[0] + (line[1] - line[0]) * share);
+            let top = [0, 1].map(|end| below[end] + up * length.min(heights[end]));
+            flanks.push(Strip::between(below, top));
         }
+    } else {
+        let side = |at: &(Vector3<f64>, Vector3<f64>)| {
+            let (base, up) = (lower + at.0 * low, up(at));
+            [base, base + up * length.min(metal.removed.height_of_metal(&base, &up))]
+        };
+        strips.extend(between(&outline.iter().map(side).collect::<Vec<_>>(), true));
     }
-    let is_still = paths.travel.norm() < TOUCH_DEPTH;
-    if 0.0 < low && (is_still || paths.travel.dot(&out) < -TOUCH_DEPTH) {
+    if 0.0 < low && (along < -TOUCH_DEPTH || !is_across && along <= 0.0) {
         strips.extend(disc(&end, axis, low));
     }
-    strips
+    (strips, flanks)
+}
+
+/// Returns the strips between successive lines, and between the last and the first of a ring.
+fn between(lines: &[Line], is_ring: bool) -> Vec<Strip> {
+    match lines {
+        [one] => vec![Strip::line(*one)],
+        _ => {
+            let count = if is_ring && 2 < lines.len() { lines.len() } else { lines.len().saturating_sub(1) };
+            let next = lines.iter().cycle().skip(1);
+            lines.iter().zip(next).take(count).map(|(one, other)| Strip::between(*one, *other)).collect()
+        }
+    }
 }
 
 /// Returns strips that fill a disc.
@@ -197,10 +228,10 @@ pub(super) fn contact(
     metal: &KnownMetal,
     judged: Judged<'_>,
 ) -> Contact {
-    // Metal above a point that is not removed is not either.
-    let is_open = matches!(judged, Judged::Uncut(_)) && metal.is_open_along(axis);
-    let strips = strips(part, axis, paths, metal, is_open);
-    let near = NearMetal::of_strips(metal, &strips, judged);
+    let (mut strips, flanks) = strips(part, axis, paths, metal);
+    let near = NearMetal::of_strips(metal, strips.iter().chain(&flanks), judged);
+    let is_on_first = part.taper.slope == 0.0 && near.is_open_along(axis);
+    strips.extend(flanks.into_iter().map(|flank| Strip { is_on_first, ..flank }));
     let contact = near.contact(&strips);
     let Contact::Metal(found) = contact else { return contact };
     if part.taper.slope == 0.0 || paths.travel.norm() < TOUCH_DEPTH {
