@@ -81,7 +81,7 @@ pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
-pub use solid::{NearestPoint, Rod, Taper, shares_between, shares_within};
+pub use solid::{NearestPoint, Rod, Taper, common, shares_between, shares_within};
 pub use stock::{Pocket, Stock, StockAxis};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};

@@ -121,6 +121,70 @@ impl Rod {
     }
 }
 
+impl Rod {
+    /// Returns shares of two travels outside which no point between them is within a radius of this axis and between two heights
+    /// above the base.
+    pub(super) fn span(
+        &self,
+        travels: [&[Point3<f64>; 2]; 2],
+        (low, high): (f64, f64),
+        radius: f64,
+    ) -> Option<[f64; 2]> {
+        let axis = self.axis.into_inner();
+        let height = |p: &Point3<f64>| (p - self.base).dot(&axis);
+        let between = |low: f64, high: f64| {
+            either(travels, |[from, to]| {
+                shares_between([0.0, 1.0], (height(from), (to - from).dot(&axis)), (low, high))
+            })
+        };
+        let radius = radius + sag(travels, radius);
+        let near = either(travels, |[from, to]| {
+            let (start, along) = (from - self.base, to - from);
+            let across = |v: Vector3<f64>| v - axis * v.dot(&axis);
+            shares_within([0.0, 1.0], across(start), across(along), (radius, 0.0))
+        });
+        common(common(between(low, f64::INFINITY)?, between(f64::NEG_INFINITY, high)?)?, near?)
+    }
+}
+
+/// Returns the shares of a box's span: outside them no point between two travels is between the corners.
+pub(super) fn block_span(
+    min: &Point3<f64>,
+    max: &Point3<f64>,
+    travels: [&[Point3<f64>; 2]; 2],
+) -> Option<[f64; 2]> {
+    (0..3).try_fold([0.0, 1.0], |shares, i| {
+        let between = |low: f64, high: f64| {
+            either(travels, |[from, to]| shares_between([0.0, 1.0], (from[i], to[i] - from[i]), (low, high)))
+        };
+        common(common(shares, between(min[i], f64::INFINITY)?)?, between(f64::NEG_INFINITY, max[i])?)
+    })
+}
+
+/// Returns the largest depth to which points between two travels may enter a cylinder of a radius that both miss, mm.
+pub(super) fn sag([one, other]: [&[Point3<f64>; 2]; 2], radius: f64) -> f64 {
+    let width = (one[0] - other[0]).norm().max((one[1] - other[1]).norm());
+    width * width / (4.0 * radius)
+}
+
+/// Returns the shares that one of two travels has, and those between them.
+pub(super) fn either(
+    travels: [&[Point3<f64>; 2]; 2],
+    shares: impl Fn(&[Point3<f64>; 2]) -> Option<[f64; 2]>,
+) -> Option<[f64; 2]> {
+    let [one, other] = travels.map(shares);
+    match (one, other) {
+        (Some(one), Some(other)) => Some([one[0].min(other[0]), one[1].max(other[1])]),
+        (one, other) => one.or(other),
+    }
+}
+
+/// Returns the shares that are in two pieces.
+pub fn common(one: [f64; 2], other: [f64; 2]) -> Option<[f64; 2]> {
+    let both = [one[0].max(other[0]), one[1].min(other[1])];
+    (both[0] <= both[1]).then_some(both)
+}
+
 /// Returns the shares of a travel, within some, between which a coordinate is between two bounds. It begins at a value and
 /// grows by a gain.
 pub fn shares_between(

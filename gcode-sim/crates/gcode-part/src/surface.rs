@@ -2,7 +2,7 @@
 //! gradients.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::solid::{Rod, Taper, block_face, shares_between, shares_within};
+use super::solid::{Rod, Taper, block_face, block_span, either, sag, shares_between, shares_within};
 
 /// A convex body; lengths in mm, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +119,22 @@ impl Surface {
                 rod.piece(from, to, (skin, rod.length - skin), Taper::cylinder(rod.radius - skin))
             }
         }
+    }
+
+    /// Returns shares of two travels outside which no point between them is in the body, deeper than `skin`. Near an edge of the
+    /// body, and by their distance, they may be too many.
+    pub fn span(&self, travels: [&[Point3<f64>; 2]; 2], skin: f64) -> Option<[f64; 2]> {
+        let radius = match *self {
+            Self::Block { min, max } => {
+                let skin = Vector3::repeat(skin);
+                return block_span(&(min + skin), &(max - skin), travels);
+            }
+            Self::Rod(rod) => return rod.span(travels, (skin, rod.length - skin), rod.radius - skin),
+            Self::Ellipsoid { a, b } => a.min(b) * a.min(b) / a.max(b),
+            Self::Cylinder { radius } => radius,
+        };
+        let skin = skin - sag(travels, radius);
+        either(travels, |[from, to]| self.piece(from, to, skin))
     }
 
     /// Returns true for a body with flat faces, as stock has it.

@@ -1,6 +1,6 @@
 //! Metal over the entries of nominal holes at the end of a run: the pocket at whose floor they begin is not milled.
 use super::HoleExtractor;
-use super::tool_lines::ring;
+use super::swept_tool::ring;
 use nalgebra::Vector3;
 
 /// Least depth of an entry in the body and least height of the metal over it, mm: coordinates in a list are rounded.

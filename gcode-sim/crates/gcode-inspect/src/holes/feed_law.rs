@@ -2,15 +2,18 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
+use super::axis_box::AxisBox;
 use super::line::CuttingLine;
-use super::metal::{FeedPart, PointInMetal};
+use super::metal::PointInMetal;
+use super::near_metal::{Contact, FeedPart, Judged};
 use super::profile::Profile;
 use super::rapids::{PLUNGE_COSINE, format_point};
-use super::tool_lines::{deepest, rim};
+use super::strip::Line;
+use super::swept_tool::{TipPaths, contact, rim};
 use crate::findings::FEED_BESIDE_HOLE;
-use crate::machine::{AxisMotion, ToolKind, ToolPart, tool_name};
+use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart, tool_name};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
+use gcode_lang::motion::{Backtrace, Event, Position};
 use gcode_part::Collar;
 
 /// Largest deviation of an arc from the chords by which it removes metal, mm.
@@ -22,8 +25,8 @@ const COARSE_TOLERANCE: f64 = 5.0;
 /// Radius up to which a mill of unknown diameter may remove metal, mm.
 const MAX_RADIUS: f64 = 25.0;
 
-/// Largest number of chords of an arc by which the shank and the holder are compared.
-const SHANK_CHORDS: usize = 16;
+/// Number of chords of an arc beside which the shank and the holder are looked for in the metal first.
+const FEW_CHORDS: usize = 16;
 
 /// Number of feeds with a gouge after which no more are compared.
 const MAX_GOUGES: u32 = 1000;
@@ -55,25 +58,9 @@ impl HoleExtractor<'_> {
         self.profile = (!self.tool_body.is_empty()).then(|| Profile::of_tool(&self.tool_body));
     }
 
-    /// Returns the radius of the tool; `None` if it is unknown, and for a boring bar with the spindle stopped, which is
-    /// shifted off the wall. A tool of unknown kind that has turned may be one.
-    pub(super) fn tool_radius(&self) -> Option<f64> {
-        if self.may_be_shifted() {
-            return None;
-        }
-        self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
-    }
-
     /// Returns the tool with a flat end.
     fn flat_tool(&self) -> ToolPart {
         ToolPart::flutes(0.0, f64::INFINITY, self.tool_radius().unwrap_or(0.0))
-    }
-
-    /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be.
-    pub(super) fn may_be_shifted(&self) -> bool {
-        let kind = self.machine.kind_of(self.setup.tool);
-        let may_be_bar = kind.map_or(self.has_tool_turned, |kind| kind == ToolKind::BoringBar);
-        may_be_bar && self.cutting_state.spindle_direction == SpindleDirection::Off
     }
 
     /// Returns true if the tool cuts metal that is known between two points, false if all that is known there is removed,
@@ -120,13 +107,34 @@ impl HoleExtractor<'_> {
             self.remove(&[from, to], &axis);
         }
         if is_judged && worst.is_none() {
-            let few = self.shank_path(path);
-            let chords = few.windows(2).map(|chord| [chord[0], chord[1]]);
-            worst = chords.filter_map(|chord| self.shank_contact(&chord)).reduce(Gouge::deeper);
+            worst = self.shank_contact(path);
+        }
+        if self.is_feed_unsearched.take() {
+            self.unsearched_feeds.count(event);
         }
         if let Some(gouge) = worst {
             self.gouge_count += 1;
             self.report_gouge(&event.backtrace(), gouge);
+        }
+    }
+
+    /// Checks the body of the tool in a feed while an axis rotates; the feed is counted where it meets metal that may go.
+    pub(super) fn check_turning_feed(&mut self, event: &Event<'_>, (from, to): (&Position, &Position)) {
+        let Some(body) = self.surface.filter(|_| self.has_left_start && self.metal.holes.is_some()) else {
+            return;
+        };
+        let (setup, axis) = (self.setup, self.pose.axis);
+        let Some(axis) = axis.filter(|_| self.positions.is_known(self.machine)) else { return };
+        let path = AxisBox::line(self.machine, &setup, from, to);
+        let at = match self.body_contact(&path, None, &axis) {
+            Contact::Clear => return,
+            Contact::Metal(at) => Some(at.point).filter(|at| TOUCH_DEPTH < body.depth(at)),
+            Contact::Unknown => None,
+        };
+        let side = FeedPart::Side { radius: self.body_radius(), slope: 0.0 };
+        match at.and_then(|at| self.metal.gouge(&[at, at], side)) {
+            Some(at) => self.report_gouge(&event.backtrace(), Gouge { at, part: ToolRegion::Side }),
+            None => self.unsearched_feeds.count(event),
         }
     }
 
@@ -221,46 +229,75 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the gouge that the cutting parts of the tool make beside the path of its tip.
-    fn side_gouge(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
+    fn side_gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
         self.pose.axis?;
         self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
             if !self.may_cut(part, travel, axis) || self.metal.is_allowed(travel, axis, part) {
                 return None;
             }
             let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
-            let cut = |line: &[Point3<f64>; 2]| self.metal.gouge(line, side);
-            let at = deepest(part, axis, travel, &self.metal, cut)?;
+            let at = self.contact_in_feed(part, axis, travel, Judged::Kept(side))?;
             Some(Gouge { at, part: ToolRegion::Side })
         })
     }
 
-    /// Returns the contact of the shank or the holder with the metal that is left.
-    fn shank_contact(&self, travel: &[Point3<f64>; 2]) -> Option<Gouge> {
-        let axis = &self.pose.axis?;
-        if self.surface.is_some() && !self.has_left_start {
+    /// Returns the deepest metal that a part of the tool meets in a feed; a search that is given up is counted with the feed.
+    fn contact_in_feed(
+        &self,
+        part: &ToolPart,
+        axis: &Unit<Vector3<f64>>,
+        travel: &Line,
+        judged: Judged<'_>,
+    ) -> Option<PointInMetal> {
+        match contact(part, axis, &TipPaths::line(travel), &self.metal, judged) {
+            Contact::Clear => None,
+            Contact::Metal(at) => Some(at),
+            Contact::Unknown => {
+                self.is_feed_unsearched.set(true);
+                None
+            }
+        }
+    }
+
+    /// Returns the contact of the shank or the holder with the metal that is left along a path; none if the tool has neither.
+    fn shank_contact(&self, path: &[Point3<f64>]) -> Option<Gouge> {
+        let axis = self.pose.axis.filter(|_| self.surface.is_none() || self.has_left_start)?;
+        let last = path.len().checked_sub(1)?;
+        let step = last.div_ceil(FEW_CHORDS).max(1);
+        let coarse = (0..last).step_by(step).filter_map(|index| path.get(index..=(index + step).min(last)));
+        let at = self.tool_body.iter().filter(|part| !part.is_cutter).find_map(|part| {
+            // Beside a coarse chord the path is inside a part that is wider by its sagitta.
+            coarse.clone().find_map(|piece| {
+                let chord = [*piece.first()?, *piece.last()?];
+                let wider = ToolPart { taper: part.taper.grown(sagitta(piece)), ..*part };
+                match piece {
+                    [_, _] => self.shank_on_line(part, &axis, &chord),
+                    _ => {
+                        self.shank_on_line(&wider, &axis, &chord)?;
+                        let fine = piece.windows(2).map(|fine| [fine[0], fine[1]]);
+                        fine.filter_map(|fine| self.shank_on_line(part, &axis, &fine))
+                            .reduce(PointInMetal::deeper)
+                    }
+                }
+            })
+        })?;
+        Some(Gouge { at, part: ToolRegion::Shank })
+    }
+
+    /// Returns the contact of a part that doesn't cut on a straight feed.
+    fn shank_on_line(
+        &self,
+        part: &ToolPart,
+        axis: &Unit<Vector3<f64>>,
+        travel: &Line,
+    ) -> Option<PointInMetal> {
+        if !self.may_cut(part, travel, axis) {
             return None;
         }
         // Below the entry of a nominal hole its outline decides on strokes in it.
         let is_stroke = is_along(axis, &(travel[1] - travel[0]));
         let hole = if is_stroke { self.metal.hole_of_stroke(travel, axis) } else { None };
-        self.tool_body.iter().filter(|part| !part.is_cutter).find_map(|part| {
-            if !self.may_cut(part, travel, axis) {
-                return None;
-            }
-            let cut = |line: &[Point3<f64>; 2]| self.metal.uncut_above(line, hole);
-            let at = deepest(part, axis, travel, &self.metal, cut)?;
-            Some(Gouge { at, part: ToolRegion::Shank })
-        })
-    }
-
-    /// Returns as many points of a path as show where a shank goes; none of a tool without one.
-    fn shank_path(&self, path: &[Point3<f64>]) -> Vec<Point3<f64>> {
-        if self.tool_body.iter().all(|part| part.is_cutter) {
-            return Vec::new();
-        }
-        let last = path.len().saturating_sub(1);
-        let step = last.div_ceil(SHANK_CHORDS).max(1);
-        (0..last).step_by(step).chain([last]).filter_map(|index| path.get(index).copied()).collect()
+        self.contact_in_feed(part, axis, travel, Judged::Uncut(hole))
     }
 
     /// Returns false if a part of the tool stays outside the metal that is known.
@@ -269,7 +306,9 @@ impl HoleExtractor<'_> {
             let [from, to] = travel.map(|tip| tip + axis.into_inner() * part.from);
             return self.metal.is_touched(&from, &to, axis, part.radius());
         };
-        let part = ToolPart { to: self.metal.top_of(part, &travel[0], axis), ..*part };
+        let height = self.metal.removed.height_of_round(&travel[0], axis, part.radius());
+        let to = if self.metal.is_endless(part) { part.from + height } else { part.to };
+        let part = ToolPart { to, ..*part };
         part.cuts(&body, (&travel[0], axis), &(travel[1] - travel[0]))
     }
 
@@ -375,8 +414,16 @@ impl Gouge {
     }
 }
 
+/// Returns the largest distance of the points of a path from its chord, mm.
+fn sagitta(path: &[Point3<f64>]) -> f64 {
+    let (Some(from), Some(to)) = (path.first(), path.last()) else { return 0.0 };
+    let along = (to - from).try_normalize(0.0).unwrap_or_default();
+    let aside = path.iter().map(|p| (p - from) - along * (p - from).dot(&along));
+    aside.map(|aside| aside.norm()).fold(0.0, f64::max)
+}
+
 /// Returns true if a motion is along the tool.
-fn is_along(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>) -> bool {
+pub(super) fn is_along(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>) -> bool {
     let height = along.dot(axis);
     PLUNGE_COSINE * along.norm() <= height.abs() && (along - axis.into_inner() * height).norm() <= MAX_ASIDE
 }

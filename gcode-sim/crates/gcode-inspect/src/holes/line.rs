@@ -14,7 +14,7 @@ use gcode_lang::units::MmPerMin;
 const MIN_DEPTH_GAIN: f64 = 0.001;
 
 /// Largest shift of a boring bar off the wall, mm.
-const MAX_BAR_SHIFT: f64 = 5.0;
+pub(super) const MAX_BAR_SHIFT: f64 = 5.0;
 
 /// Position of the tool relative to its line after a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

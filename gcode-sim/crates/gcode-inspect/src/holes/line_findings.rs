@@ -3,10 +3,10 @@ use nalgebra::{Point3, Vector3};
 
 use super::cutting::CuttingState;
 use super::line::{CuttingLine, ToolExit};
-use super::metal::FeedPart;
+use super::near_metal::FeedPart;
 use super::rapids::format_point;
 use super::strokes::{CutKind, MIN_TOOL_COSINE};
-use super::tool_lines::rim;
+use super::swept_tool::rim;
 use super::unknown_axes::{unknown_position_finding, without_assumed};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{

@@ -61,6 +61,7 @@ impl HoleExtractor<'_> {
             exit @ (ToolExit::AlongLine | ToolExit::Sideways { .. }) => {
                 let is_along = exit == ToolExit::AlongLine;
                 if may_be_shifted && !line.is_inward() && !is_along {
+                    self.bar_shift.is_back_bored = true;
                     self.report_back_boring(&line);
                     return Some(from);
                 }

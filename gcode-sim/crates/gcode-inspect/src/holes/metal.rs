@@ -4,22 +4,21 @@ use std::sync::Arc;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
+use super::near_metal::{FeedPart, Judged, NearMetal, is_rounding};
 use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
+use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
-use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NearestPoint, PARALLEL_COSINE, Step, Surface, Taper};
+use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NOISE, NearestPoint, PARALLEL_COSINE, Surface, Taper};
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
 pub(super) const MAX_OFFSET: f64 = 0.5;
 
 /// Rounding of a point on a hole's wall, mm.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// Excess of a tool's side over a nominal hole that other checks judge, mm.
 pub(super) const SIDE_SLACK: f64 = 0.1;
-
-/// Height above a hole up to which the metal goes with it, mm.
-pub(super) const MAX_HEIGHT: f64 = 50.0;
 
 /// Distance down to another hole on the axis of the first, mm.
 const MAX_HEIGHT_ABOVE_HOLE: f64 = 1000.0;
@@ -27,14 +26,11 @@ const MAX_HEIGHT_ABOVE_HOLE: f64 = 1000.0;
 /// Half diagonal up to which the holes in a box are few, mm.
 const SMALL_BOX: f64 = 20.0;
 
-/// Least length of a piece in metal, mm; a shorter one is rounding.
-const MIN_PIECE: f64 = 1e-3;
-
 /// Metal of the part.
 #[derive(Debug)]
 pub(super) struct KnownMetal {
     /// Stock or the part's surface; `None` if the metal is known only round the holes.
-    body: Option<Surface>,
+    pub body: Option<Surface>,
     /// Nominal holes with the metal round them; `None` without a reference.
     pub holes: Option<Arc<EntryPlanes>>,
     /// Pockets that feeds may mill.
@@ -55,17 +51,6 @@ impl PointInMetal {
     pub(super) fn deeper(self, other: Self) -> Self {
         if self.depth < other.depth { other } else { self }
     }
-}
-
-/// Part of the tool whose feed is judged.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum FeedPart {
-    Tip,
-    /// The side of a part of this radius, a cone if it has a slope.
-    Side {
-        radius: f64,
-        slope: f64,
-    },
 }
 
 impl KnownMetal {
@@ -115,7 +100,8 @@ impl KnownMetal {
         radius: f64,
     ) -> bool {
         if let Some(body) = &self.body {
-            let (length, taper) = (self.removed.height_of_metal(from, axis), Taper::cylinder(radius));
+            let length = self.removed.height_of_round(from, axis, radius);
+            let taper = Taper::cylinder(radius);
             return body.touches(&Frustum { base: *from, axis: *axis, length, taper }, &(to - from));
         }
         let Some(holes) = &self.holes else { return false };
@@ -129,111 +115,50 @@ impl KnownMetal {
 
     /// Returns true if a travel leads through what was metal.
     pub(super) fn is_solid(&self, travel: &[Point3<f64>; 2]) -> bool {
-        !self.solid(travel, |_| true).is_empty()
+        !self.solid(&Strip::line(*travel), |_| true).is_empty()
     }
 
-    /// Returns the parts of a travel in solid metal, cut or not.
-    fn solid(&self, [from, to]: &[Point3<f64>; 2], is_counted: impl Fn(usize) -> bool) -> Shares {
+    /// Returns shares of a strip outside which it is in no metal, cut or not; those of a line are exact.
+    pub(super) fn solid(&self, strip: &Strip, is_counted: impl Fn(usize) -> bool) -> Shares {
+        let [one, other] = &strip.edges;
         let mut shares = Shares::default();
         match (&self.body, &self.holes) {
-            (Some(body), _) => {
-                if let Some(piece) = body.piece(from, to, TOUCH_DEPTH) {
-                    shares.push(piece);
-                }
+            (Some(body), _) if one == other => shares.extend(body.piece(&one[0], &one[1], TOUCH_DEPTH)),
+            (Some(body), _) => shares.extend(body.span([one, other], TOUCH_DEPTH)),
+            (None, Some(holes)) => {
+                let [low, high] = strip.bounds();
+                holes.near(&low, &high, &mut |hole| {
+                    if is_counted(hole) {
+                        shares.extend(holes.collar(hole).span([one, other], TOUCH_DEPTH));
+                    }
+                });
             }
-            (None, Some(holes)) => holes.near(&from.inf(to), &from.sup(to), &mut |hole| {
-                if let Some(piece) =
-                    holes.collar(hole).piece(from, to, TOUCH_DEPTH).filter(|_| is_counted(hole))
-                {
-                    shares.push(piece);
-                }
-            }),
             (None, None) => {}
         }
         shares
     }
 
     /// Returns the deepest point of a travel in metal that is not removed.
-    pub(super) fn uncut(&self, travel: &[Point3<f64>; 2]) -> Option<PointInMetal> {
-        self.uncut_above(travel, None)
+    pub(super) fn uncut(&self, travel: &Line) -> Option<PointInMetal> {
+        self.judged_on(travel, Judged::Uncut(None))
     }
 
-    /// Returns the deepest point of a travel in metal that is not removed, above the plane of a hole's entry if there is one.
-    pub(super) fn uncut_above(
-        &self,
-        travel: &[Point3<f64>; 2],
-        hole: Option<&Collar>,
-    ) -> Option<PointInMetal> {
-        let mut shares = self.solid(travel, |_| true);
-        if let Some(below) = hole.and_then(|hole| hole.piece_below_entry(&travel[0], &travel[1])) {
-            shares.take_away(below);
-        }
-        if !shares.is_empty() {
-            self.removed.uncover(travel, false, &mut shares);
-        }
-        self.deepest(travel, &shares)
+    /// Returns the deepest point of a travel in metal that has to stay.
+    pub(super) fn gouge(&self, travel: &Line, part: FeedPart) -> Option<PointInMetal> {
+        self.judged_on(travel, Judged::Kept(part))
+    }
+
+    fn judged_on(&self, travel: &Line, judged: Judged<'_>) -> Option<PointInMetal> {
+        let line = Strip::line(*travel);
+        NearMetal::new(self, line.bounds(), judged).on_line(travel)
     }
 
     /// Returns true if a travel leads through metal that is known, false if all that is known there is removed, and `None`
     /// if nothing is known.
     pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let travel = [*from, *to];
-        let is_in_known = self.body.is_some() || !self.solid(&travel, |_| true).is_empty();
+        let is_in_known = self.body.is_some() || self.is_solid(&travel);
         is_in_known.then(|| self.uncut(&travel).is_some())
-    }
-
-    /// Returns the deepest point of a travel in metal that has to stay: neither in a nominal hole nor in a pocket, nor removed
-    /// before.
-    pub(super) fn gouge(&self, travel: &[Point3<f64>; 2], part: FeedPart) -> Option<PointInMetal> {
-        let holes = self.holes.as_deref()?;
-        // Without a diameter the wall of a hole is unknown.
-        let mut shares = self.solid(travel, |hole| holes.collar(hole).has_diameter);
-        let [from, to] = travel;
-        for pocket in &self.pockets {
-            if shares.is_empty() {
-                return None;
-            }
-            if let Some(piece) = pocket.piece(from, to, -TOUCH_DEPTH) {
-                shares.take_away(piece);
-            }
-        }
-        if shares.is_empty() {
-            return None;
-        }
-        let mut take_away = |collar: &Collar, room: &Step| {
-            let pieces = collar.pieces_of_step(from, to, room).into_iter().flatten();
-            pieces.for_each(|piece| shares.take_away(piece));
-        };
-        let mut allow = |collar: &Collar| {
-            if let FeedPart::Side { slope, .. } = part {
-                collar.edge_break(slope).iter().for_each(|edge| take_away(collar, edge));
-            }
-            for step in &collar.steps {
-                let Taper { radius, slope } = step.taper;
-                let taper = match part {
-                    FeedPart::Tip if slope == 0.0 => Taper::cylinder(radius.max(MAX_OFFSET) + ROUNDING),
-                    FeedPart::Tip => Taper { radius: radius + MAX_OFFSET, slope },
-                    FeedPart::Side { .. } if collar.has_diameter => {
-                        Taper { radius: radius + SIDE_SLACK, slope }
-                    }
-                    FeedPart::Side { radius, .. } => Taper::cylinder(2.0 * radius),
-                };
-                let room = Step { taper, max_depth: step.max_depth + TOUCH_DEPTH };
-                take_away(collar, &room);
-            }
-        };
-        let margin = match part {
-            FeedPart::Tip => 0.0,
-            FeedPart::Side { radius, .. } => 2.0 * radius,
-        };
-        let near = (margin, MAX_HEIGHT);
-        holes.below(&from.inf(to), &from.sup(to), near, &mut |hole| allow(holes.collar(hole)));
-        // Many feeds may have been here: they come last.
-        if shares.is_empty() {
-            return None;
-        }
-        self.removed.uncover(travel, true, &mut shares);
-        self.deepest(travel, &shares)
     }
 
     /// Returns the tip that is fed through a nominal hole and deeper than any tool has to break through, with its depth
@@ -266,97 +191,45 @@ impl KnownMetal {
         beyond.filter(|_| !is_in_other)
     }
 
-    /// Returns the upper end of a part of the tool; where its length is unknown, that of the metal.
-    pub(super) fn top_of(&self, part: &ToolPart, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> f64 {
-        match part.is_cutter && part.to <= part.from {
-            true => part.from + self.removed.height_of_metal(tip, axis),
-            false => part.to,
+    /// Returns true for a part of unknown length: it reaches as high as the metal.
+    pub(super) fn is_endless(&self, part: &ToolPart) -> bool {
+        part.is_cutter && part.to <= part.from
+    }
+
+    /// Returns true if nothing of the body is above a pocket, seen along a tool, that is not in another pocket.
+    pub(super) fn are_pockets_open(&self, axis: &Unit<Vector3<f64>>) -> bool {
+        let Some(body) = &self.body else { return false };
+        let up = axis.iamax();
+        if axis[up].abs() < 1.0 - NOISE {
+            return self.pockets.is_empty();
         }
-    }
-
-    /// Returns heights above the tip, within some, at which a cylinder crosses metal whose lower end is above its own: one for
-    /// the body, or enough for each hole near a travel.
-    pub(super) fn heights(
-        &self,
-        travel: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-        radius: f64,
-        within: [f64; 2],
-    ) -> Vec<f64> {
-        let mut common: Vec<[f64; 2]> = Vec::new();
-        self.for_each_range(travel, axis, radius, within, &mut |[low, high]| {
-            if low <= within[0] {
-                return;
-            }
-            match common.iter_mut().find(|range| low < range[1] && range[0] < high) {
-                Some(range) => *range = [range[0].max(low), range[1].min(high)],
-                None => common.push([low, high]),
-            }
-        });
-        common.iter().map(|[low, high]| f64::midpoint(*low, *high)).collect()
-    }
-
-    /// Returns the heights above the tip, within some, at which metal or a pocket near a travel begins or ends, upwards.
-    pub(super) fn levels(
-        &self,
-        travel: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-        radius: f64,
-        within: [f64; 2],
-    ) -> Vec<f64> {
-        let mut levels = Vec::new();
-        self.for_each_range(travel, axis, radius, within, &mut |range| levels.extend(range));
-        let Some((low, high)) =
-            levels.iter().copied().reduce(f64::min).zip(levels.iter().copied().reduce(f64::max))
-        else {
-            return levels;
+        let side = usize::from(0.0 < axis[up]);
+        let height = |corners: &[Point3<f64>; 2], side: usize| corners[side][up] * axis[up].signum();
+        let [min, max] = body.bounds();
+        let of_body = |pocket: &Surface| {
+            let [low, high] = pocket.bounds();
+            (matches!(pocket, Surface::Block { .. }), [low.sup(&min), high.inf(&max)])
         };
-        let of_pockets = self.pockets.iter().flat_map(|pocket| heights_of(pocket, &travel[0], axis));
-        levels.extend(of_pockets.filter(|height| low < *height && *height < high));
-        levels.sort_by(f64::total_cmp);
-        levels.dedup_by(|a, b| (*a - *b).abs() < MIN_PIECE);
-        levels
-    }
-
-    /// Calls `each` with the heights above the tip, within some, between which there may be metal: of the body, or of each hole
-    /// near a travel.
-    fn for_each_range(
-        &self,
-        [from, to]: &[Point3<f64>; 2],
-        axis: &Unit<Vector3<f64>>,
-        radius: f64,
-        within: [f64; 2],
-        each: &mut impl FnMut([f64; 2]),
-    ) {
-        let mut clip = |[low, high]: [f64; 2]| {
-            let range = [low.max(within[0]), high.min(within[1])];
-            if range[0] < range[1] {
-                each(range);
-            }
+        let mut pockets: Vec<(bool, [Point3<f64>; 2])> = self.pockets.iter().map(of_body).collect();
+        pockets.sort_by(|a, b| height(&b.1, side).total_cmp(&height(&a.1, side)));
+        let face = height(&[min, max], side);
+        let is_open = |index: usize| {
+            let (_, pocket) = &pockets[index];
+            let top = height(pocket, side) + TOUCH_DEPTH;
+            let is_over = |(is_block, other): &(bool, [Point3<f64>; 2])| {
+                let holds = |i: usize| i == up || other[0][i] <= pocket[0][i] && pocket[1][i] <= other[1][i];
+                *is_block && height(other, 1 - side) <= top && (0..3).all(holds)
+            };
+            face <= top || pockets[..index].iter().any(is_over)
         };
-        if let Some(body) = &self.body {
-            clip(heights_of(body, from, axis));
-            return;
-        }
-        let Some(holes) = &self.holes else { return };
-        let margin = Vector3::repeat(radius);
-        let up = axis.into_inner() * within[1].min(self.removed.height_of_metal(from, axis));
-        let (low, high) = (from.inf(to) - margin, from.sup(to) + margin);
-        holes.near(&low.inf(&(low + up)), &high.sup(&(high + up)), &mut |hole| {
-            let rod = holes.collar(hole).rod;
-            let ends =
-                [rod.base, rod.base + rod.axis.into_inner() * rod.length].map(|p| (p - from).dot(axis));
-            clip([ends[0].min(ends[1]), ends[0].max(ends[1])]);
-        });
+        (0..pockets.len()).all(is_open)
     }
 
     /// Returns true if all metal on a line is in one pocket.
     pub(super) fn is_in_pocket(&self, line: &[Point3<f64>; 2]) -> bool {
         self.pockets.iter().any(|pocket| {
-            let mut shares = self.solid(line, |_| true);
-            if let Some(piece) = pocket.piece(&line[0], &line[1], -TOUCH_DEPTH) {
-                shares.take_away(piece);
-            }
+            let mut shares = self.solid(&Strip::line(*line), |_| true);
+            shares.take_away(pocket.piece(&line[0], &line[1], -TOUCH_DEPTH));
             shares.is_empty()
         })
     }
@@ -373,12 +246,12 @@ impl KnownMetal {
     }
 
     /// Returns the deepest point of some shares of a travel.
-    fn deepest(&self, [from, to]: &[Point3<f64>; 2], shares: &Shares) -> Option<PointInMetal> {
+    pub(super) fn deepest(&self, [from, to]: &Line, shares: &Shares) -> Option<PointInMetal> {
         let along = to - from;
         let length = along.norm();
         let mut best: Option<PointInMetal> = None;
         for [first, last] in shares.pieces() {
-            if length * (last - first) < MIN_PIECE && MIN_PIECE < length {
+            if is_rounding(length, [*first, *last]) {
                 continue;
             }
             let (first, last) = (from + along * *first, from + along * *last);
@@ -432,14 +305,4 @@ impl KnownMetal {
         });
         best
     }
-}
-
-/// Returns the heights above the tip between which a body may have metal.
-fn heights_of(body: &Surface, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> [f64; 2] {
-    let [low, high] = body.bounds();
-    let along = |corner: &Vector3<f64>, other: &Vector3<f64>| {
-        (0..3).filter(|i| axis[*i] != 0.0).map(|i| (axis[i] * corner[i]).min(axis[i] * other[i])).sum::<f64>()
-    };
-    let (low, high) = (low - tip, high - tip);
-    [along(&low, &high), -along(&-low, &-high)]
 }

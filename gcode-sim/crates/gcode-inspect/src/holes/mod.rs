@@ -1,6 +1,7 @@
 //! Motion → holes: follows the tool on the part and groups feeds along one line to passes, and passes to holes.
 mod arc_run;
 mod axis_box;
+mod bar_shift;
 mod chord_run;
 mod circles;
 mod clamping;
@@ -22,6 +23,7 @@ mod machine_requests;
 mod metal;
 mod milled;
 mod milling;
+mod near_metal;
 pub(crate) mod per_block;
 mod profile;
 mod rapid_paths;
@@ -30,12 +32,13 @@ mod removed_metal;
 mod room;
 mod shares;
 pub(crate) mod spindle;
+mod strip;
 mod strokes;
 mod swallowed;
+mod swept_tool;
 #[cfg(test)]
 mod tests;
 mod thread_walls;
-mod tool_lines;
 pub(crate) mod unknown_axes;
 mod wall_cut;
 
@@ -46,13 +49,16 @@ pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
-pub(crate) use rapid_paths::UnsearchedRapids;
-pub(crate) use tool_lines::ring;
+pub(crate) use rapid_paths::UnsearchedMotions;
+pub(crate) use swept_tool::ring;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
+
+use std::cell::Cell;
 
 use nalgebra::Point3;
 
 use self::axis_box::SearchBudget;
+use self::bar_shift::BarShift;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
@@ -100,8 +106,12 @@ pub struct HoleExtraction {
     pub(crate) process_limits: ProcessLimits,
     /// The stock or the surface is known, and all motion was compared with it.
     pub(crate) is_metal_known: bool,
-    /// Rapids whose paths are not searched to the end; `None` if there are none.
-    pub(crate) unsearched_rapids: Option<UnsearchedRapids>,
+    /// Rapids whose paths are not searched to the end.
+    pub(crate) unsearched_rapids: UnsearchedMotions,
+    /// Feeds beside which the metal is not compared with all of the tool.
+    pub(crate) unsearched_feeds: UnsearchedMotions,
+    /// Probing moves through metal.
+    pub(crate) probes_in_metal: UnsearchedMotions,
     /// Tools of unknown diameter that mill a known body: what they remove is unknown.
     pub(crate) unsized_mills: Vec<Option<u32>>,
     /// Indices of the nominal holes whose entries are under metal that no feed removes.
@@ -164,8 +174,15 @@ pub struct HoleExtractor<'m> {
     /// Number of probing moves.
     probe_count: u64,
     search_budget: SearchBudget,
-    /// Rapids whose paths are not searched to the end; `None` if there are none.
-    unsearched_rapids: Option<UnsearchedRapids>,
+    /// Rapids whose paths are not searched to the end.
+    unsearched_rapids: UnsearchedMotions,
+    /// Feeds beside which the metal is not compared with all of the tool.
+    unsearched_feeds: UnsearchedMotions,
+    /// Probing moves through metal.
+    probes_in_metal: UnsearchedMotions,
+    /// The search for the current feed was given up.
+    is_feed_unsearched: Cell<bool>,
+    bar_shift: BarShift,
 }
 
 /// Kind of a motion.
@@ -216,7 +233,11 @@ impl<'m> HoleExtractor<'m> {
             length_mismatches: Vec::new(),
             probe_count: 0,
             search_budget: SearchBudget::default(),
-            unsearched_rapids: None,
+            unsearched_rapids: UnsearchedMotions::default(),
+            unsearched_feeds: UnsearchedMotions::default(),
+            probes_in_metal: UnsearchedMotions::default(),
+            is_feed_unsearched: Cell::default(),
+            bar_shift: BarShift::default(),
         }
     }
 
@@ -285,6 +306,8 @@ impl<'m> HoleExtractor<'m> {
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
             unsearched_rapids: self.unsearched_rapids,
+            unsearched_feeds: self.unsearched_feeds,
+            probes_in_metal: self.probes_in_metal,
             unsized_mills: self.unsized_mills,
             covered_entries,
             milled_strokes,
@@ -321,6 +344,12 @@ impl<'m> HoleExtractor<'m> {
         self.axis_position = *to;
         self.pose = self.machine.tool_pose(to, &self.setup).relative_to(&self.frame);
         let (was, is) = self.positions.advance(self.machine);
+        let kind = match kind {
+            MotionKind::Probe if was.union(is).is_none() && !is_rotating => {
+                self.kind_of_probing(event, &before.tip)
+            }
+            kind => kind,
+        };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             // With the same axes unknown the motion itself is known.
@@ -338,7 +367,9 @@ impl<'m> HoleExtractor<'m> {
                     if !is_rotating {
                         self.remove_by_arc(event, &travel, was.union(is).is_none());
                     }
-                    self.check_curved(event, &travel, kind);
+                    if !self.check_curved(event, &travel, kind) && is_rotating {
+                        self.check_turning_feed(event, (&from, to));
+                    }
                     let arc = self.part_arc(&travel, &before.tip);
                     self.engagement.add_unknown_axes(was.union(is));
                     self.engage(event, &before.tip, Path::Curved(arc));
@@ -353,6 +384,7 @@ impl<'m> HoleExtractor<'m> {
         }
         self.check_thread_wall(event, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);
+        self.follow_bar_shift(event, kind, &before.tip);
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
             (MotionKind::Feed, start) => {
@@ -363,7 +395,7 @@ impl<'m> HoleExtractor<'m> {
                 }
                 self.remove_by_feed(event, &[before.tip, self.pose.tip], was.union(is).is_none());
             }
-            _ => {}
+            (MotionKind::Probe, _) => {}
         }
         match kind {
             MotionKind::Feed => self.engage(event, &before.tip, Path::Straight),
@@ -373,6 +405,20 @@ impl<'m> HoleExtractor<'m> {
             self.check_upright(&from);
         }
         self.update_start();
+    }
+
+    /// Returns the kind of a probing move: a feed if a tool of some kind goes through metal, since tools of all kinds cut. Other ones
+    /// through metal are counted.
+    fn kind_of_probing(&mut self, event: &Event<'_>, from: &Point3<f64>) -> MotionKind {
+        let is_cutter = self.machine.kind_of(self.setup.tool).is_some();
+        match self.metal.uncut(&[*from, self.pose.tip]) {
+            Some(_) if is_cutter => MotionKind::Feed,
+            Some(_) => {
+                self.probes_in_metal.count(event);
+                MotionKind::Probe
+            }
+            None => MotionKind::Probe,
+        }
     }
 
     /// Applies a known start, or a known end of a motion.

@@ -1,12 +1,11 @@
 //! Rapids of several axes: any axis may arrive first, unless the rates of the axes or LRP give the path.
-use std::cell::Cell;
-
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::{AxisBox, DeepPoint, Deepest};
 use super::metal::PointInMetal;
-use super::rapids::{PLUNGE_COSINE, error_if, format_point};
-use super::tool_lines::deepest;
+use super::near_metal::{Contact, Judged, NearMetal};
+use super::rapids::{error_if, format_point};
+use super::swept_tool::{TipPaths, contact, faces};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolPart, arrivals};
@@ -14,13 +13,20 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};
 
-/// Rapids whose paths are too many to be searched.
-#[derive(Clone, Debug)]
-pub(crate) struct UnsearchedRapids {
-    /// Block of the first.
-    pub backtrace: Backtrace,
-    /// Their number.
-    pub count: u64,
+/// Motions that are not searched to the end: the first, and their number.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct UnsearchedMotions(Option<(Backtrace, u64)>);
+
+impl UnsearchedMotions {
+    /// Counts a motion whose search was given up.
+    pub(super) fn count(&mut self, event: &Event<'_>) {
+        self.0.get_or_insert_with(|| (event.backtrace(), 0)).1 += 1;
+    }
+
+    /// Returns the block of the first and the number of all; `None` without one.
+    pub(crate) fn first(&self) -> Option<&(Backtrace, u64)> {
+        self.0.as_ref()
+    }
 }
 
 impl HoleExtractor<'_> {
@@ -119,7 +125,7 @@ impl HoleExtractor<'_> {
             (None, None) => Deepest::Clear,
         };
         self.search_budget = budget;
-        let found = self.found(event, deepest).and_then(|found| self.uncut_in_box(found, all));
+        let found = self.found(event, deepest).and_then(|found| self.uncut_in_box(event, found, all));
         let Some(found) = found else { return false };
         let depth = self.metal.depth(&found.point).unwrap_or(found.depth);
         let level = self.metal.level_at(&found.point);
@@ -141,15 +147,17 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the point found in metal if it is not removed, or else another point of the box that is not.
-    fn uncut_in_box(&self, found: DeepPoint, all: &AxisBox<'_>) -> Option<DeepPoint> {
-        let uncut = |travel: &[Point3<f64>; 2]| self.metal.uncut(travel);
-        if uncut(&[found.point, found.point]).is_some() {
+    fn uncut_in_box(&mut self, event: &Event<'_>, found: DeepPoint, all: &AxisBox<'_>) -> Option<DeepPoint> {
+        if self.metal.uncut(&[found.point, found.point]).is_some() {
             return Some(found);
         }
         // What is removed is not followed while an axis rotates.
-        let Some(travels) = all.travels() else { return Some(found) };
-        let worst = travels.iter().filter_map(uncut).reduce(PointInMetal::deeper)?;
-        Some(DeepPoint { point: worst.point, depth: worst.depth, arrived: None })
+        let Some((start, sides)) = all.sides() else { return Some(found) };
+        let contact = faces(start, &sides).map_or(Contact::Unknown, |faces| {
+            NearMetal::of_strips(&self.metal, &faces, Judged::Uncut(None)).contact(&faces)
+        });
+        let PointInMetal { point, depth } = self.in_rapid(event, contact)?;
+        Some(DeepPoint { point, depth, arrived: None })
     }
 
     /// Reports a rapid during which the flank of the tool, its shank or its holder cuts metal although the tip does not.
@@ -160,87 +168,99 @@ impl HoleExtractor<'_> {
         (from, to): (&Position, &Position),
         start: Option<Point3<f64>>,
     ) {
-        if self.tool_body.is_empty() || self.surface.is_some() && !self.has_left_start {
+        if self.surface.is_some() && !self.has_left_start {
             return;
         }
         let is_straight = self.machine.is_straight(&AxisMotion { from, to, arc: None });
-        let pose = self.pose_at(to);
-        let begin = start.unwrap_or(pose.tip);
-        let Some(axis) = self.axis_in_motion(&begin, &pose.tip) else { return };
-        if is_straight {
-            // Out along its axis the tool leaves the way that it has come.
-            let along = pose.tip - begin;
-            if start.is_none() || PLUNGE_COSINE * along.norm() <= along.dot(&axis) {
-                return;
-            }
-        }
-        let surface = self.surface;
-        let is_clear = match surface {
-            Some(body) => path.is_clear_by_planes(&self.tool_body, |p| body.nearest(p)),
-            None => {
-                let radius = self.tool_body.iter().map(ToolPart::radius).fold(0.0, f64::max);
-                !is_straight || !self.metal.is_touched(&begin, &pose.tip, &axis, radius)
-            }
-        };
-        if is_clear {
+        let tip = self.pose_at(to).tip;
+        let begin = start.unwrap_or(tip);
+        let Some(axis) = self.axis_in_motion(&begin, &tip) else { return };
+        // Out along its axis the tool leaves the way that it has come.
+        let out = (tip - begin).dot(&axis);
+        let is_way_back = 0.0 < out && (tip - begin - axis.into_inner() * out).norm() <= TOUCH_DEPTH;
+        if is_straight && (start.is_none() || is_way_back) {
             return;
         }
-        let travels = match path.len() < 2 {
-            true => Some(vec![[begin, pose.tip]]).filter(|_| is_straight),
-            false => path.travels(),
+        let sides = match path.len() < 2 {
+            true => Some((begin, vec![tip - begin])),
+            false => path.sides(),
         };
-        let mut budget = std::mem::take(&mut self.search_budget);
-        let mut found: Option<PointInMetal> = None;
-        for part in &self.tool_body {
-            // A boring bar with the spindle stopped is shifted off the wall.
-            if part.is_cutter && self.tool_radius().is_none() && self.metal.is_solid(&[begin, pose.tip]) {
-                continue;
-            }
-            let is_met = Cell::new(false);
-            let cut = |line: &[Point3<f64>; 2]| {
-                let in_body = surface.and_then(|body| body.piece(&line[0], &line[1], TOUCH_DEPTH));
-                is_met.set(is_met.get() || in_body.is_some());
-                self.metal.uncut(line)
-            };
-            let on_travel = |travel| deepest(part, &axis, travel, &self.metal, cut);
-            found = travels.iter().flatten().filter_map(on_travel).reduce(PointInMetal::deeper);
-            // Between its ends the side of the tool may touch a round body.
-            if let Some(body) = surface.filter(|_| found.is_none() && !is_met.get()) {
-                let deepest = path.with_tool(*part).deepest(&distance_from(&body), TOUCH_DEPTH, &mut budget);
-                found = match deepest {
-                    // What is removed is not followed while an axis rotates.
-                    Deepest::Metal(DeepPoint { point, depth, .. }) if !is_straight => {
-                        Some(PointInMetal { point, depth })
-                    }
-                    Deepest::Metal(at) => self.metal.uncut(&[at.point, at.point]),
-                    Deepest::Clear => None,
-                    Deepest::Unknown => {
-                        count_unsearched(&mut self.unsearched_rapids, event);
-                        None
-                    }
-                };
-            }
-            if found.is_some() {
-                break;
-            }
-        }
-        self.search_budget = budget;
-        let Some(cut) = found else { return };
+        let paths =
+            sides.filter(|_| is_straight).map(|(start, sides)| TipPaths::in_box(start, &sides, &axis));
+        let contact = match self.surface.is_none() && is_straight {
+            true if !self.metal.is_touched(&begin, &tip, &axis, self.body_radius()) => Contact::Clear,
+            _ => self.body_contact(path, paths, &axis),
+        };
+        let Some(cut) = self.in_rapid(event, contact) else { return };
         // While an axis rotates, the clearance of the job decides; the shape of the tool's end is only assumed.
         let severity = error_if(is_straight || self.process_limits.clearance.is_none());
         let orders = if path.len() < 2 { "" } else { " on some of its paths" };
         self.report_side(event, cut, severity, orders);
     }
 
+    /// Returns the largest radius of the tool's parts, mm; 0 if it is unknown.
+    pub(super) fn body_radius(&self) -> f64 {
+        self.tool_body.iter().map(ToolPart::radius).fold(0.0, f64::max)
+    }
+
+    /// Finds metal that a part of the tool meets on some paths; `paths` are those of its tip while nothing rotates, `Some(None)` if
+    /// they are oblique to the tool in several ways: the deepest point in the body decides on them.
+    pub(super) fn body_contact(
+        &mut self,
+        path: &AxisBox<'_>,
+        paths: Option<Option<TipPaths>>,
+        axis: &Unit<Vector3<f64>>,
+    ) -> Contact {
+        let surface = self.surface;
+        if surface.is_some_and(|body| path.is_clear_by_planes(&self.tool_body, |p| body.nearest(p))) {
+            return Contact::Clear;
+        }
+        let is_shifted = self.tool_radius().is_none();
+        let mut budget = std::mem::take(&mut self.search_budget);
+        let mut in_part = |part: &ToolPart| match (paths, surface) {
+            (Some(Some(paths)), _) => contact(part, axis, &paths, &self.metal, Judged::Uncut(None)),
+            (Some(None), None) => Contact::Unknown,
+            (None, None) => Contact::Clear,
+            (_, Some(body)) => {
+                match path.with_tool(*part).deepest(&distance_from(&body), TOUCH_DEPTH, &mut budget) {
+                    Deepest::Clear => Contact::Clear,
+                    Deepest::Unknown => Contact::Unknown,
+                    // What is removed is not followed while an axis rotates.
+                    Deepest::Metal(DeepPoint { point, depth, .. }) if paths.is_none() => {
+                        Contact::Metal(PointInMetal { point, depth })
+                    }
+                    Deepest::Metal(at) => {
+                        self.metal.uncut(&[at.point, at.point]).map_or(Contact::Unknown, Contact::Metal)
+                    }
+                }
+            }
+        };
+        let parts = self.tool_body.iter().filter(|part| !(part.is_cutter && is_shifted));
+        let found = parts.map(&mut in_part).find(|contact| !matches!(contact, Contact::Clear));
+        self.search_budget = budget;
+        found.unwrap_or(Contact::Clear)
+    }
+
+    /// Returns the metal that a search for a rapid has found; counts the rapid if the search was given up.
+    fn in_rapid(&mut self, event: &Event<'_>, contact: Contact) -> Option<PointInMetal> {
+        match contact {
+            Contact::Clear => None,
+            Contact::Metal(at) => Some(at),
+            Contact::Unknown => {
+                self.unsearched_rapids.count(event);
+                None
+            }
+        }
+    }
+
     /// Reports a rapid of unknown start at whose end the side of the tool is in metal.
     pub(super) fn check_body_at(&mut self, event: &Event<'_>, tip: &Point3<f64>) {
         let Some(axis) = self.pose.axis else { return };
-        let is_left_out = |part: &ToolPart| part.is_cutter && self.tool_radius().is_none();
-        let cut =
-            self.tool_body.iter().filter(|part| !is_left_out(part)).find_map(|part| {
-                deepest(part, &axis, &[*tip, *tip], &self.metal, |line| self.metal.uncut(line))
-            });
-        if let Some(cut) = cut {
+        let stands = TipPaths::line(&[*tip, *tip]);
+        let (setup, at) = (self.setup, self.axis_position);
+        let at = AxisBox::line(self.machine, &setup, &at, &at);
+        let contact = self.body_contact(&at, Some(Some(stands)), &axis);
+        if let Some(cut) = self.in_rapid(event, contact) {
             self.report_side(event, cut, Severity::Error, "");
         }
     }
@@ -264,7 +284,7 @@ impl HoleExtractor<'_> {
             Deepest::Clear => None,
             Deepest::Metal(point) => Some(point),
             Deepest::Unknown => {
-                count_unsearched(&mut self.unsearched_rapids, event);
+                self.unsearched_rapids.count(event);
                 None
             }
         }
@@ -281,12 +301,6 @@ impl HoleExtractor<'_> {
         let verb = if first.len() == 1 { "arrives" } else { "arrive" };
         format!(" if {} {verb} before {}", first.join(" and "), last.join(" and "))
     }
-}
-
-/// Counts a rapid whose search was given up.
-fn count_unsearched(unsearched: &mut Option<UnsearchedRapids>, event: &Event<'_>) {
-    let first = || UnsearchedRapids { backtrace: event.backtrace(), count: 0 };
-    unsearched.get_or_insert_with(first).count += 1;
 }
 
 /// Returns the distance from one body, whatever the reach.

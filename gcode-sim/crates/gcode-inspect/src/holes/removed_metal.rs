@@ -1,10 +1,12 @@
 //! Metal that feeds have removed: volumes that the tool sweeps, and the parts of a travel that they cover.
-use std::collections::{BTreeMap, HashMap};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BinaryHeap, HashMap};
 
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::profile::Profile;
 use super::shares::Shares;
+use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
 use gcode_part::{shares_between, shares_within};
 
@@ -52,6 +54,8 @@ pub(super) struct RemovedMetal {
     is_last_open: bool,
     /// Direction of its first feed.
     heading: Option<Unit<Vector3<f64>>>,
+    /// Direction of the tool in all sweeps; `Some(None)` if they differ.
+    common_axis: Option<Option<Unit<Vector3<f64>>>>,
     /// Corners of a box that holds all metal.
     bounds: [Point3<f64>; 2],
     /// Largest height above the tip at which there is metal, mm.
@@ -70,6 +74,7 @@ impl RemovedMetal {
             levels: BTreeMap::new(),
             is_last_open: false,
             heading: None,
+            common_axis: None,
             bounds,
             max_height: max_height.min(MAX_HEIGHT),
             is_full: false,
@@ -101,6 +106,7 @@ impl RemovedMetal {
             return;
         }
         self.sweeps.push(Sweep { from, to, axis, profile, previous: NONE });
+        self.common_axis = Some(self.common_axis.unwrap_or(Some(axis)).filter(|common| *common == axis));
         self.is_last_open = true;
         self.heading = Unit::try_new(to - from, ROUNDING);
     }
@@ -117,7 +123,7 @@ impl RemovedMetal {
         let axis = sweep.axis.into_inner();
         let top = profile.parts.iter().map(|part| part.to).fold(0.0, f64::max);
         for p in [sweep.from, sweep.to] {
-            let end = p + axis * top.min(self.height_of_metal(&p, &axis));
+            let end = p + axis * top.min(self.height_of_round(&p, &axis, profile.radius));
             (low, high) = (low.inf(&end), high.sup(&end));
         }
         let margin = Vector3::repeat(profile.radius + TOUCH_DEPTH);
@@ -130,62 +136,112 @@ impl RemovedMetal {
 
     /// Returns the height above a point beyond which there is no metal along a direction.
     pub(super) fn height_of_metal(&self, p: &Point3<f64>, out: &Vector3<f64>) -> f64 {
-        let [low, high] = &self.bounds;
-        let exit = |i: usize| match out[i] {
-            out if 1e-9 < out => (high[i] - p[i]) / out,
-            out if out < -1e-9 => (low[i] - p[i]) / out,
-            _ => f64::INFINITY,
+        self.height_of_round(p, out, 0.0)
+    }
+
+    /// Returns the height above a point beyond which there is no metal within a radius of a line through it.
+    pub(super) fn height_of_round(&self, p: &Point3<f64>, out: &Vector3<f64>, radius: f64) -> f64 {
+        let exit = |i: usize| {
+            let margin = radius * (1.0 - out[i] * out[i]).max(0.0).sqrt();
+            self.exit(p, out, i).map_or(f64::INFINITY, |exit| exit + margin / out[i].abs())
         };
         (0..3).map(exit).fold(self.max_height, f64::min).max(0.0)
     }
 
-    /// Takes away the shares of a travel that the sweeps cover, [`TOUCH_DEPTH`] beyond them included. `is_certain`
-    /// leaves out tools of unknown diameter.
-    pub(super) fn uncover(&self, travel: &[Point3<f64>; 2], is_certain: bool, shares: &mut Shares) {
-        let by_sweep = |sweep: &Sweep, shares: &mut Shares| {
-            let profile = &self.profiles[sweep.profile as usize];
-            if profile.is_certain || !is_certain {
-                for part in &profile.parts {
-                    if let Some(covered) = sweep.covered(part, travel) {
-                        shares.take_away(covered);
-                    }
-                }
-            }
-            shares.is_empty()
-        };
-        if self.is_last_open && self.sweeps.last().is_some_and(|last| by_sweep(last, shares)) {
-            return;
+    /// Returns the distance along a direction to the face of the bounds on an axis; `None` without one.
+    fn exit(&self, p: &Point3<f64>, out: &Vector3<f64>, i: usize) -> Option<f64> {
+        let face = self.bounds[usize::from(0.0 < out[i])][i];
+        (1e-9 < out[i].abs() && face.is_finite()).then(|| (face - p[i]) / out[i])
+    }
+
+    /// Returns the shares of a line above which there may be metal along a direction, and the heights above their ends beyond
+    /// which there is none.
+    pub(super) fn above_line(&self, [from, to]: &Line, up: &Vector3<f64>) -> Option<([f64; 2], [f64; 2])> {
+        let faces = (0..3).filter_map(|i| Some((self.exit(from, up, i)?, self.exit(to, up, i)?)));
+        let all: Vec<(f64, f64)> = faces.map(|(start, end)| (start, end - start)).collect();
+        let shares = all
+            .iter()
+            .try_fold([0.0, 1.0], |shares, exit| shares_between(shares, *exit, (0.0, f64::INFINITY)))?;
+        let middle = f64::midpoint(shares[0], shares[1]);
+        let at = |share: f64| move |(start, gain): &(f64, f64)| start + gain * share;
+        let nearest = all.iter().min_by(|a, b| at(middle)(a).total_cmp(&at(middle)(b)));
+        let height = |share: f64| nearest.map_or(f64::INFINITY, at(share)).min(self.max_height);
+        Some((shares, shares.map(height)))
+    }
+
+    /// Returns true if what is removed at a height above a tool of this direction is removed wherever it is above that.
+    pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
+        let is_open = |profile: &Profile| profile.parts.first().is_some_and(|part| part.to == f64::INFINITY);
+        self.common_axis.is_none_or(|common| common == Some(*axis)) && self.profiles.iter().all(is_open)
+    }
+
+    /// Returns the sweeps that may reach into a box.
+    pub(super) fn near(&self, [low, high]: &[Point3<f64>; 2]) -> NearSweeps<'_> {
+        let mut heads = BinaryHeap::new();
+        if self.is_last_open {
+            heads.push(self.sweeps.len() as u32 - 1);
         }
-        let Some([first, last]) = shares.extent() else { return };
-        let along = travel[1] - travel[0];
-        let (from, to) = (travel[0] + along * first, travel[0] + along * last);
         for (level, cells) in &self.levels {
             let half = Vector3::repeat(size_of(*level) / 2.0);
-            let (low, high) =
-                (cell_of(&(from.inf(&to) - half), *level), cell_of(&(from.sup(&to) + half), *level));
-            let mut in_cell = |last: u32| {
-                let mut next = last;
-                while let Some(sweep) = self.sweeps.get(next as usize) {
-                    if by_sweep(sweep, shares) {
-                        return true;
-                    }
-                    next = sweep.previous;
+            let (low, high) = (cell_of(&(low - half), *level), cell_of(&(high + half), *level));
+            let count = (0..3).map(|i| f64::from(high[i]) - f64::from(low[i]) + 1.0).product::<f64>();
+            if (cells.len() as f64) < count {
+                let is_near = |cell: &[i32; 3]| (0..3).all(|i| low[i] <= cell[i] && cell[i] <= high[i]);
+                heads.extend(cells.iter().filter(|(cell, _)| is_near(cell)).map(|(_, last)| *last));
+                continue;
+            }
+            for x in low[0]..=high[0] {
+                for y in low[1]..=high[1] {
+                    heads.extend((low[2]..=high[2]).filter_map(|z| cells.get(&[x, y, z])));
                 }
-                false
-            };
-            let count = (0..3).map(|i| (high[i] - low[i] + 1) as f64).product::<f64>();
-            let is_covered = match (cells.len() as f64) < count {
-                true => cells.values().any(|last| in_cell(*last)),
-                false => (low[0]..=high[0]).any(|x| {
-                    (low[1]..=high[1]).any(|y| {
-                        (low[2]..=high[2]).any(|z| cells.get(&[x, y, z]).is_some_and(|last| in_cell(*last)))
-                    })
-                }),
-            };
-            if is_covered {
-                return;
             }
         }
+        NearSweeps { removed: self, found: RefCell::default(), heads: RefCell::new(heads) }
+    }
+}
+
+/// Sweeps that may reach into a box, found as far as they are needed: the last ones first, and before them those that have
+/// covered something.
+#[derive(Debug)]
+pub(super) struct NearSweeps<'r> {
+    removed: &'r RemovedMetal,
+    found: RefCell<Vec<u32>>,
+    /// Next sweep of each chain.
+    heads: RefCell<BinaryHeap<u32>>,
+}
+
+impl NearSweeps<'_> {
+    /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included. `is_certain` leaves
+    /// out tools of unknown diameter.
+    pub(super) fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
+        let mut found = self.found.borrow_mut();
+        let mut index = 0;
+        while !shares.is_empty() {
+            if index == found.len() && !self.find_next(&mut found) {
+                return;
+            }
+            let sweep = &self.removed.sweeps[found[index] as usize];
+            let profile = &self.removed.profiles[sweep.profile as usize];
+            let mut has_covered = false;
+            for part in profile.parts.iter().filter(|_| profile.is_certain || !is_certain) {
+                has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, line)));
+            }
+            if has_covered {
+                found.swap(index, index / 2);
+            }
+            index += 1;
+        }
+    }
+
+    fn find_next(&self, found: &mut Vec<u32>) -> bool {
+        let mut heads = self.heads.borrow_mut();
+        let Some(next) = heads.pop() else { return false };
+        found.push(next);
+        let previous = self.removed.sweeps[next as usize].previous;
+        if previous != NONE {
+            heads.push(previous);
+        }
+        true
     }
 }
 
@@ -304,8 +360,8 @@ mod tests {
 
     fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f64; 2]> {
         let mut shares = Shares::default();
-        shares.push([0.0, 1.0]);
-        removed.uncover(&[from, to], true, &mut shares);
+        shares.extend([[0.0, 1.0]]);
+        removed.near(&[from.inf(&to), from.sup(&to)]).uncover(&Strip::line([from, to]), true, &mut shares);
         let mut pieces: Vec<_> =
             shares.pieces().iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
         pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));

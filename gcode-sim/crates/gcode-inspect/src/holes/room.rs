@@ -14,8 +14,10 @@ impl KnownMetal {
         part: &ToolPart,
     ) -> bool {
         let base = tips.map(|tip| tip + axis.into_inner() * part.from);
-        let height =
-            self.removed.height_of_metal(&base[0], axis).max(self.removed.height_of_metal(&base[1], axis));
+        let height = base
+            .map(|p| self.removed.height_of_round(&p, axis, part.radius()))
+            .into_iter()
+            .fold(0.0, f64::max);
         let is_in_box = self.pockets.iter().any(|pocket| {
             let Surface::Block { min, max } = pocket else { return false };
             let radius = part.radius();

@@ -7,9 +7,9 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    /// Adds a piece.
-    pub(super) fn push(&mut self, piece: [f64; 2]) {
-        self.pieces.push(piece);
+    /// Adds disjoint pieces.
+    pub(super) fn extend(&mut self, pieces: impl IntoIterator<Item = [f64; 2]>) {
+        self.pieces.extend(pieces);
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -20,24 +20,22 @@ impl Shares {
         &self.pieces
     }
 
-    /// Returns the least and the largest share.
-    pub(super) fn extent(&self) -> Option<[f64; 2]> {
-        self.pieces.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-    }
-
-    /// Takes away the shares between two.
-    pub(super) fn take_away(&mut self, [from, to]: [f64; 2]) {
-        let mut index = 0;
+    /// Takes away a piece; returns true if any of it was there.
+    pub(super) fn take_away(&mut self, piece: Option<[f64; 2]>) -> bool {
+        let Some([from, to]) = piece else { return false };
+        let (mut index, mut is_taken) = (0, false);
         while let Some([first, last]) = self.pieces.get(index).copied() {
             if last < from || to < first {
                 index += 1;
                 continue;
             }
+            is_taken = true;
             self.pieces.swap_remove(index);
             // What lies before and behind is disjoint from the shares taken away.
             let before = (first < from).then_some([first, from.next_down()]);
             let behind = (to < last).then_some([to.next_up(), last]);
             self.pieces.extend(before.into_iter().chain(behind));
         }
+        is_taken
     }
 }

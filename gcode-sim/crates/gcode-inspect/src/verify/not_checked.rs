@@ -90,14 +90,33 @@ pub(super) fn list(
         let (what, reason) = unknown.describe(locate(unknown.backtrace.block));
         all.push(NotChecked::gap(what, reason));
     }
-    if let Some(unsearched) = &extraction.unsearched_rapids {
-        let (program, line) = locate(unsearched.backtrace.block);
-        let count = unsearched.count;
-        let plural = if count == 1 { "" } else { "s" };
-        let what = "rapids whose axes may reach too many positions";
-        let reason =
-            format!("{count} rapid{plural}, first {program} line {line}; give [rapid] in the machine file");
-        all.push(NotChecked::gap(what, reason));
+    let unsearched = [
+        (
+            &extraction.unsearched_rapids,
+            "rapids whose axes may reach too many positions",
+            "rapid",
+            "give [rapid] in the machine file",
+        ),
+        (
+            &extraction.unsearched_feeds,
+            "the side of the tool in some feeds",
+            "feed",
+            "an axis rotates near the metal, or the metal beside them is cut too finely",
+        ),
+        (
+            &extraction.probes_in_metal,
+            "what probing moves touch",
+            "move",
+            "G31 leads through metal, and the machine file has no [probe]",
+        ),
+    ];
+    for (motions, what, kind, reason) in unsearched {
+        if let Some((first, count)) = motions.first() {
+            let (program, line) = locate(first.block);
+            let plural = if *count == 1 { "" } else { "s" };
+            let reason = format!("{count} {kind}{plural}, first {program} line {line}; {reason}");
+            all.push(NotChecked::gap(what, reason));
+        }
     }
     for tool in &extraction.unsized_mills {
         let tool = tool_name(*tool);

@@ -34,11 +34,6 @@ const MAX_REFINEMENTS: usize = 1000;
 const ALL_CELLS: usize = 1_000_000;
 const FEW_CELLS: usize = 200;
 
-/// Distance of the travels that fill a box, mm, and their largest number along one of its sides.
-const TRAVEL_DISTANCE: f64 = 0.5;
-const MAX_TRAVELS: u32 = 64;
-const FEW_TRAVELS: u32 = 8;
-
 /// Largest number of parameters of a cell: the axes, and three of the tool.
 const MAX_PARAMETERS: usize = MAX_AXES + 3;
 
@@ -173,25 +168,11 @@ impl<'m> AxisBox<'m> {
         Some((0..1_u32 << self.groups.len()).map(tip).collect())
     }
 
-    /// Returns travels of the tip along the longest side of the box, close together; `None` if an axis rotates.
-    pub(super) fn travels(&self) -> Option<Vec<[Point3<f64>; 2]>> {
+    /// Returns the tip at the start and the sides of the box; `None` if an axis rotates.
+    pub(super) fn sides(&self) -> Option<(Point3<f64>, Vec<Vector3<f64>>)> {
         let corners = self.straight_corners()?;
         let first = *corners.first()?;
-        let mut sides: Vec<Vector3<f64>> =
-            (0..self.groups.len()).map(|side| corners[1 << side] - first).collect();
-        sides.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
-        let (along, across) = sides.split_first()?;
-        let most = if across.len() < 2 { MAX_TRAVELS } else { FEW_TRAVELS };
-        let mut starts = vec![first];
-        for side in across {
-            let steps = ((side.norm() / TRAVEL_DISTANCE).ceil() as u32).clamp(1, most);
-            let share = |step: u32| f64::from(step) / f64::from(steps);
-            starts = starts
-                .iter()
-                .flat_map(|start| (0..=steps).map(move |step| start + side * share(step)))
-                .collect();
-        }
-        Some(starts.into_iter().map(|start| [start, start + along]).collect())
+        Some((first, (0..self.groups.len()).map(|side| corners[1 << side] - first).collect()))
     }
 
     /// Returns a corner, and the axes that have arrived there, as bits; bit n of `corner` is the n-th group of axes.

@@ -1,0 +1,70 @@
+//! Boring bars that are shifted off the wall of their hole with the spindle stopped.
+use nalgebra::Point3;
+
+use super::line::MAX_BAR_SHIFT;
+use super::{HoleExtractor, MotionKind};
+use crate::machine::{TOUCH_DEPTH, ToolKind};
+use gcode_lang::motion::{Event, SpindleDirection};
+use gcode_lang::source::Span;
+
+/// Shift of a boring bar. A shift before the bar goes down a hole counts if a cycle makes both, or if the machine file says that the
+/// tool is a boring bar.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct BarShift {
+    /// The bar has cut backwards and is shifted by the current motion.
+    pub is_back_bored: bool,
+    /// Tip before the shift, while the bar is shifted.
+    home: Option<Point3<f64>>,
+    /// The same after the current motion, if that begins or ends a shift, and its block.
+    next: Option<(Option<Point3<f64>>, Span)>,
+}
+
+impl HoleExtractor<'_> {
+    /// Returns the radius of the tool; `None` if it is unknown, and while it is a boring bar that is shifted off the wall.
+    pub(super) fn tool_radius(&self) -> Option<f64> {
+        if self.bar_shift.home.is_some() {
+            return None;
+        }
+        self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
+    }
+
+    /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be.
+    pub(super) fn may_be_shifted(&self) -> bool {
+        let kind = self.machine.kind_of(self.setup.tool);
+        let may_be_bar = kind.map_or(self.has_tool_turned, |kind| kind == ToolKind::BoringBar);
+        may_be_bar && self.cutting_state.spindle_direction == SpindleDirection::Off
+    }
+
+    /// Follows a motion that begins or ends a shift, on the line that the bar has cut or before it goes down a hole.
+    pub(super) fn follow_bar_shift(&mut self, event: &Event<'_>, kind: MotionKind, from: &Point3<f64>) {
+        let is_shifted = self.current_line.as_ref().is_some_and(|line| line.is_bar_shifted());
+        let is_on_line = std::mem::take(&mut self.bar_shift.is_back_bored) || is_shifted;
+        if let Some((next, block)) = self.bar_shift.next.take() {
+            let is_meant = self.machine.kind_of(self.setup.tool).is_some() || event.block == block;
+            self.bar_shift.home = next.filter(|_| is_meant);
+        }
+        if !self.may_be_shifted() {
+            self.bar_shift.home = None;
+            return;
+        }
+        let to = self.pose.tip;
+        let Some(axis) = self.axis_in_motion(from, &to).filter(|_| kind == MotionKind::Rapid) else { return };
+        let split = |p: &Point3<f64>| {
+            let (along, by) = ((to - p).dot(&axis), to - p);
+            (along.abs(), (by - axis.into_inner() * along).norm())
+        };
+        let (along, across) = split(from);
+        if across <= TOUCH_DEPTH {
+            return;
+        }
+        match self.bar_shift.home {
+            Some(home) if split(&home).1 <= TOUCH_DEPTH => self.bar_shift.next = Some((None, event.block)),
+            Some(_) => self.bar_shift.home = None,
+            None if is_on_line => self.bar_shift.home = Some(*from),
+            None if along <= TOUCH_DEPTH && across <= MAX_BAR_SHIFT => {
+                self.bar_shift.next = Some((Some(*from), event.block));
+            }
+            None => {}
+        }
+    }
+}

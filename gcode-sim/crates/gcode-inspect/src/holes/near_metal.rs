@@ -1,0 +1,239 @@
+//! Metal near a motion that is judged: shares of lines and strips in it, and an exact search of strips for it.
+use std::cell::OnceCell;
+
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::metal::{KnownMetal, MAX_OFFSET, PointInMetal, ROUNDING, SIDE_SLACK};
+use super::removed_metal::NearSweeps;
+use super::shares::Shares;
+use super::strip::{Line, Strip};
+use crate::machine::TOUCH_DEPTH;
+use gcode_part::{Collar, NOISE, Step, Taper};
+
+/// Margin above a hole within which its room is looked for, mm.
+pub(super) const MAX_HEIGHT: f64 = 50.0;
+
+/// Least length of a piece in metal, mm; a shorter one is rounding.
+const MIN_PIECE: f64 = 1e-3;
+
+/// Largest number of strips that are halved in one search.
+const MAX_HALVED: usize = 4000;
+
+/// Number of steps to the deepest point once there is one.
+const DEPTH_STEPS: u32 = 12;
+
+/// Part of the tool whose feed is judged.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum FeedPart {
+    Tip,
+    /// The side of a part of this radius, a cone if it has a slope.
+    Side {
+        radius: f64,
+        slope: f64,
+    },
+}
+
+/// Metal that a part of the tool must not meet.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Judged<'c> {
+    /// All that no feed has removed, above the plane of a hole's entry if there is one.
+    Uncut(Option<&'c Collar>),
+    /// What has to stay: neither in a nominal hole nor in a pocket, nor removed before.
+    Kept(FeedPart),
+}
+
+/// Result of a search.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Contact {
+    Clear,
+    Metal(PointInMetal),
+    /// The search was given up.
+    Unknown,
+}
+
+/// Metal that is judged near one motion.
+pub(super) struct NearMetal<'m> {
+    metal: &'m KnownMetal,
+    judged: Judged<'m>,
+    bounds: [Point3<f64>; 2],
+    /// Sweeps and nominal holes near the motion, found when they are needed.
+    sweeps: OnceCell<NearSweeps<'m>>,
+    rooms: OnceCell<Vec<&'m Collar>>,
+}
+
+impl<'m> NearMetal<'m> {
+    /// Returns the metal in a box.
+    pub(super) fn new(metal: &'m KnownMetal, bounds: [Point3<f64>; 2], judged: Judged<'m>) -> Self {
+        Self { metal, judged, bounds, sweeps: OnceCell::new(), rooms: OnceCell::new() }
+    }
+
+    /// Returns the metal near some strips.
+    pub(super) fn of_strips<'s>(
+        metal: &'m KnownMetal,
+        strips: impl IntoIterator<Item = &'s Strip>,
+        judged: Judged<'m>,
+    ) -> Self {
+        let all = strips.into_iter().map(Strip::bounds);
+        let bounds = all.reduce(|[low, high], [p, q]| [low.inf(&p), high.sup(&q)]);
+        Self::new(metal, bounds.unwrap_or([Point3::origin(); 2]), judged)
+    }
+
+    /// Returns the deepest point of a line in the metal.
+    pub(super) fn on_line(&self, line: &Line) -> Option<PointInMetal> {
+        self.metal.deepest(line, &self.shares(&Strip::line(*line)))
+    }
+
+    /// Finds metal on some strips: its deepest point on an edge, or else between two edges.
+    pub(super) fn contact(&self, strips: &[Strip]) -> Contact {
+        let is_open = |strip: &Strip| !self.is_clear(strip);
+        let mut pending: Vec<Strip> = strips.iter().copied().filter(is_open).collect();
+        let edges = pending.iter().flat_map(|strip| &strip.edges);
+        if let Some(found) = edges.filter_map(|line| self.on_line(line)).reduce(PointInMetal::deeper) {
+            return Contact::Metal(found);
+        }
+        let mut halved = 0;
+        while !pending.is_empty() {
+            pending.retain(|strip| TOUCH_DEPTH < strip.width());
+            halved += pending.len();
+            if MAX_HALVED < halved {
+                return Contact::Unknown;
+            }
+            let found = pending.iter().filter_map(|strip| Some((self.on_line(&strip.middle())?, strip)));
+            if let Some((found, strip)) = found.reduce(|a, b| if a.0.depth < b.0.depth { b } else { a }) {
+                return Contact::Metal(self.deepest_about(strip, found));
+            }
+            pending = pending.iter().flat_map(Strip::halves).filter(is_open).collect();
+        }
+        Contact::Clear
+    }
+
+    /// Returns the deepest point of a strip about the one that is found on its middle.
+    fn deepest_about(&self, strip: &Strip, mut found: PointInMetal) -> PointInMetal {
+        let ([mut low, mut high], mut middle) = (strip.edges, strip.middle());
+        for _ in 0..DEPTH_STEPS {
+            let sides = [low, high].map(|edge| Strip::between(edge, middle).middle());
+            let depths = sides.map(|line| self.on_line(&line));
+            let [one, other] = depths.map(|at| at.map_or(f64::NEG_INFINITY, |at| at.depth));
+            (low, middle, high) = match () {
+                () if found.depth < one && other <= one => (low, sides[0], middle),
+                () if found.depth < other => (middle, sides[1], high),
+                () => (sides[0], middle, sides[1]),
+            };
+            found = depths.into_iter().flatten().fold(found, PointInMetal::deeper);
+        }
+        found
+    }
+
+    /// Returns true if no metal is on a strip, false if there may be some.
+    fn is_clear(&self, strip: &Strip) -> bool {
+        let length = strip.length();
+        self.shares(strip).pieces().iter().all(|piece| is_rounding(length, *piece))
+    }
+
+    /// Returns shares of a strip outside which it is in no metal that is judged; those of a line are exact.
+    fn shares(&self, strip: &Strip) -> Shares {
+        match self.judged {
+            Judged::Uncut(hole) => self.uncut(strip, hole),
+            Judged::Kept(part) => self.kept(strip, part),
+        }
+    }
+
+    /// Returns shares of a strip outside which it is in no metal, cut or not, or which its first edge decides.
+    fn solid(&self, strip: &Strip, is_counted: impl Fn(usize) -> bool) -> Shares {
+        let mut shares = self.metal.solid(strip, is_counted);
+        if strip.is_on_first {
+            let [from, to] = &strip.edges[0];
+            shares.take_away(self.metal.body.and_then(|body| body.piece(from, to, TOUCH_DEPTH)));
+        }
+        shares
+    }
+
+    fn uncut(&self, strip: &Strip, hole: Option<&Collar>) -> Shares {
+        let mut shares = self.solid(strip, |_| true);
+        if let Some(hole) = hole {
+            shares.take_away(strip.piece(|[from, to]| hole.piece_below_entry(from, to)));
+        }
+        self.uncover(strip, false, &mut shares);
+        shares
+    }
+
+    fn kept(&self, strip: &Strip, part: FeedPart) -> Shares {
+        let Some(holes) = self.metal.holes.as_deref() else { return Shares::default() };
+        // Without a diameter the wall of a hole is unknown.
+        let mut shares = self.solid(strip, |hole| holes.collar(hole).has_diameter);
+        for pocket in &self.metal.pockets {
+            if shares.is_empty() {
+                return shares;
+            }
+            shares.take_away(strip.piece(|[from, to]| pocket.piece(from, to, -TOUCH_DEPTH)));
+        }
+        if shares.is_empty() {
+            return shares;
+        }
+        let mut take_away = |collar: &Collar, room: &Step| {
+            for index in 0..if room.taper.slope == 0.0 { 1 } else { 2 } {
+                shares.take_away(strip.piece(|[from, to]| collar.pieces_of_step(from, to, room)[index]));
+            }
+        };
+        for collar in self.rooms(part) {
+            if let FeedPart::Side { slope, .. } = part {
+                collar.edge_break(slope).iter().for_each(|edge| take_away(collar, edge));
+            }
+            for step in &collar.steps {
+                let Taper { radius, slope } = step.taper;
+                let taper = match part {
+                    FeedPart::Tip if slope == 0.0 => Taper::cylinder(radius.max(MAX_OFFSET) + ROUNDING),
+                    FeedPart::Tip => Taper { radius: radius + MAX_OFFSET, slope },
+                    FeedPart::Side { .. } if collar.has_diameter => {
+                        Taper { radius: radius + SIDE_SLACK, slope }
+                    }
+                    FeedPart::Side { radius, .. } => Taper::cylinder(2.0 * radius),
+                };
+                take_away(collar, &Step { taper, max_depth: step.max_depth + TOUCH_DEPTH });
+            }
+        }
+        // Many feeds may have been here: they come last.
+        self.uncover(strip, true, &mut shares);
+        shares
+    }
+
+    /// Returns true if metal that is left in the body stands on metal that is left below it, seen along a tool.
+    pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
+        let has_room = match self.judged {
+            Judged::Uncut(_) => true,
+            Judged::Kept(part) => {
+                let is_along = |hole: &&Collar| 1.0 - NOISE <= hole.rod.axis.dot(axis);
+                self.metal.are_pockets_open(axis) && self.rooms(part).iter().all(is_along)
+            }
+        };
+        has_room && self.metal.removed.is_open_along(axis)
+    }
+
+    /// Returns the nominal holes in or above whose room the motion may be.
+    fn rooms(&self, part: FeedPart) -> &[&'m Collar] {
+        self.rooms.get_or_init(|| {
+            let margin = match part {
+                FeedPart::Tip => 0.0,
+                FeedPart::Side { radius, .. } => 2.0 * radius,
+            };
+            let mut rooms = Vec::new();
+            if let Some(holes) = self.metal.holes.as_deref() {
+                let [low, high] = &self.bounds;
+                holes.below(low, high, (margin, MAX_HEIGHT), &mut |hole| rooms.push(holes.collar(hole)));
+            }
+            rooms
+        })
+    }
+
+    fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
+        if !shares.is_empty() {
+            let sweeps = self.sweeps.get_or_init(|| self.metal.removed.near(&self.bounds));
+            sweeps.uncover(strip, is_certain, shares);
+        }
+    }
+}
+
+/// Returns true if a piece of a line of this length is due to rounding.
+pub(super) fn is_rounding(length: f64, [first, last]: [f64; 2]) -> bool {
+    length * (last - first) < MIN_PIECE && MIN_PIECE < length
+}
