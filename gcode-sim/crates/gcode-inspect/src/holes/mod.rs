@@ -12,6 +12,7 @@ mod cutting;
 mod drill_pass;
 #[cfg(test)]
 pub(crate) mod event_script;
+mod extraction;
 mod feed_law;
 mod group;
 mod hole_circles;
@@ -45,6 +46,7 @@ mod wall_cut;
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
 pub use drill_pass::{Helix, MilledCut, PassCut};
+pub use extraction::HoleExtraction;
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
@@ -80,49 +82,10 @@ use gcode_lang::motion::{
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
-use gcode_part::{HoleList, Metal, ProcessLimits, Surface, Unit};
+use gcode_part::{Metal, ProcessLimits, Surface};
 
 /// Largest number of passes that are kept: an endless loop must not fill the memory.
 const MAX_PASSES: usize = 200_000;
-
-/// Holes that a program drills, and findings about the motion of the tool.
-#[derive(Clone, Debug, Default)]
-pub struct HoleExtraction {
-    /// Holes, in the order in which they are begun.
-    pub holes: Vec<DrilledHole>,
-    /// Findings about motion.
-    pub findings: Vec<Diagnostic>,
-    /// Motion near the part; empty if the part's surface is unknown.
-    pub(crate) close_motions: Vec<CloseMotion>,
-    /// Conditions of all cuts.
-    pub(crate) cut_conditions: Vec<CutConditions>,
-    /// Feeds of tools whose length differs from their length offset.
-    pub(crate) length_mismatches: Vec<LengthMismatch>,
-    /// Rapids whose path over the part is unknown; `None` if there are none.
-    pub(crate) unknown_rapids: Option<UnknownRapids>,
-    /// Rotary axes of the default machine that the program never commands, as bits; they count as 0.
-    pub(crate) assumed_axes: u8,
-    /// Limits with which the motion was compared.
-    pub(crate) process_limits: ProcessLimits,
-    /// The stock or the surface is known, and all motion was compared with it.
-    pub(crate) is_metal_known: bool,
-    /// Rapids whose paths are not searched to the end.
-    pub(crate) unsearched_rapids: UnsearchedMotions,
-    /// Feeds beside which the metal is not compared with all of the tool.
-    pub(crate) unsearched_feeds: UnsearchedMotions,
-    /// Probing moves through metal.
-    pub(crate) probes_in_metal: UnsearchedMotions,
-    /// Tools of unknown diameter that mill a known body: what they remove is unknown.
-    pub(crate) unsized_mills: Vec<Option<u32>>,
-    /// Indices of the nominal holes whose entries are under metal that no feed removes.
-    pub(crate) covered_entries: Vec<usize>,
-    /// Number of strokes of mills that count as milling.
-    pub(crate) milled_strokes: u64,
-    /// Ends of the first feeds along the tool that go beside the part.
-    pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
-    /// Feeds were too many for their metal to be followed.
-    pub(crate) is_removal_cut_short: bool,
-}
 
 /// Sink for the events of a run that extracts the holes.
 #[derive(Debug)]
@@ -508,13 +471,5 @@ impl EventSink for HoleExtractor<'_> {
             }
             EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}
         }
-    }
-}
-
-impl HoleExtraction {
-    /// Returns the holes as a list; `locate` returns the program and the line of a block.
-    pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
-        let holes = self.holes.iter().map(|hole| hole.hole(&locate)).collect();
-        HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None, stopped: None }
     }
 }

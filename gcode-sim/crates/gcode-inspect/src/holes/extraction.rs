@@ -1,0 +1,56 @@
+//! Result of following a run: its holes, the findings about its motion, and what was not compared.
+use nalgebra::Point3;
+
+use super::clearance::CloseMotion;
+use super::{CutConditions, DrilledHole, LengthMismatch, UnknownRapids, UnsearchedMotions};
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::Backtrace;
+use gcode_lang::source::Span;
+use gcode_part::{HoleList, ProcessLimits, Unit};
+
+/// Holes that a program drills, and findings about the motion of the tool.
+#[derive(Clone, Debug, Default)]
+pub struct HoleExtraction {
+    /// Holes, in the order in which they are begun.
+    pub holes: Vec<DrilledHole>,
+    /// Findings about motion.
+    pub findings: Vec<Diagnostic>,
+    /// Motion near the part; empty if the part's surface is unknown.
+    pub(crate) close_motions: Vec<CloseMotion>,
+    /// Conditions of all cuts.
+    pub(crate) cut_conditions: Vec<CutConditions>,
+    /// Feeds of tools whose length differs from their length offset.
+    pub(crate) length_mismatches: Vec<LengthMismatch>,
+    /// Rapids whose path over the part is unknown; `None` if there are none.
+    pub(crate) unknown_rapids: Option<UnknownRapids>,
+    /// Rotary axes of the default machine that the program never commands, as bits; they count as 0.
+    pub(crate) assumed_axes: u8,
+    /// Limits with which the motion was compared.
+    pub(crate) process_limits: ProcessLimits,
+    /// The stock or the surface is known, and all motion was compared with it.
+    pub(crate) is_metal_known: bool,
+    /// Rapids whose paths are not searched to the end.
+    pub(crate) unsearched_rapids: UnsearchedMotions,
+    /// Feeds beside which the metal is not compared with all of the tool.
+    pub(crate) unsearched_feeds: UnsearchedMotions,
+    /// Probing moves through metal.
+    pub(crate) probes_in_metal: UnsearchedMotions,
+    /// Tools of unknown diameter that mill a known body: what they remove is unknown.
+    pub(crate) unsized_mills: Vec<Option<u32>>,
+    /// Indices of the nominal holes whose entries are under metal that no feed removes.
+    pub(crate) covered_entries: Vec<usize>,
+    /// Number of strokes of mills that count as milling.
+    pub(crate) milled_strokes: u64,
+    /// Ends of the first feeds along the tool that go beside the part.
+    pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
+    /// Feeds were too many for their metal to be followed.
+    pub(crate) is_removal_cut_short: bool,
+}
+
+impl HoleExtraction {
+    /// Returns the holes as a list; `locate` returns the program and the line of a block.
+    pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
+        let holes = self.holes.iter().map(|hole| hole.hole(&locate)).collect();
+        HoleList { unit: Unit::Mm, holes, stock: None, assumptions: None, stopped: None }
+    }
+}
