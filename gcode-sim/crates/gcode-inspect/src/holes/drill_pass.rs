@@ -20,6 +20,8 @@ pub struct PassCut {
     pub direction: SpindleDirection,
     /// True if the spindle reverses in the hole, as it does for a tap.
     pub is_tapping: bool,
+    /// True if a canned cycle makes it.
+    pub is_cycle: bool,
     /// Run of rigid tapping: in one run the spindle keeps its angle at each height; 0 outside.
     pub rigid_run: u32,
     /// Figures of a mill's circle; `None` for a stroke.
@@ -56,7 +58,17 @@ impl PassCut {
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
         let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
-        Self { start, bottom, feed: None, speed, direction, is_tapping: false, rigid_run: 0, milled: None }
+        Self {
+            start,
+            bottom,
+            feed: None,
+            speed,
+            direction,
+            is_tapping: false,
+            is_cycle: false,
+            rigid_run: 0,
+            milled: None,
+        }
     }
 }
 

@@ -58,7 +58,10 @@ impl HoleExtractor<'_> {
             let is_fed_inside = is_forward && TOUCH_DEPTH < s.depth(&line.start);
             0.0 <= slope && !is_fed_inside && !(is_parallel && may_cut())
         });
-        if is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH) {
+        // What a canned cycle drills beside the part, below its top, is a hole in something else.
+        let is_beside = surface.is_some_and(|s| line.is_cycle && s.is_beside(&line.bottom(), &line.out));
+        let is_in_air = is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH);
+        if is_in_air && !is_beside {
             if line.is_inward() && self.feeds_in_air.len() < MAX_FEEDS_IN_AIR {
                 self.feeds_in_air.push((line.bottom(), line.backtrace().clone()));
             }
