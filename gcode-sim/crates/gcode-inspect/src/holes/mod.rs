@@ -25,6 +25,7 @@ mod milled;
 mod milling;
 mod near_metal;
 pub(crate) mod per_block;
+mod probing;
 mod profile;
 mod rapid_paths;
 mod rapids;
@@ -408,20 +409,6 @@ impl<'m> HoleExtractor<'m> {
         self.update_start();
     }
 
-    /// Returns the kind of a probing move: a feed if a tool of some kind goes through metal, since tools of all kinds cut. Other ones
-    /// through metal are counted.
-    fn kind_of_probing(&mut self, event: &Event<'_>, from: &Point3<f64>) -> MotionKind {
-        let is_cutter = self.machine.kind_of(self.setup.tool).is_some();
-        match self.metal.uncut(&[*from, self.pose.tip]) {
-            Some(_) if is_cutter => MotionKind::Feed,
-            Some(_) => {
-                self.probes_in_metal.count(event);
-                MotionKind::Probe
-            }
-            None => MotionKind::Probe,
-        }
-    }
-
     /// Applies a known end of a motion.
     fn update_start(&mut self) {
         self.has_left_start |= self.positions.is_known(self.machine);
@@ -451,12 +438,8 @@ impl<'m> HoleExtractor<'m> {
 }
 
 impl EventSink for HoleExtractor<'_> {
-    /// Returns the probe's signal; `None` without a probe, or without a part that it could touch.
     fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
-        let (probe, surface) = (self.machine.probe.as_ref()?, self.surface.as_ref()?);
-        let signal = self.machine.probe(probe, feed, &self.setup, surface, self.probe_count);
-        self.probe_count += 1;
-        Some(signal)
+        self.signal_of_probe(feed)
     }
 
     fn event(&mut self, event: &Event<'_>) {
