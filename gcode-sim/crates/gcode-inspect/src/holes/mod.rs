@@ -63,7 +63,7 @@ use self::bar_shift::BarShift;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
-use self::feed_law::Gouge;
+use self::feed_law::Plunge;
 use self::line::CuttingLine;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
@@ -138,8 +138,8 @@ pub struct HoleExtractor<'m> {
     tool_body: Vec<ToolPart>,
     /// Parts of it that cut in a feed; `None` if its diameter is unknown.
     profile: Option<Profile>,
-    /// Gouge of the current line.
-    plunge_gouge: Option<Gouge>,
+    /// Feeds along the tool on the current line.
+    plunge: Option<Plunge>,
     /// Number of feeds with a gouge.
     gouge_count: u32,
     /// Ends of the first feeds along the tool that go beside the part.
@@ -210,7 +210,7 @@ impl<'m> HoleExtractor<'m> {
             setup,
             tool_body: Vec::new(),
             profile: None,
-            plunge_gouge: None,
+            plunge: None,
             gouge_count: 0,
             feeds_in_air: Vec::new(),
             unsized_mills: Vec::new(),
@@ -278,8 +278,11 @@ impl<'m> HoleExtractor<'m> {
 
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
+        let last_block = self.last_block.clone();
         self.end_in_metal();
         self.end_line(None);
+        let unsearched = last_block.filter(|_| self.is_feed_unsearched.get());
+        unsearched.into_iter().for_each(|block| self.unsearched_feeds.count(|| block));
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);

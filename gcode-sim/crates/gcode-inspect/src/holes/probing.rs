@@ -20,7 +20,7 @@ impl HoleExtractor<'_> {
         match self.metal.uncut(&[*from, self.pose.tip]) {
             Some(_) if is_cutter => MotionKind::Feed,
             Some(_) => {
-                self.probes_in_metal.count(event);
+                self.probes_in_metal.count(|| event.backtrace());
                 MotionKind::Probe
             }
             None => MotionKind::Probe,
