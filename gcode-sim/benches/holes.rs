@@ -1,13 +1,14 @@
 //! Time of a run of a program with many holes, and of their verification. Both should grow little more than in
 //! proportion to the number of holes.
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 use divan::counter::ItemsCount;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Tolerances};
 use gcode_lang::program::NoLibrary;
 use gcode_part::job::Job;
-use gcode_part::{NominalPart, Reference};
+use gcode_part::{EntryPlanes, Hole, Metal, NominalPart, Reference, Surface};
 use gcode_session::{Request, Simulation, simulate};
 
 fn main() {
@@ -108,4 +109,62 @@ fn verify(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
     let simulation = case.simulate();
     assert!(case.passes(&simulation), "the program drills the nominal holes");
     bencher.counter(ItemsCount::new(case.reference.holes.len())).bench_local(|| case.passes(&simulation));
+}
+
+/// Trochoidal loops in one pocket.
+const LOOPS: [u32; 3] = [500, 1000, 2000];
+
+const MILL: &str = r#"
+table = []
+[head]
+kind = "fixed"
+direction = [0.0, 0.0, 1.0]
+[rapid]
+straight = true
+[[tool]]
+number = 2
+length = 100.0
+diameter = 10.0
+kind = "end-mill"
+"#;
+
+/// Returns a program with loops of twelve chords on a path of radius 4 along x, and rapids back over the floor.
+fn loops(count: u32) -> String {
+    let mut text = "O1\nG21 G17 G40 G49 G54 G80 G90 G94\nT2 M06\nS6000 M03\nG43 H2 Z50.\nG0 X20. Y20.\nZ2.\nG1 Z-9. F500.\n\
+                    X102.\nX20.\n"
+        .to_owned();
+    for index in 0..count {
+        let x = 20.0 + 80.0 * f64::from(index) / f64::from(count);
+        for step in 1..=12 {
+            let angle = gcode_lang::units::Deg(f64::from(step) * 30.0);
+            let (x, y) = (x + 4.0 * angle.sin(), 24.0 - 4.0 * angle.cos());
+            writeln!(text, "G1 X{x:.3} Y{y:.3}").expect("a string can be written to");
+        }
+        let next = x + 80.0 / f64::from(count);
+        writeln!(text, "G0 Z-8.5\nX{next:.3}\nG1 Z-9.").expect("a string can be written to");
+    }
+    text + "G0 Z50.\nM30\n"
+}
+
+/// Compares the rapids of trochoidal milling with what the loops before have removed.
+#[divan::bench(args = LOOPS, sample_count = 5, sample_size = 1)]
+fn rapids_in_a_pocket(bencher: divan::Bencher<'_, '_>, count: u32) {
+    let block = |min: [f64; 3], max: [f64; 3]| Surface::Block { min: min.into(), max: max.into() };
+    let hole = Hole {
+        entry: [3.0, 3.0, 0.0],
+        axis: [0.0, 0.0, 1.0],
+        depth: 10.0,
+        diameter: Some(4.0),
+        ..Hole::default()
+    };
+    let metal = Metal {
+        body: Some(block([0.0, 0.0, -20.0], [120.0, 80.0, 0.0])),
+        entries: Some(Arc::new(EntryPlanes::of(&[hole], 0.1))),
+        pockets: vec![block([5.0, 5.0, -9.0], [115.0, 80.0, 0.0])],
+    };
+    let machine = Machine::parse(MILL).expect("the machine file is valid");
+    let request = Request::new("O1.nc", loops(count).into_bytes(), machine);
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| simulate(&request, &mut NoLibrary, metal.clone()).expect("there is a program"));
 }

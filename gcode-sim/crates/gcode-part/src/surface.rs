@@ -150,8 +150,8 @@ impl Surface {
             Self::Cylinder { radius } => about_origin(Vector3::new(f64::INFINITY, radius, radius)),
             Self::Block { min, max } => [min, max],
             Self::Rod(rod) => {
-                let (end, margin) =
-                    (rod.base + rod.axis.into_inner() * rod.length, Vector3::repeat(rod.radius));
+                let end = rod.base + rod.axis.into_inner() * rod.length;
+                let margin = rod.axis.map(|along| rod.radius * (1.0 - along * along).max(0.0).sqrt());
                 [rod.base.inf(&end) - margin, rod.base.sup(&end) + margin]
             }
         }

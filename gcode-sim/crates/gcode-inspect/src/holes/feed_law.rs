@@ -41,6 +41,16 @@ pub(super) struct Gouge {
     part: ToolRegion,
 }
 
+/// Feeds along the tool, on one line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plunge {
+    /// From the highest to the deepest tip.
+    travel: Line,
+    axis: Unit<Vector3<f64>>,
+    /// Number of sweeps before it.
+    before: u32,
+}
+
 /// Region of a tool that makes a gouge.
 #[derive(Clone, Copy, Debug)]
 enum ToolRegion {
@@ -97,20 +107,19 @@ impl HoleExtractor<'_> {
             // The direction of the tool is unknown, and the body is one that is drilled all round.
             let is_unclear =
                 self.pose.axis.is_none() && self.surface.is_some_and(|body| !body.has_flat_faces());
-            let gouge = match is_judged && !is_unclear {
-                true => self.gouge(&[from, to], &axis),
-                false => None,
-            };
             // A plunge may drill a hole: the motion after it shows that.
-            let all = if is_plunge { &mut self.plunge_gouge } else { &mut worst };
-            *all = Gouge::worse(*all, gouge);
+            match is_judged && !is_unclear {
+                true if is_plunge => self.record_plunge(&[from, to], &axis),
+                true => worst = Gouge::worse(worst, self.gouge(&[from, to], &axis, u32::MAX)),
+                false => {}
+            }
             self.remove(&[from, to], &axis);
         }
         if is_judged && worst.is_none() {
             worst = self.shank_contact(path);
         }
         if self.is_feed_unsearched.take() {
-            self.unsearched_feeds.count(event);
+            self.unsearched_feeds.count(|| event.backtrace());
         }
         if let Some(gouge) = worst {
             self.gouge_count += 1;
@@ -134,7 +143,7 @@ impl HoleExtractor<'_> {
         let side = FeedPart::Side { radius: self.body_radius(), slope: 0.0 };
         match at.and_then(|at| self.metal.gouge(&[at, at], side)) {
             Some(at) => self.report_gouge(&event.backtrace(), Gouge { at, part: ToolRegion::Side }),
-            None => self.unsearched_feeds.count(event),
+            None => self.unsearched_feeds.count(|| event.backtrace()),
         }
     }
 
@@ -203,19 +212,14 @@ impl HoleExtractor<'_> {
         self.metal.removed.add(from, to, *axis, &profile);
     }
 
-    /// Returns the gouge that a feed makes.
-    fn gouge(&self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
+    /// Returns the gouge that a feed makes in what is left of the metal by the first sweeps.
+    fn gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
         if self.surface.is_some() && !self.has_left_start {
             return None;
         }
-        let is_plunge = is_along(axis, &(travel[1] - travel[0]));
-        // Round the holes of a list the strokes along them are judged as holes.
-        if is_plunge && (self.surface.is_none() || self.metal.is_allowed(travel, axis, &self.flat_tool())) {
-            return None;
-        }
-        match self.metal.gouge(travel, FeedPart::Tip) {
+        match self.metal.judged_on(travel, Judged::Kept(FeedPart::Tip, sweeps)) {
             Some(at) => Some(Gouge { at, part: ToolRegion::Tip }),
-            None => self.side_gouge(travel, axis).or_else(|| self.gouge_beyond(travel)),
+            None => self.side_gouge(travel, axis, sweeps).or_else(|| self.gouge_beyond(travel)),
         }
     }
 
@@ -229,14 +233,14 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the gouge that the cutting parts of the tool make beside the path of its tip.
-    fn side_gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
+    fn side_gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
         self.pose.axis?;
         self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
             if !self.may_cut(part, travel, axis) || self.metal.is_allowed(travel, axis, part) {
                 return None;
             }
             let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
-            let at = self.contact_in_feed(part, axis, travel, Judged::Kept(side))?;
+            let at = self.contact_in_feed(part, axis, travel, Judged::Kept(side, sweeps))?;
             Some(Gouge { at, part: ToolRegion::Side })
         })
     }
@@ -314,12 +318,44 @@ impl HoleExtractor<'_> {
 
     /// Starts a line along the tool.
     pub(super) fn begin_plunge(&mut self) {
-        self.plunge_gouge = None;
+        self.plunge = None;
+    }
+
+    /// Records a feed along the tool. Round the holes of a list it is judged as a hole.
+    fn record_plunge(&mut self, travel: &Line, axis: &Unit<Vector3<f64>>) {
+        if self.surface.is_none() || !self.has_left_start {
+            return;
+        }
+        let [from, to] = *travel;
+        match &mut self.plunge {
+            Some(plunge) => {
+                let height = |p: &Point3<f64>| p.coords.dot(&plunge.axis);
+                let [mut top, mut bottom] = plunge.travel;
+                for p in [from, to] {
+                    (top, bottom) = (
+                        if height(&top) < height(&p) { p } else { top },
+                        if height(&p) < height(&bottom) { p } else { bottom },
+                    );
+                }
+                plunge.travel = [top, bottom];
+            }
+            None => {
+                let before = self.metal.removed.close();
+                self.plunge = Some(Plunge { travel: *travel, axis: *axis, before });
+            }
+        }
+    }
+
+    /// Returns the gouge of the current line, in the metal before it.
+    fn plunge_gouge(&self) -> Option<Gouge> {
+        let Plunge { travel, axis, before } = self.plunge?;
+        let is_allowed = self.metal.is_allowed(&travel, &axis, &self.flat_tool());
+        if is_allowed { None } else { self.gouge(&travel, &axis, before) }
     }
 
     /// Returns true if the current line makes a gouge.
     pub(super) fn has_gouged(&self, line: &CuttingLine) -> bool {
-        line.cutting_state.tool == self.setup.tool && self.plunge_gouge.is_some()
+        line.cutting_state.tool == self.setup.tool && self.plunge_gouge().is_some()
     }
 
     /// Returns true if all metal in which a line feeds is in a pocket.
@@ -343,7 +379,8 @@ impl HoleExtractor<'_> {
 
     /// Reports the gouge of the current line.
     pub(super) fn report_plunge(&mut self, backtrace: &Backtrace) {
-        if let Some(gouge) = self.plunge_gouge.take() {
+        if let Some(gouge) = self.plunge_gouge() {
+            self.plunge = None;
             self.report_gouge(backtrace, gouge);
         }
     }

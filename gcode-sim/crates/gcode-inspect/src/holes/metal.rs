@@ -145,10 +145,11 @@ impl KnownMetal {
 
     /// Returns the deepest point of a travel in metal that has to stay.
     pub(super) fn gouge(&self, travel: &Line, part: FeedPart) -> Option<PointInMetal> {
-        self.judged_on(travel, Judged::Kept(part))
+        self.judged_on(travel, Judged::Kept(part, u32::MAX))
     }
 
-    fn judged_on(&self, travel: &Line, judged: Judged<'_>) -> Option<PointInMetal> {
+    /// Returns the deepest point of a travel in metal that is judged.
+    pub(super) fn judged_on(&self, travel: &Line, judged: Judged<'_>) -> Option<PointInMetal> {
         let line = Strip::line(*travel);
         NearMetal::new(self, line.bounds(), judged).on_line(travel)
     }

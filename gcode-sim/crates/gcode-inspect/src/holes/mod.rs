@@ -26,6 +26,7 @@ mod milled;
 mod milling;
 mod near_metal;
 pub(crate) mod per_block;
+mod probing;
 mod profile;
 mod rapid_paths;
 mod rapids;
@@ -64,7 +65,7 @@ use self::bar_shift::BarShift;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
-use self::feed_law::Gouge;
+use self::feed_law::Plunge;
 use self::line::CuttingLine;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
@@ -100,8 +101,8 @@ pub struct HoleExtractor<'m> {
     tool_body: Vec<ToolPart>,
     /// Parts of it that cut in a feed; `None` if its diameter is unknown.
     profile: Option<Profile>,
-    /// Gouge of the current line.
-    plunge_gouge: Option<Gouge>,
+    /// Feeds along the tool on the current line.
+    plunge: Option<Plunge>,
     /// Number of feeds with a gouge.
     gouge_count: u32,
     /// Ends of the first feeds along the tool that go beside the part.
@@ -171,7 +172,7 @@ impl<'m> HoleExtractor<'m> {
             setup,
             tool_body: Vec::new(),
             profile: None,
-            plunge_gouge: None,
+            plunge: None,
             gouge_count: 0,
             feeds_in_air: Vec::new(),
             unsized_mills: Vec::new(),
@@ -239,8 +240,11 @@ impl<'m> HoleExtractor<'m> {
 
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
+        let last_block = self.last_block.clone();
         self.end_in_metal();
         self.end_line(None);
+        let unsearched = last_block.filter(|_| self.is_feed_unsearched.get());
+        unsearched.into_iter().for_each(|block| self.unsearched_feeds.count(|| block));
         self.end_engagement();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
@@ -370,20 +374,6 @@ impl<'m> HoleExtractor<'m> {
         self.update_start();
     }
 
-    /// Returns the kind of a probing move: a feed if a tool of some kind goes through metal, since tools of all kinds cut. Other ones
-    /// through metal are counted.
-    fn kind_of_probing(&mut self, event: &Event<'_>, from: &Point3<f64>) -> MotionKind {
-        let is_cutter = self.machine.kind_of(self.setup.tool).is_some();
-        match self.metal.uncut(&[*from, self.pose.tip]) {
-            Some(_) if is_cutter => MotionKind::Feed,
-            Some(_) => {
-                self.probes_in_metal.count(event);
-                MotionKind::Probe
-            }
-            None => MotionKind::Probe,
-        }
-    }
-
     /// Applies a known start, or a known end of a motion.
     fn update_start(&mut self) {
         self.has_left_start |= self.positions.is_known(self.machine);
@@ -413,12 +403,8 @@ impl<'m> HoleExtractor<'m> {
 }
 
 impl EventSink for HoleExtractor<'_> {
-    /// Returns the probe's signal; `None` without a probe, or without a part that it could touch.
     fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
-        let (probe, surface) = (self.machine.probe.as_ref()?, self.surface.as_ref()?);
-        let signal = self.machine.probe(probe, feed, &self.setup, surface, self.probe_count);
-        self.probe_count += 1;
-        Some(signal)
+        self.signal_of_probe(feed)
     }
 
     fn event(&mut self, event: &Event<'_>) {

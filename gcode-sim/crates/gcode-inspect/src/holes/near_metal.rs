@@ -38,8 +38,8 @@ pub(super) enum FeedPart {
 pub(super) enum Judged<'c> {
     /// All that no feed has removed, above the plane of a hole's entry if there is one.
     Uncut(Option<&'c Collar>),
-    /// What has to stay: neither in a nominal hole nor in a pocket, nor removed before.
-    Kept(FeedPart),
+    /// What has to stay: neither in a nominal hole nor in a pocket, nor removed by this many first sweeps.
+    Kept(FeedPart, u32),
 }
 
 /// Result of a search.
@@ -134,7 +134,7 @@ impl<'m> NearMetal<'m> {
     fn shares(&self, strip: &Strip) -> Shares {
         match self.judged {
             Judged::Uncut(hole) => self.uncut(strip, hole),
-            Judged::Kept(part) => self.kept(strip, part),
+            Judged::Kept(part, _) => self.kept(strip, part),
         }
     }
 
@@ -201,7 +201,7 @@ impl<'m> NearMetal<'m> {
     pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
         let has_room = match self.judged {
             Judged::Uncut(_) => true,
-            Judged::Kept(part) => {
+            Judged::Kept(part, _) => {
                 let is_along = |hole: &&Collar| 1.0 - NOISE <= hole.rod.axis.dot(axis);
                 self.metal.are_pockets_open(axis) && self.rooms(part).iter().all(is_along)
             }
@@ -227,7 +227,8 @@ impl<'m> NearMetal<'m> {
 
     fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
         if !shares.is_empty() {
-            let sweeps = self.sweeps.get_or_init(|| self.metal.removed.near(&self.bounds));
+            let count = if let Judged::Kept(_, sweeps) = self.judged { sweeps } else { u32::MAX };
+            let sweeps = self.sweeps.get_or_init(|| self.metal.removed.near(&self.bounds, count));
             sweeps.uncover(strip, is_certain, shares);
         }
     }

@@ -19,8 +19,8 @@ pub(crate) struct UnsearchedMotions(Option<(Backtrace, u64)>);
 
 impl UnsearchedMotions {
     /// Counts a motion whose search was given up.
-    pub(super) fn count(&mut self, event: &Event<'_>) {
-        self.0.get_or_insert_with(|| (event.backtrace(), 0)).1 += 1;
+    pub(super) fn count(&mut self, backtrace: impl FnOnce() -> Backtrace) {
+        self.0.get_or_insert_with(|| (backtrace(), 0)).1 += 1;
     }
 
     /// Returns the block of the first and the number of all; `None` without one.
@@ -247,7 +247,7 @@ impl HoleExtractor<'_> {
             Contact::Clear => None,
             Contact::Metal(at) => Some(at),
             Contact::Unknown => {
-                self.unsearched_rapids.count(event);
+                self.unsearched_rapids.count(|| event.backtrace());
                 None
             }
         }
@@ -284,7 +284,7 @@ impl HoleExtractor<'_> {
             Deepest::Clear => None,
             Deepest::Metal(point) => Some(point),
             Deepest::Unknown => {
-                self.unsearched_rapids.count(event);
+                self.unsearched_rapids.count(|| event.backtrace());
                 None
             }
         }

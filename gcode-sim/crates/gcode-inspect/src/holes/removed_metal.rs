@@ -175,8 +175,14 @@ impl RemovedMetal {
         self.common_axis.is_none_or(|common| common == Some(*axis)) && self.profiles.iter().all(is_open)
     }
 
-    /// Returns the sweeps that may reach into a box.
-    pub(super) fn near(&self, [low, high]: &[Point3<f64>; 2]) -> NearSweeps<'_> {
+    /// Keeps later feeds from lengthening the last sweep; returns the number of sweeps.
+    pub(super) fn close(&mut self) -> u32 {
+        self.close_last();
+        self.sweeps.len() as u32
+    }
+
+    /// Returns those of the first sweeps that may reach into a box.
+    pub(super) fn near(&self, [low, high]: &[Point3<f64>; 2], count: u32) -> NearSweeps<'_> {
         let mut heads = BinaryHeap::new();
         if self.is_last_open {
             heads.push(self.sweeps.len() as u32 - 1);
@@ -196,7 +202,7 @@ impl RemovedMetal {
                 }
             }
         }
-        NearSweeps { removed: self, found: RefCell::default(), heads: RefCell::new(heads) }
+        NearSweeps { removed: self, sweeps: count, found: RefCell::default(), heads: RefCell::new(heads) }
     }
 }
 
@@ -205,6 +211,8 @@ impl RemovedMetal {
 #[derive(Debug)]
 pub(super) struct NearSweeps<'r> {
     removed: &'r RemovedMetal,
+    /// Number of the first sweeps that count.
+    sweeps: u32,
     found: RefCell<Vec<u32>>,
     /// Next sweep of each chain.
     heads: RefCell<BinaryHeap<u32>>,
@@ -235,13 +243,17 @@ impl NearSweeps<'_> {
 
     fn find_next(&self, found: &mut Vec<u32>) -> bool {
         let mut heads = self.heads.borrow_mut();
-        let Some(next) = heads.pop() else { return false };
-        found.push(next);
-        let previous = self.removed.sweeps[next as usize].previous;
-        if previous != NONE {
-            heads.push(previous);
+        while let Some(next) = heads.pop() {
+            let previous = self.removed.sweeps[next as usize].previous;
+            if previous != NONE {
+                heads.push(previous);
+            }
+            if next < self.sweeps {
+                found.push(next);
+                return true;
+            }
         }
-        true
+        false
     }
 }
 
@@ -361,7 +373,11 @@ mod tests {
     fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f64; 2]> {
         let mut shares = Shares::default();
         shares.extend([[0.0, 1.0]]);
-        removed.near(&[from.inf(&to), from.sup(&to)]).uncover(&Strip::line([from, to]), true, &mut shares);
+        removed.near(&[from.inf(&to), from.sup(&to)], u32::MAX).uncover(
+            &Strip::line([from, to]),
+            true,
+            &mut shares,
+        );
         let mut pieces: Vec<_> =
             shares.pieces().iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
         pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
