@@ -125,6 +125,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
         || request.settings.skip_signal.is_some()
         || has_holes
             && (!control.unset_work_offsets().is_empty()
+                || stated.work_systems.values().any(|axes| control.placed_axes() & !axes != 0)
                 || is_code_unknown()
                 || may_keep_spindle()
                 || takes_power_on_modes())
@@ -145,7 +146,7 @@ fn stated_values(request: &Request) -> StatedValues {
     StatedValues {
         lengths: lengths.collect(),
         radii: radii.collect(),
-        work_systems: offsets.map(|offset| offset.system).collect(),
+        work_systems: offsets.map(|offset| (offset.system, offset.axes())).collect(),
         codes: clamp.collect(),
         has_part: request.part.is_some(),
         has_unit: request.settings.is_inch_at_power_on.is_some(),
@@ -316,7 +317,7 @@ mod tests {
         assert_assumptions(&drill(4011).replace("#100 ", "[#100/10.] "), 2, &["G50=vacant@4: 1"]);
         assert_assumptions(&format!("G28 Z0\n{}", drill(5023)), 2, &[]);
         assert_assumptions(&format!("G28 Z0\n{}", drill(5003)), 2, &["#5003=0@5: 1"]);
-        let stated = "[offsets.G54]\nX = 5.0\n";
+        let stated = "[offsets.G54]\nX = 5.0\nY = 0.0\nZ = 0.0\n";
         let text = format!("O1\nG90 G54 G17 G21 G98 S1000 M03\nG0 X0. Y0. Z50.\n{}\nM30\n", drill(5021));
         assert_eq!(assumptions_on(stated, &text, &[]).0, [""; 0]);
     }
@@ -349,7 +350,7 @@ mod tests {
         );
         assert_eq!(assumptions_on("", &restored, &[]).0, [""; 0]);
         // With work offsets another may be active; without any all are zero.
-        let offsets = "[offsets]\nG54 = { X = 1.0 }\nG55 = { X = 2.0 }\n";
+        let offsets = "[offsets]\nG54 = { X = 1.0, Y = 0.0, Z = 0.0 }\nG55 = { X = 2.0, Y = 0.0, Z = 0.0 }\n";
         assert_eq!(found(offsets, "G17 G21 G90"), all(&[("G54", 3)]));
         assert_eq!(found(offsets, "G17 G21 G90 G55"), [""; 0]);
         // G99 of the last job would keep the tool low between the holes.
@@ -366,8 +367,9 @@ mod tests {
         };
         let head = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n";
         let machine = format!(
-            "{head}[[tool]]\nnumber = 1\nlength = 80.0\nradius_offset = 3.0\n[offsets]\nG54 = {{ X = 1.0 }}\n\
-             \"G54.1 P3\" = {{ Y = 2.0 }}\n"
+            "{head}[[tool]]\nnumber = 1\nlength = 80.0\nradius_offset = 3.0\n[offsets]\n\
+             G54 = {{ X = 1.0, Y = 0.0, Z = 0.0 }}\n\"G54.1 P3\" = {{ X = 0.0, Y = 2.0, Z = 0.0 }}\n\
+             G56 = {{ X = 0.0, Y = 0.0 }}\n"
         );
         let found =
             |words: &str, variables: &[(u32, f64)]| assumptions_on(&machine, &program(words), variables).0;
@@ -376,14 +378,17 @@ mod tests {
         }
         assert_eq!(found("G54.1 P4", &[]), ["G54.1 P4=vacant@4: 1"]);
         assert_eq!(found("G55", &[]), ["G55=vacant@4: 1"]);
+        // The file states two axes of G56; no block moves B.
+        assert_eq!(found("G56", &[]), ["G56 Z=0@4: 1"]);
+        assert_eq!(found("G10 L2 P3 Z0.\nG56", &[]), [""; 0]);
         // The file states no wear.
         let wear = "#100=#10001\nG54 G43 H1 Z50.\nG81 X20. Y#100 Z-5. R2. F100.\nG80";
         assert_eq!(found(wear, &[]), ["#10001=0@3: 1"]);
         assert_eq!(found(&wear.replace("10001", "11001"), &[]), [""; 0]);
         // A flag states neither what the program sets nor what the machine has.
         for (words, variable, expected) in [
-            ("G54", 5221, "G54=vacant@4: 1"),
-            ("G54.1 P3", 14_042, "G54.1 P3=vacant@4: 1"),
+            ("G54", 5221, "G54 X=7@4: 1"),
+            ("G54.1 P3", 14_042, "G54.1 P3 Y=7@4: 1"),
             ("G55", 5241, "G55=vacant@4: 1"),
             ("G54", 5201, "EXT=vacant@4: 1"),
             ("G54 G43 H1 Z50.", 11_001, "H1=7@3: 1"),
@@ -392,23 +397,23 @@ mod tests {
         }
         assert_eq!(found("G10 L2 P1 X3.\nG54", &[(5221, 7.0)]), [""; 0]);
         assert_eq!(found("G10 L20 P3 Y3.\nG54.1 P3", &[(14_042, 7.0)]), [""; 0]);
-        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), ["G54.1 P3=vacant@5: 1"]);
+        assert_eq!(found("G10 L20 P3 X3.\nG54.1 P3", &[(14_042, 7.0)]), ["G54.1 P3 Y=7@5: 1"]);
         // An offset is set axis by axis; B is not used.
-        for (words, is_set) in [
-            ("G10 L2 P2 X0. Y0. Z0.\nG55", true),
-            ("G10 L2 P2 X0.\nG55", false),
-            ("G10 L2 P2 X0. Y0.\nG55", false),
-            ("#5241=0.\n#5242=0.\n#5243=0.\nG55", true),
-            ("#5241=0.\n#5242=0.\nG55", false),
-            ("#2502=0.\n#2602=0.\n#2702=0.\nG55", true),
-            ("G10 L2 P2 X0. Y0. Z0.\nG55 B90.", false),
+        for (words, open) in [
+            ("G10 L2 P2 X0. Y0. Z0.\nG55", [].as_slice()),
+            ("G10 L2 P2 X0.\nG55", &["G55 Y", "G55 Z"]),
+            ("G10 L2 P2 X0. Y0.\nG55", &["G55 Z"]),
+            ("#5241=0.\n#5242=0.\n#5243=0.\nG55", &[]),
+            ("#5241=0.\n#5242=0.\nG55", &["G55 Z"]),
+            ("#2502=0.\n#2602=0.\n#2702=0.\nG55", &[]),
+            ("G10 L2 P2 X0. Y0. Z0.\nG55 B90.", &["G55 B"]),
         ] {
-            let found = found(words, &[]);
-            assert_eq!(found.is_empty(), is_set, "{words}: {found:?}");
-            assert!(
-                found.iter().all(|one| one.starts_with("G55=vacant@") && one.ends_with(": 1")),
-                "{found:?}"
-            );
+            let mut found = found(words, &[]);
+            found.sort();
+            assert_eq!(found.len(), open.len(), "{words}: {found:?}");
+            for (one, axis) in found.iter().zip(open) {
+                assert!(one.starts_with(&format!("{axis}=0@")) && one.ends_with(": 1"), "{found:?}");
+            }
         }
     }
 

@@ -183,7 +183,7 @@ impl Slice {
             let placed = drilling | 1 << axis;
             let mut work = Marks::NONE;
             if open_axes & placed != 0 {
-                work = self.outside(OutsideValue::WorkOffset(modes.work), None, block.flow, block.op);
+                work = self.open_offset_marks(block, modes.work, open_axes & placed);
             }
             if shifted_axes & placed != 0 {
                 work |= self.outside(OutsideValue::ExternalOffset, None, block.flow, block.op);
