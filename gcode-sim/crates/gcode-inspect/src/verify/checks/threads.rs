@@ -46,7 +46,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     {
         let Some(cut) = cut.map(|cut| &judged.near[cut]) else { continue };
         if let Some(helix) = cut.thread {
-            match milled_length(id, cut, &helix) {
+            match milled_length(id, cut, &helix, &judged.near) {
                 Some(MilledLength::Fault(finding)) => findings.push(finding),
                 Some(MilledLength::Comb) => judged.gaps.push(ShapeGap::ThreadLength(cut.pass.tool)),
                 None => {}
@@ -249,13 +249,24 @@ enum MilledLength {
     Comb,
 }
 
+/// Returns the upper end of a milled thread: that of its deepest pass, or of those of the same size that go on from there.
+fn top_of_thread(cut: &Cut<'_>, helix: &Helix, cuts: &[Cut<'_>]) -> f64 {
+    let is_alike = |one: &&Cut<'_>| one.is_same_size(&cut.pass);
+    let spans = || cuts.iter().filter(is_alike).filter_map(|one| Some((one.tip - one.thread?.height, one.tip)));
+    let mut top = cut.tip - helix.height;
+    while let Some((higher, _)) = spans().find(|(start, tip)| *start < top && top - MAX_STEP <= *tip) {
+        top = higher;
+    }
+    top
+}
+
 /// Judges the upper end of a milled thread, which is at the entry or less than a turn below it.
-fn milled_length(id: &str, cut: &Cut<'_>, helix: &Helix) -> Option<MilledLength> {
-    let (top, lead) = (cut.tip - helix.height, helix.lead.abs());
+fn milled_length(id: &str, cut: &Cut<'_>, helix: &Helix, cuts: &[Cut<'_>]) -> Option<MilledLength> {
+    let (top, lead) = (top_of_thread(cut, helix, cuts), helix.lead.abs());
     if top < lead - LEAD_TOLERANCE {
         return None;
     }
-    if helix.height < MAX_COMB_TURNS * lead {
+    if cut.tip - top < MAX_COMB_TURNS * lead {
         return Some(MilledLength::Comb);
     }
     let message = format!(
