@@ -30,6 +30,7 @@ mod removed_metal;
 mod room;
 mod shares;
 pub(crate) mod spindle;
+mod start_holes;
 mod strokes;
 mod swallowed;
 #[cfg(test)]

@@ -8,7 +8,9 @@ use super::position::Deviation;
 use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
 use crate::machine::{Machine, ToolPart};
-use gcode_part::{FeatureKind, Hole, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds};
+use gcode_part::{
+    FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds,
+};
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
 const MAX_LINE_DISTANCE: f64 = 5.0;
@@ -165,14 +167,14 @@ impl<'a> Comparison<'a> {
     }
 
     /// Returns the depth in a through hole below which nominal holes from the far side, on its axis and at least as wide,
-    /// remove the metal; the hole's own depth without one.
+    /// remove the metal; infinite without one.
     pub(super) fn counter_depth(&self, hole: &Hole, diameter: f64) -> f64 {
         let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
-        let far = entry - out * hole.depth;
+        let far = entry - out * (hole.depth + MAX_BREAK_THROUGH);
         let (low, high) = (entry.inf(&far), entry.sup(&far));
         let margin = Vector3::repeat(self.tolerances.position);
         let entries = || PointTree::new(self.nominal.iter().map(|hole| Point3::from(hole.entry)));
-        let mut least = hole.depth;
+        let mut least = f64::INFINITY;
         self.entries.get_or_init(entries).in_box(&(low - margin), &(high + margin), &mut |index| {
             let other = &self.nominal[index];
             let offset = Point3::from(other.entry) - entry;

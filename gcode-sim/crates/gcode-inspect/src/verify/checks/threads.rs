@@ -252,7 +252,8 @@ enum MilledLength {
 /// Returns the upper end of a milled thread: that of its deepest pass, or of those of the same size that go on from there.
 fn top_of_thread(cut: &Cut<'_>, helix: &Helix, cuts: &[Cut<'_>]) -> f64 {
     let is_alike = |one: &&Cut<'_>| one.is_same_size(&cut.pass);
-    let spans = || cuts.iter().filter(is_alike).filter_map(|one| Some((one.tip - one.thread?.height, one.tip)));
+    let spans =
+        || cuts.iter().filter(is_alike).filter_map(|one| Some((one.tip - one.thread?.height, one.tip)));
     let mut top = cut.tip - helix.height;
     while let Some((higher, _)) = spans().find(|(start, tip)| *start < top && top - MAX_STEP <= *tip) {
         top = higher;

@@ -2,8 +2,8 @@
 //!
 //! Nominal holes deeper than the part is thick along their axis: a warning, since the drawing may specify a through hole.
 //! The part may be thinner than its surface shows, a shell or cut off: no finding is no proof.
-use super::*;
 use super::features::{Judgement, ShapeGap};
+use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_NOT_THROUGH, HOLE_THROUGH};
 use crate::holes::ring;
 use crate::verify::bottom;
@@ -83,8 +83,7 @@ impl Judgement<'_> {
         if !nominal.through {
             return;
         }
-        let thickness =
-            surface.map_or(0.0, |surface| thickness(&surface, nominal)).max(nominal.depth);
+        let thickness = surface.map_or(0.0, |surface| thickness(&surface, nominal)).max(nominal.depth);
         let beyond = |cut: &&Cut<'_>| break_through(cut, nominal, thickness);
         let all = self.near.iter().chain(&self.far);
         let Some(cut) = all.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else { return };
@@ -127,17 +126,19 @@ impl Judgement<'_> {
         };
         let sides = [reach(&self.near), reach(&self.far)];
         self.gaps.extend(gaps);
-        let thickness =
-            surface.map_or(0.0, |surface| rim_thickness(&surface, self.nominal, diameter / 2.0));
+        let thickness = surface.map_or(0.0, |surface| rim_thickness(&surface, self.nominal, diameter / 2.0));
         let depth = thickness.max(self.nominal.depth);
         let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
         let Some((_, place)) = sides.into_iter().flatten().next() else {
             feature.into_iter().for_each(|feature| self.report_missing(feature));
             return;
         };
+        if !exceeds(depth, cut) {
+            return;
+        }
         // A coaxial hole from the far side is the rest of this one.
-        let needed = || depth.min(self.comparison.counter_depth(self.nominal, diameter));
-        if exceeds(depth, cut) && exceeds(needed(), cut) {
+        let depth = depth.min(self.comparison.counter_depth(self.nominal, diameter));
+        if exceeds(depth, cut) {
             let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
             let message =
                 format!("hole {}{name} does not break out: {cut:.3} mm of {depth:.3} mm are cut", self.id);
