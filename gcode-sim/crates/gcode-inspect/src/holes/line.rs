@@ -370,6 +370,7 @@ impl CuttingLine {
                 is_tapping: self.is_tapping,
                 rigid_run: end.rigid_run,
                 milled: None,
+                order: 0,
             },
             axis: self.tool_axis.unwrap_or(self.out),
             is_tool_axis_known: self.tool_axis.is_some(),

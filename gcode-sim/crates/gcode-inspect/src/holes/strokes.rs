@@ -285,7 +285,9 @@ impl Strokes {
         self.finish_unretracted();
         self.passes.retain(|(order, _)| !self.start_holes.is_removed(*order));
         self.passes.sort_by_key(|(order, _)| *order);
-        let passes = self.passes.into_iter().map(|(_, pass)| pass).collect();
+        let numbered = self.passes.into_iter().zip(0..);
+        let passes = numbered.map(|((_, pass), order)| DrillPass { cut: PassCut { order, ..pass.cut }, ..pass });
+        let passes = passes.collect();
         (passes, self.milled, self.first_excess)
     }
 

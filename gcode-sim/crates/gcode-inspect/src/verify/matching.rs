@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 use super::position::Deviation;
 use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
-use crate::machine::{Machine, ToolPart};
+use crate::machine::{Machine, ToolKind, ToolPart};
 use gcode_part::{
     FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds,
 };
@@ -186,6 +186,30 @@ impl<'a> Comparison<'a> {
             }
         });
         least
+    }
+
+    /// Takes repeated passes of taps and reamers as extra ones unless they follow the pass that they repeat: called again later,
+    /// they don't spring, and a thread or a fit suffers.
+    pub(super) fn reject_second_finishing(&mut self, machine: &Machine) {
+        let actual = self.actual;
+        let is_rejected = |index: &usize| {
+            let again = &actual[*index];
+            let kind = machine.kind_of(again.tool);
+            let is_fit = again.finishing_cut.is_tapping || matches!(kind, Some(ToolKind::Tap | ToolKind::Reamer));
+            let on_line = actual[again.first_on_line..].iter();
+            let mut passes = on_line
+                .take_while(|hole| hole.first_on_line == again.first_on_line)
+                .flat_map(DrilledHole::passes);
+            let before = again.finishing_cut.order.wrapping_sub(1);
+            is_fit && !passes.any(|pass| pass.tool == again.tool && pass.cut.order == before)
+        };
+        let (rejected, repeated): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.repeated).into_iter().partition(is_rejected);
+        self.repeated = repeated;
+        if !rejected.is_empty() {
+            self.extra.extend(rejected);
+            self.extra.sort_unstable();
+        }
     }
 
     /// Returns the diameter of the widest nominal hole that each tool finishes whose own one is unknown.
