@@ -105,7 +105,7 @@ impl EntryPlanes {
             middles: PointTree::new(collars.iter().map(middle)),
             reach: collars.iter().map(reach).fold(0.0, f64::max),
             room: collars.iter().map(|collar| collar.max_depth() - collar.rod.length).fold(WALL, f64::max),
-            extent: collars.iter().map(|collar| extent(&collar.rod)).fold(Vector3::zeros(), |a, b| a.sup(&b)),
+            extent: collars.iter().map(extent).fold(Vector3::zeros(), |a, b| a.sup(&b)),
             top: top(&collars),
             ids: holes.iter().map(|hole| hole.id.clone().unwrap_or_default()).collect(),
             collars,
@@ -182,9 +182,10 @@ impl EntryPlanes {
     }
 }
 
-/// Returns the largest distance of a rod's point from its middle along each axis.
-fn extent(rod: &Rod) -> Vector3<f64> {
-    rod.axis.map(|along| along.abs() * rod.length / 2.0 + rod.radius * (1.0 - along * along).max(0.0).sqrt())
+/// Returns the largest distance of a point of the metal round a hole from the middle of its rod, along each axis.
+fn extent(collar: &Collar) -> Vector3<f64> {
+    let (rod, length) = (&collar.rod, collar.rod.length / 2.0 + collar.floor());
+    rod.axis.map(|along| along.abs() * length + rod.radius * (1.0 - along * along).max(0.0).sqrt())
 }
 
 /// Returns the direction of all axes if they agree, and the height of the highest entry along it.

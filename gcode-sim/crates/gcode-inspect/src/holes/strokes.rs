@@ -286,7 +286,8 @@ impl Strokes {
         self.passes.retain(|(order, _)| !self.start_holes.is_removed(*order));
         self.passes.sort_by_key(|(order, _)| *order);
         let numbered = self.passes.into_iter().zip(0..);
-        let passes = numbered.map(|((_, pass), order)| DrillPass { cut: PassCut { order, ..pass.cut }, ..pass });
+        let passes =
+            numbered.map(|((_, pass), order)| DrillPass { cut: PassCut { order, ..pass.cut }, ..pass });
         let passes = passes.collect();
         (passes, self.milled, self.first_excess)
     }

@@ -195,7 +195,8 @@ impl<'a> Comparison<'a> {
         let is_rejected = |index: &usize| {
             let again = &actual[*index];
             let kind = machine.kind_of(again.tool);
-            let is_fit = again.finishing_cut.is_tapping || matches!(kind, Some(ToolKind::Tap | ToolKind::Reamer));
+            let is_fit =
+                again.finishing_cut.is_tapping || matches!(kind, Some(ToolKind::Tap | ToolKind::Reamer));
             let on_line = actual[again.first_on_line..].iter();
             let mut passes = on_line
                 .take_while(|hole| hole.first_on_line == again.first_on_line)
