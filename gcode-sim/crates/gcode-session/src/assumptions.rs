@@ -275,6 +275,21 @@ mod tests {
         }
     }
 
+    /// Behind the place where both ways meet a mode of one of them is in force.
+    #[test]
+    fn a_rapid_that_would_cut_by_the_mode_of_another_way_is_a_cut() {
+        let cycle = "G81 X10. Y10. Z-5. R2. F100.\n";
+        for (blocks, holes, expected) in [
+            (format!("{cycle}IF[#510EQ1]GOTO10\nG80\nN10 X20."), 1, ["#510=vacant@5: "].as_slice()),
+            (format!("{cycle}IF[#510EQ1]GOTO10\nG80\nN10 G0 X20."), 1, &[]),
+            (format!("{cycle}G80\nIF[#510EQ1]GOTO10\nG80\nN10 X20."), 1, &[]),
+            (format!("{cycle}G80\nIF[#510NE1]GOTO10\nG1\nN10 X20."), 1, &["#510=vacant@6: "]),
+            (format!("{cycle}G80\nIF[#510NE1]GOTO10\nG1\nN10 G0 X20."), 1, &[]),
+        ] {
+            assert_assumptions(&blocks, holes, expected);
+        }
+    }
+
     #[test]
     fn a_loop_count_decides_the_holes_of_the_loop() {
         let text = "G81 X5. Y5. Z-5. R2. F100.\n#1=0\nWHILE[#1LT#510]DO1\n#1=#1+1\nX[10.*#1] Y10.\nEND1\nG80\nG0 X0. Y50. Z50.\nG81 X50. Y50. Z-5. R2. F100.";

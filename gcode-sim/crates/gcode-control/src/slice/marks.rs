@@ -159,6 +159,8 @@ pub(super) struct MachineMarks {
     codes: [Marks; 26],
     /// Those of them that a block has commanded, as bits.
     commanded: u32,
+    /// Whether axis words cut, by code 01 and by the canned cycle.
+    pub(super) cutting: Marks,
     /// Levels and pecks of the canned cycle.
     pub(super) cycle: Marks,
     /// Mirror, scaling, rotation and tilted plane.
@@ -264,6 +266,7 @@ impl MachineMarks {
             *one |= marks;
         }
         for one in [
+            &mut self.cutting,
             &mut self.cycle,
             &mut self.transform,
             &mut self.tool,

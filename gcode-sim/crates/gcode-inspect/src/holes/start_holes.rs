@@ -5,8 +5,6 @@ use super::HoleExtractor;
 use super::arc_run::PartArc;
 use super::axis_box::directions_across;
 use super::drill_pass::DrillPass;
-use super::milled::MIN_AXIS_COSINE;
-use super::strokes::LEVEL_TOLERANCE;
 use crate::machine::{Machine, TOUCH_DEPTH};
 use gcode_lang::units::Deg;
 
@@ -16,6 +14,12 @@ const MAX_FOLLOWED: usize = 16;
 /// Rings of points on the bottom of a hole, its wall included, and the points of each.
 const RINGS: u32 = 12;
 const RING_POINTS: u32 = 48;
+
+/// Cosine of the largest angle between the tool and a hole that it removes: 0.05°.
+const MIN_PARALLEL_COSINE: f64 = 0.999_999_6;
+
+/// Largest height of a level feed's end above its start, and of the feed above the bottom of a hole that it removes, mm: rounding.
+const MAX_RISE: f64 = 0.003;
 
 /// Largest angle between two points of an arc, degrees: a radius of 50 mm deviates by 0.005 mm.
 const MAX_STEP: f64 = 1.6;
@@ -104,8 +108,8 @@ impl StartHole {
 
     /// Returns true if a feed may reach the hole at its bottom.
     fn is_near(&self, chord: &[Point3<f64>], feed: &FlatFeed) -> bool {
-        let is_parallel = MIN_AXIS_COSINE <= self.axis.dot(&feed.axis);
-        let is_as_deep = (chord[0] - self.centre).dot(&self.axis) <= LEVEL_TOLERANCE;
+        let is_parallel = MIN_PARALLEL_COSINE <= self.axis.dot(&feed.axis);
+        let is_as_deep = (chord[0] - self.centre).dot(&self.axis) <= MAX_RISE;
         is_parallel && is_as_deep && distance(chord, &self.centre, &feed.axis) <= self.radius + feed.radius
     }
 }
@@ -136,7 +140,7 @@ impl HoleExtractor<'_> {
             return;
         };
         let to = self.pose.tip;
-        let is_level = ((to - from).dot(&axis)).abs() <= LEVEL_TOLERANCE;
+        let is_level = ((to - from).dot(&axis)).abs() <= MAX_RISE;
         if !is_level || TOUCH_DEPTH < end.from {
             return;
         }

@@ -52,8 +52,10 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
                 None => {}
             }
         }
-        findings.extend(pitch(id, feature, cut));
-        findings.extend(hand(id, feature, cut));
+        // Each pass along the thread follows it.
+        let own = || judged.near.iter().filter(|one| one.is_thread() && one.is_same_size(&cut.pass));
+        findings.extend(own().find_map(|one| pitch(id, feature, one)));
+        findings.extend(own().find_map(|one| hand(id, feature, one)));
     }
     judged.findings.extend(findings);
 }
@@ -251,9 +253,12 @@ enum MilledLength {
 
 /// Returns the upper end of a milled thread: that of its deepest pass, or of those of the same size that go on from there.
 fn top_of_thread(cut: &Cut<'_>, helix: &Helix, cuts: &[Cut<'_>]) -> f64 {
-    let is_alike = |one: &&Cut<'_>| one.is_same_size(&cut.pass);
-    let spans =
-        || cuts.iter().filter(is_alike).filter_map(|one| Some((one.tip - one.thread?.height, one.tip)));
+    let span = |one: &Cut<'_>| {
+        let own = one.thread?;
+        let is_alike = !exceeds((own.lead - helix.lead).abs(), LEAD_TOLERANCE);
+        (is_alike && one.is_same_size(&cut.pass)).then_some((one.tip - own.height, one.tip))
+    };
+    let spans = || cuts.iter().filter_map(span);
     let mut top = cut.tip - helix.height;
     while let Some((higher, _)) = spans().find(|(start, tip)| *start < top && top - MAX_STEP <= *tip) {
         top = higher;
