@@ -82,12 +82,19 @@ impl Dependencies {
             let decides = touched.filter_map(|(hole, _)| names(hole));
             let decides: Vec<String> = decides.filter(|name| named.insert(name.clone())).collect();
             let (program, line) = run.locate(read.place.block);
-            let (what, place) = (read.source.name(), AssumptionPlace { program, line });
-            let is_assumed = read.decides_further_cuts || !decides.is_empty();
-            let assumption = Assumption { what, value: read.value, place, decides };
+            let place = AssumptionPlace { program, line };
+            // Values that share an index are one line.
+            let sharing = if index == Marks::LAST_INDEX { &self.reads[index..] } else { &[] };
+            let (what, value) = match sharing.len() {
+                0 | 1 => (read.source.name(), read.value),
+                count => (format!("{count} further values, first {}", read.source.name()), None),
+            };
+            let decides_further = sharing.iter().any(|one| one.decides_further_cuts);
+            let is_assumed = read.decides_further_cuts || decides_further || !decides.is_empty();
+            let assumption = Assumption { what, value, place, decides };
             is_assumed.then(|| (assumption, read.place.clone()))
         };
-        self.reads.iter().enumerate().filter_map(assumption).collect()
+        self.reads.iter().enumerate().take(Marks::LAST_INDEX + 1).filter_map(assumption).collect()
     }
 
     /// Returns the assumptions, with holes or passes named by their numbers from 1.

@@ -354,3 +354,15 @@ fn a_verdict_interrupted_behind_its_run_fails() {
         assert_eq!(verdict.answer() == Answer::Fail, is_interrupted);
     }
 }
+
+/// 127 values have a line each; from the 128th on they share one.
+#[test]
+fn values_beyond_the_last_index_are_one_assumption() {
+    let hole = |count: u32| {
+        let sum: Vec<String> = (500..500 + count).map(|number| format!("#100=#100+#{number}")).collect();
+        let blocks = format!("#100=10.\n{}\nG81 X#100 Y10. Z-5. R2. F100.", sum.join("\n"));
+        assumptions_with(&blocks, &[]).0
+    };
+    assert_eq!(hole(128)[126..], ["#626=vacant@131: 1", "#627=vacant@132: 1"]);
+    assert_eq!(hole(400)[126..], ["#626=vacant@131: 1", "273 further values, first #627=vacant@132: 1"]);
+}
