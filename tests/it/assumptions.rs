@@ -177,7 +177,7 @@ fn a_machine_file_states_tool_lengths_and_work_offsets() {
     let machine = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n";
     std::fs::write(place.join("bare.toml"), machine).unwrap();
     let stated = format!(
-        "{machine}[offsets]\nG55 = {{ X = 0.0 }}\n[[tool]]\nnumber = 1\ndiameter = 6.0\nlength = 100.0\n"
+        "{machine}[offsets]\nG55 = {{ X = 0.0, Y = 0.0, Z = 0.0 }}\n[[tool]]\nnumber = 1\ndiameter = 6.0\nlength = 100.0\n"
     );
     std::fs::write(place.join("stated.toml"), stated).unwrap();
     let line = |machine: &str| format!("gcode-sim holes O1.nc --machine {machine}.toml --format json");

@@ -356,6 +356,11 @@ impl Control {
         self.executor.log.lacks_end
     }
 
+    /// Returns the axes that blocks have placed in work coordinates, as bits.
+    pub fn placed_axes(&self) -> u8 {
+        self.executor.log.placed_axes
+    }
+
     /// Returns the work offsets other than G54 that the run has used before anything set them.
     pub fn unset_work_offsets(&self) -> &[UnsetWorkOffset] {
         &self.executor.log.unset_systems

@@ -214,6 +214,7 @@ impl Executor {
     #[inline]
     pub(super) fn record_work_use(&mut self, before: WorkSystem, axes: u8) {
         let work = self.registers.state.modal.work;
+        self.log.placed_axes |= axes;
         if work != WorkSystem::default() {
             self.record_other_work(work, before, axes);
         }

@@ -169,6 +169,8 @@ pub(super) struct RunLog {
     /// Block that selected the active work coordinate system.
     pub(super) work_selected: Backtrace,
     pub(super) unset_systems: Vec<UnsetWorkOffset>,
+    /// Axes that blocks have placed in work coordinates, as bits.
+    pub(super) placed_axes: u8,
     /// Modal groups that a block has commanded, without group 01.
     pub(super) commanded_groups: GroupSet,
     /// Those that a move preceded, or a canned cycle G98 and G99.

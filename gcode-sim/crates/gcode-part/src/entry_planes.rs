@@ -182,10 +182,10 @@ impl EntryPlanes {
     }
 }
 
-/// Returns the largest distance of a point of the metal round a hole from its middle along each axis.
+/// Returns the largest distance of a point of the metal round a hole from the middle of its rod, along each axis.
 fn extent(collar: &Collar) -> Vector3<f64> {
-    let (rod, half) = (collar.rod, collar.rod.length / 2.0 + collar.floor());
-    rod.axis.map(|along| along.abs() * half + rod.radius * (1.0 - along * along).max(0.0).sqrt())
+    let (rod, length) = (&collar.rod, collar.rod.length / 2.0 + collar.floor());
+    rod.axis.map(|along| along.abs() * length + rod.radius * (1.0 - along * along).max(0.0).sqrt())
 }
 
 /// Returns the direction of all axes if they agree, and the height of the highest entry along it.

@@ -3,6 +3,7 @@ use super::{Request, Run, causes};
 use gcode_control::Outcome;
 use gcode_inspect::findings::NO_END;
 use gcode_inspect::verify::{Answer, AnyVerdict};
+use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_part::Assumption;
@@ -23,7 +24,18 @@ pub(super) fn complete(
         causes.extend(causes::text_findings(run, verdict.answer() == Answer::Fail));
     }
     verdict.add_likely_causes(causes, &locate);
-    verdict.add_assumptions(assumptions(), request.denies_assumptions, &locate);
+    let assumptions = assumptions();
+    if let Some(error) = interruption(run) {
+        verdict.add_error(error, &locate);
+    }
+    verdict.add_assumptions(assumptions, request.denies_assumptions, &locate);
+}
+
+/// Returns the error of an interruption behind the first run, whose assumptions are then not complete.
+fn interruption(run: &Run) -> Option<Diagnostic> {
+    let is_interrupted = matches!(run.outcome, Outcome::End) && run.control.is_cancelled();
+    let message = "interrupted before the values were followed on which the result rests";
+    is_interrupted.then(|| Diagnostic::new(&LIMIT, message).with_backtrace(run.control.backtrace()))
 }
 
 /// Returns the error of a program without M02, M30 or M99 that has run to the end of its text.

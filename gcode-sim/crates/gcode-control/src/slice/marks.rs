@@ -9,14 +9,15 @@ use gcode_lang::program::modes::{GroupSet, ModalGroup};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Marks(u128);
 
-const LAST_INDEX: usize = 127;
-
 impl Marks {
+    /// Index that all values from it on share.
+    pub const LAST_INDEX: usize = 127;
+
     /// No outside value.
     pub const NONE: Self = Self(0);
 
     pub(super) fn of(index: usize) -> Self {
-        Self(1 << index.min(LAST_INDEX))
+        Self(1 << index.min(Self::LAST_INDEX))
     }
 
     /// Returns true for the empty set.
@@ -26,12 +27,12 @@ impl Marks {
 
     /// Returns true if `other` has all values of this set, none of which shares the last index.
     pub(super) fn is_within(self, other: Self) -> bool {
-        self.0 & !other.0 == 0 && !self.contains(LAST_INDEX)
+        self.0 & !other.0 == 0 && !self.contains(Self::LAST_INDEX)
     }
 
     /// Returns true if the set contains the value with this index.
     pub fn contains(self, index: usize) -> bool {
-        self.0 >> index.min(LAST_INDEX) & 1 == 1
+        self.0 >> index.min(Self::LAST_INDEX) & 1 == 1
     }
 }
 
@@ -159,6 +160,8 @@ pub(super) struct MachineMarks {
     codes: [Marks; 26],
     /// Those of them that a block has commanded, as bits.
     commanded: u32,
+    /// Whether axis words cut, by code 01 and by the canned cycle.
+    pub(super) cutting: Marks,
     /// Levels and pecks of the canned cycle.
     pub(super) cycle: Marks,
     /// Mirror, scaling, rotation and tilted plane.
@@ -264,6 +267,7 @@ impl MachineMarks {
             *one |= marks;
         }
         for one in [
+            &mut self.cutting,
             &mut self.cycle,
             &mut self.transform,
             &mut self.tool,

@@ -41,8 +41,8 @@ pub enum OutsideValue {
     Parameter(Option<u32>),
     /// Block skip switch, counted from 1.
     BlockSkip(u8),
-    /// Work offset that nothing has set.
-    WorkOffset(WorkSystem),
+    /// Work offset that nothing has set; of one axis where others are set.
+    WorkOffset(WorkSystem, Option<char>),
     /// External work offset, which shifts all others.
     ExternalOffset,
     /// Tool length, by its H.
@@ -60,7 +60,7 @@ pub enum OutsideValue {
 }
 
 impl OutsideValue {
-    /// Returns the value's name as programs write it: `#510`, `/2`, `G55`, `H3`, `M21`.
+    /// Returns the value's name as programs write it: `#510`, `/2`, `G55`, `G55 B`, `H3`, `M21`.
     pub fn name(self) -> String {
         match self {
             Self::Variable(number) => format!("#{number}"),
@@ -68,7 +68,8 @@ impl OutsideValue {
             Self::Parameter(None) => "PRM".to_owned(),
             Self::BlockSkip(1) => "/".to_owned(),
             Self::BlockSkip(switch) => format!("/{switch}"),
-            Self::WorkOffset(system) => system.name(),
+            Self::WorkOffset(system, None) => system.name(),
+            Self::WorkOffset(system, Some(letter)) => format!("{} {letter}", system.name()),
             Self::ExternalOffset => "EXT".to_owned(),
             Self::ToolLength(number) => format!("H{number}"),
             Self::CutterRadius(number) => format!("D{number}"),
@@ -100,8 +101,8 @@ pub struct StatedValues {
     pub lengths: BTreeSet<u32>,
     /// D numbers of tools with a cutter radius.
     pub radii: BTreeSet<u32>,
-    /// Work offsets of the machine.
-    pub work_systems: BTreeSet<WorkSystem>,
+    /// Work offsets of the machine, each with its axes as bits.
+    pub work_systems: BTreeMap<WorkSystem, u8>,
     /// M codes with a known effect, such as those of the clamp.
     pub codes: BTreeSet<u32>,
     /// A part decides where G31 stops.
@@ -147,7 +148,7 @@ impl Slice {
     /// Returns the observer of a run. `variables` are set before its start; an offset that they set is not stated.
     pub fn new(mut stated: StatedValues, settings: &Settings, variables: &[(u32, f64)]) -> Self {
         let mut set_offsets = SystemAxes::default();
-        stated.work_systems.iter().for_each(|system| set_offsets.add(system_index(*system), u8::MAX));
+        stated.work_systems.iter().for_each(|(system, axes)| set_offsets.add(system_index(*system), *axes));
         for (number, _) in variables {
             match reads::offset_of(*number, settings) {
                 Some(OffsetEntry::Tool(Register::HGeometry | Register::HWear, tool)) => {

@@ -137,6 +137,7 @@ impl Slice {
             && data.settings.code_calls.is_empty();
         if !is_plain_mode
             || !self.are_modes_settled()
+            || !self.machine.cutting.is_none()
             || words.call().is_some()
             || words.form_if_skipped().is_some()
             || !words.list.iter().all(is_plain)
@@ -180,10 +181,14 @@ impl Slice {
         }
         let mut moved = Marks::NONE;
         for (axis, word) in named {
+            if !is_cut {
+                // In another mode the rapid is a cut.
+                self.further |= self.machine.cutting;
+            }
             let placed = drilling | 1 << axis;
             let mut work = Marks::NONE;
             if open_axes & placed != 0 {
-                work = self.outside(OutsideValue::WorkOffset(modes.work), None, block.flow, block.op);
+                work = self.open_offset_marks(block, modes.work, open_axes & placed);
             }
             if shifted_axes & placed != 0 {
                 work |= self.outside(OutsideValue::ExternalOffset, None, block.flow, block.op);

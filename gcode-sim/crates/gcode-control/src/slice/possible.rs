@@ -5,7 +5,7 @@ use super::{Marks, Slice};
 use crate::registers::Registers;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::m_codes::{self, MCodeEffect};
-use gcode_lang::program::modes::{ModalGroup, Plane};
+use gcode_lang::program::modes::{ModalGroup, Motion, Plane};
 use gcode_lang::program::{AssignmentTarget, OpKind, Slot, Statement, WordOperand, Words};
 
 impl Slice {
@@ -100,7 +100,16 @@ impl Slice {
             }
             match (word.letter, &word.value) {
                 (b'G', WordOperand::G(_, found)) => {
-                    match found.row_for(settings.codes).and_then(|row| row.effect.group()) {
+                    let row = found.row_for(settings.codes);
+                    let begins_cut = row.is_some_and(|row| match row.effect {
+                        Effect::Motion(motion) => motion != Motion::Rapid,
+                        Effect::Cycle(cycle) => cycle.is_some(),
+                        _ => false,
+                    });
+                    if begins_cut {
+                        self.machine.cutting |= marks;
+                    }
+                    match row.and_then(|row| row.effect.group()) {
                         Some(group) => {
                             self.machine.add_to_group(group, marks);
                             self.machine.cycle |= marks;

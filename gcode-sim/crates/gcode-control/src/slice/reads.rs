@@ -237,6 +237,20 @@ impl Slice {
         self.set_tools[data.table(register) as usize].contains(&number)
     }
 
+    /// Returns the marks of a work offset that nothing has set for `axes`; of each of them where it is set for others.
+    pub(super) fn open_offset_marks(&mut self, block: &Block<'_>, work: WorkSystem, axes: u8) -> Marks {
+        if self.set_offsets.axes(system_index(work)) == 0 {
+            return self.outside(OutsideValue::WorkOffset(work, None), None, block.flow, block.op);
+        }
+        let data = &block.registers.data;
+        let open = data.settings.axes.iter().filter(|(axis, _)| axes >> axis & 1 == 1);
+        open.map(|(axis, letter)| {
+            let value = data.offsets.work.get(system_index(work)).map(|offset| offset[axis]);
+            self.outside(OutsideValue::WorkOffset(work, Some(letter)), value, block.flow, block.op)
+        })
+        .collect()
+    }
+
     /// Returns the axes, as bits, whose offset in a work coordinate system is an outside value. G54 is the part's zero unless
     /// something sets it.
     pub(super) fn open_axes(&self, data: &ControlData, work: WorkSystem) -> u8 {

@@ -42,6 +42,13 @@ pub(super) struct BlockModes {
     pub(super) one_shot: Option<OneShot>,
 }
 
+impl BlockModes {
+    /// Returns true if axis words cut.
+    fn cuts(&self) -> bool {
+        self.is_in_cycle || self.motion != Motion::Rapid
+    }
+}
+
 impl Slice {
     pub(super) fn follow_words(&mut self, block: &Block<'_>, words: &Words) {
         if self.follow_plain_move(block, words) {
@@ -141,6 +148,7 @@ impl Slice {
             if let Some(group) = row.effect.group() {
                 self.machine.settle_group(group, control | marked.marks);
             }
+            let was_cutting = modes.cuts();
             modes.uses_plane |= matches!(row.effect, Effect::Rotation(_) | Effect::Polar(_));
             match row.effect {
                 Effect::Motion(motion) => {
@@ -176,6 +184,13 @@ impl Slice {
                 }
                 Effect::OneShot(one) => modes.one_shot = Some(one),
                 _ => {}
+            }
+            if modes.cuts() != was_cutting {
+                self.machine.cutting |= control;
+            }
+            // The code ends a cycle too.
+            if matches!(row.effect, Effect::Motion(_)) && control.is_none() {
+                self.machine.cutting = marked.marks;
             }
         }
         modes

@@ -26,6 +26,8 @@ pub struct PassCut {
     pub rigid_run: u32,
     /// Figures of a mill's circle; `None` for a stroke.
     pub milled: Option<MilledCut>,
+    /// Place among all passes of holes, in the order of the program.
+    pub order: usize,
 }
 
 /// Figures of a circle that a mill cuts, mm.
@@ -58,17 +60,8 @@ impl PassCut {
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
         let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
-        Self {
-            start,
-            bottom,
-            feed: None,
-            speed,
-            direction,
-            is_tapping: false,
-            is_cycle: false,
-            rigid_run: 0,
-            milled: None,
-        }
+        let (feed, is_tapping, is_cycle, rigid_run) = (None, false, false, 0);
+        Self { start, bottom, feed, speed, direction, is_tapping, is_cycle, rigid_run, milled: None, order: 0 }
     }
 }
 

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::drill_pass::{DrillPass, Helix, PassCut};
+use super::drill_pass::{DrillPass, PassCut};
 use super::swallowed::swallowing_passes;
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
@@ -222,11 +222,8 @@ impl DrillPass {
     }
 }
 
-/// Radius of a milled circle in µm, and true for that of a thread.
-type CircleKey = (u64, bool);
-
-/// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. True passes lie aside,
-/// in a wider one of the hole. Heights count along `out`, the axis of the first pass.
+/// Appends the hole of one line, and one more for each pass of a tool that cuts no deeper than before. A true flag marks a pass
+/// whose axis lies aside, in a wider one of the hole. Heights count along `out`, the axis of the first pass.
 fn push_holes<'p>(
     passes: impl ExactSizeIterator<Item = (&'p DrillPass, bool)>,
     out: Unit<Vector3<f64>>,
@@ -236,21 +233,22 @@ fn push_holes<'p>(
     let first_on_line = holes.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
     // A mill cuts the same depth with each radius.
-    let circle = |pass: &DrillPass| {
-        let is_thread = |helix: Helix| helix.is_thread;
-        pass.cut
-            .milled
-            .map(|circle| ((circle.radius * 1000.0).round() as u64, circle.helix.is_some_and(is_thread)))
+    let micrometres =
+        |pass: &DrillPass| pass.cut.milled.map(|circle| (circle.radius * 1000.0).round() as u64);
+    // A pass along a thread may cut its upper part.
+    let is_thread = |pass: &DrillPass| {
+        let helix = pass.cut.milled.and_then(|circle| circle.helix);
+        helix.is_some_and(|helix| helix.is_thread)
     };
-    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<CircleKey>), f64> = BTreeMap::new();
+    let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
     let is_single = passes.len() == 1;
     let (mut cutting, mut repeated) = (Vec::new(), Vec::new());
     for (pass, is_aside) in passes {
-        if is_aside || is_single {
+        if is_aside || is_single || is_thread(pass) {
             cutting.push(pass);
             continue;
         }
-        let lowest = lowest_by_tool.entry((pass.tool, circle(pass))).or_insert(f64::INFINITY);
+        let lowest = lowest_by_tool.entry((pass.tool, micrometres(pass))).or_insert(f64::INFINITY);
         let cuts = height(&pass.cut.bottom) < *lowest - MIN_DEPTH_GAIN;
         if cuts {
             *lowest = height(&pass.cut.bottom);

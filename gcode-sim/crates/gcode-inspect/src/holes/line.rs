@@ -371,6 +371,7 @@ impl CuttingLine {
                 is_cycle: self.is_cycle,
                 rigid_run: end.rigid_run,
                 milled: None,
+                order: 0,
             },
             axis: self.tool_axis.unwrap_or(self.out),
             is_tool_axis_known: self.tool_axis.is_some(),

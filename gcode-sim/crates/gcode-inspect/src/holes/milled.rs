@@ -133,6 +133,9 @@ impl HoleExtractor<'_> {
         } else if is_across && rise <= LEVEL_TOLERANCE && lowest < top - LEVEL_TOLERANCE {
             self.strokes.note_milling(lowest);
         }
+        if is_across {
+            self.remove_start_holes(from, arc.as_ref());
+        }
         let engagement = &mut self.engagement;
         if is_across {
             engagement.cutting_state = self.cutting_state;

@@ -34,6 +34,7 @@ mod removed_metal;
 mod room;
 mod shares;
 pub(crate) mod spindle;
+mod start_holes;
 mod strip;
 mod strokes;
 mod swallowed;

@@ -10,8 +10,9 @@ use super::arc_run::Ring;
 use super::drill_pass::{DrillPass, PassCut};
 use super::line::CuttingLine;
 use super::per_block::with_count_note;
+use super::start_holes::StartHoles;
 use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
-use crate::machine::ToolKind;
+use crate::machine::{Machine, ToolKind};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, Position};
 use gcode_part::{NominalAxes, NominalAxis, PARALLEL_COSINE};
@@ -77,6 +78,8 @@ pub(super) struct Strokes {
     nominal: Arc<NominalAxes>,
     /// Strokes that are milling.
     milled: Option<MilledStrokes>,
+    /// Holes at which the reference has none.
+    pub start_holes: StartHoles,
 }
 
 /// Feeds that make no hole.
@@ -212,6 +215,14 @@ impl Strokes {
         }
     }
 
+    /// Follows the holes made so far at which the reference has none. Returns false if there is none.
+    pub(super) fn follow_start_holes(&mut self, machine: &Machine) -> bool {
+        let mut start_holes = std::mem::take(&mut self.start_holes);
+        let has_any = start_holes.follow(&self.passes, machine, |pass| self.is_nominal(pass));
+        self.start_holes = start_holes;
+        has_any
+    }
+
     /// Returns the place of a pass that begins now.
     pub(super) fn begin_pass(&mut self) -> u32 {
         self.next += 1;
@@ -272,8 +283,12 @@ impl Strokes {
             }
         }
         self.finish_unretracted();
+        self.passes.retain(|(order, _)| !self.start_holes.is_removed(*order));
         self.passes.sort_by_key(|(order, _)| *order);
-        let passes = self.passes.into_iter().map(|(_, pass)| pass).collect();
+        let numbered = self.passes.into_iter().zip(0..);
+        let passes =
+            numbered.map(|((_, pass), order)| DrillPass { cut: PassCut { order, ..pass.cut }, ..pass });
+        let passes = passes.collect();
         (passes, self.milled, self.first_excess)
     }
 

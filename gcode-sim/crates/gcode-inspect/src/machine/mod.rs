@@ -118,6 +118,13 @@ pub struct WorkOffset {
     pub values: Vec<(AxisIndex, f64)>,
 }
 
+impl WorkOffset {
+    /// Returns the axes named, as bits.
+    pub fn axes(&self) -> u8 {
+        self.values.iter().fold(0, |bits, (axis, _)| bits | 1 << axis)
+    }
+}
+
 /// Position of the part on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {

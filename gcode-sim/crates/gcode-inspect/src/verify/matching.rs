@@ -1,13 +1,16 @@
 //! Matching of drilled and nominal holes, the nearest pairs first.
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
 use super::position::Deviation;
-use super::{Tolerances, bottom};
+use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
-use crate::machine::{Machine, ToolPart};
-use gcode_part::{Hole, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds};
+use crate::machine::{Machine, ToolKind, ToolPart};
+use gcode_part::{
+    FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds,
+};
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
 const MAX_LINE_DISTANCE: f64 = 5.0;
@@ -23,6 +26,9 @@ const NEARNESS: f64 = 1e-6;
 
 /// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
 const TILTED_HOLE_COSINE: f64 = 0.866_025_403_784_438_6;
+
+/// Cosine of the largest angle between the axes of two holes that meet.
+const MIN_OPPOSITE_COSINE: f64 = 0.999_999;
 
 /// A nominal hole and the drilled one matched with it, by their indices in the lists.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +66,8 @@ pub struct Comparison<'a> {
     pub in_air: Vec<usize>,
     /// The nominal hole matched with a line, by the first drilled hole of the line.
     nominal_by_line: Vec<Option<usize>>,
+    /// Entries of the nominal holes, for the first query.
+    entries: OnceCell<PointTree>,
 }
 
 impl<'a> Comparison<'a> {
@@ -154,6 +162,54 @@ impl<'a> Comparison<'a> {
             repeated,
             in_air: Vec::new(),
             nominal_by_line,
+            entries: OnceCell::new(),
+        }
+    }
+
+    /// Returns the depth in a through hole below which nominal holes from the far side, on its axis and at least as wide,
+    /// remove the metal; infinite without one.
+    pub(super) fn counter_depth(&self, hole: &Hole, diameter: f64) -> f64 {
+        let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
+        let far = entry - out * (hole.depth + MAX_BREAK_THROUGH);
+        let (low, high) = (entry.inf(&far), entry.sup(&far));
+        let margin = Vector3::repeat(self.tolerances.position);
+        let entries = || PointTree::new(self.nominal.iter().map(|hole| Point3::from(hole.entry)));
+        let mut least = f64::INFINITY;
+        self.entries.get_or_init(entries).in_box(&(low - margin), &(high + margin), &mut |index| {
+            let other = &self.nominal[index];
+            let offset = Point3::from(other.entry) - entry;
+            let is_opposite = out.dot(&Vector3::from(other.axis)) < -MIN_OPPOSITE_COSINE;
+            let is_on_axis = offset.cross(&out).norm() <= self.tolerances.position / 2.0;
+            let begins = -offset.dot(&out);
+            if is_opposite && is_on_axis && !exceeds(hole.depth - begins, self.tolerances.depth) {
+                least = least.min(begins + self.tolerances.depth - full_depth(other, diameter));
+            }
+        });
+        least
+    }
+
+    /// Takes repeated passes of taps and reamers as extra ones unless they follow the pass that they repeat: called again later,
+    /// they don't spring, and a thread or a fit suffers.
+    pub(super) fn reject_second_finishing(&mut self, machine: &Machine) {
+        let actual = self.actual;
+        let is_rejected = |index: &usize| {
+            let again = &actual[*index];
+            let kind = machine.kind_of(again.tool);
+            let is_fit =
+                again.finishing_cut.is_tapping || matches!(kind, Some(ToolKind::Tap | ToolKind::Reamer));
+            let on_line = actual[again.first_on_line..].iter();
+            let mut passes = on_line
+                .take_while(|hole| hole.first_on_line == again.first_on_line)
+                .flat_map(DrilledHole::passes);
+            let before = again.finishing_cut.order.wrapping_sub(1);
+            is_fit && !passes.any(|pass| pass.tool == again.tool && pass.cut.order == before)
+        };
+        let (rejected, repeated): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.repeated).into_iter().partition(is_rejected);
+        self.repeated = repeated;
+        if !rejected.is_empty() {
+            self.extra.extend(rejected);
+            self.extra.sort_unstable();
         }
     }
 
@@ -241,6 +297,23 @@ impl<'a> Comparison<'a> {
     pub fn id(&self, nominal: usize) -> &str {
         self.nominal[nominal].id.as_deref().unwrap_or("?")
     }
+}
+
+/// Returns the depth down to which a hole is at least as wide as `diameter`, mm. A drill's point may end it.
+fn full_depth(hole: &Hole, diameter: f64) -> f64 {
+    let depth = |kind: FeatureKind, own: f64, bottom: f64| match kind {
+        FeatureKind::Drill => bottom - POINT_LENGTH * own,
+        _ => bottom,
+    };
+    if hole.features.is_empty() {
+        let own = hole.diameter.filter(|own| diameter <= *own + DIAMETER_TOLERANCE);
+        return own.map_or(0.0, |own| depth(FeatureKind::Drill, own, hole.depth));
+    }
+    let wide = hole.features.iter().filter(|one| {
+        !matches!(one.kind, FeatureKind::Countersink | FeatureKind::Tap)
+            && diameter <= one.diameter + DIAMETER_TOLERANCE
+    });
+    wide.map(|one| depth(one.kind, one.diameter, one.bottom())).fold(0.0, f64::max)
 }
 
 /// Returns true if a tool goes a second time to the same depth of a hole, within the tolerance of its position: a spring pass,

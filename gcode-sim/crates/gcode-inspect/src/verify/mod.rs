@@ -98,6 +98,7 @@ pub fn verify(
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
+    comparison.reject_second_finishing(machine);
     let body = reference.body(machine.stock.as_ref());
     if let Some(body) = &body {
         comparison.leave_out_air_feeds(body, machine);

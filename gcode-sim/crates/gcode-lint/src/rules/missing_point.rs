@@ -29,19 +29,20 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let mut words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
-    let is_inch = words.any(|words| g_codes(words).any(|row| row.effect == Effect::Unit(Unit::Inch)));
+    let is_inch = words.any(|words| BlockCodes::of(words).has(|effect| *effect == Effect::Unit(Unit::Inch)));
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
     for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
-        for word in measured_words(words, settings) {
+        let codes = BlockCodes::of(words);
+        for word in codes.measured_words(settings) {
             let Some(number) = without_point(word) else { continue };
             let is_count =
-                (word.letter == b'Q' && words.call().is_none()) || measured(words) == Measured::Seconds;
+                (word.letter == b'Q' && words.call().is_none()) || codes.measured == Measured::Seconds;
             if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
             let written = spelled(word.letter, number);
-            let message = format!("{written} is {}", meaning(word.letter, number, words, settings, is_inch));
+            let message = format!("{written} is {}", codes.meaning(word.letter, number, settings, is_inch));
             let finding = unit.finding(&RULE.kind, block, message).with_span(word.span);
             found.push(finding.help(format!("write {written}.")));
         }
@@ -67,9 +68,12 @@ const MANY_NUMBERS: usize = 4;
 /// Iterates over the literals that are lengths, angles or seconds.
 fn numbers<'a>(unit: &'a ProgramUnit<'_>, settings: &'a Settings) -> impl Iterator<Item = Decimal> + 'a {
     let words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
-    words.flat_map(|words| measured_words(words, settings)).filter_map(|word| match word.value {
-        WordOperand::Literal(number) => Some(number),
-        _ => None,
+    words.flat_map(|words| {
+        let literal = |word: &LoweredWord| match word.value {
+            WordOperand::Literal(number) => Some(number),
+            _ => None,
+        };
+        BlockCodes::of(words).measured_words(settings).filter_map(literal).collect::<Vec<_>>()
     })
 }
 
@@ -80,49 +84,84 @@ fn block_words(kind: &OpKind) -> Option<&Words> {
     }
 }
 
-/// Iterates over the rows of a block's G codes, each on the first control that has it.
-fn g_codes(words: &Words) -> impl Iterator<Item = &'static GCodeRow> + '_ {
-    words.g_codes().filter_map(|found| found.row_for_any())
+/// Words of a block, with what its G codes make of them.
+struct BlockCodes<'w> {
+    words: &'w Words,
+    /// Rows of its G codes, each once and on the first control that has it.
+    rows: Vec<&'static GCodeRow>,
+    /// Words that are measured; the code that leaves fewest takes precedence.
+    measured: Measured,
+    /// K counts repeats: it is a length only in an arc or with I or J.
+    counts_by_k: bool,
 }
 
-/// Returns which words of a block are measured; the code that leaves fewest takes precedence.
-fn measured(words: &Words) -> Measured {
-    g_codes(words).map(|row| row.facts.words.measured).max().unwrap_or(Measured::AsInMove)
-}
-
-/// Iterates over the words of a block that are lengths, angles or seconds.
-fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a LoweredWord> {
-    let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
-    // The arguments of a macro call that a control scales: all but D E F H M S T.
-    let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
-    let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
-    // K of a canned cycle counts repeats; it is a length only in an arc or with I or J.
-    plain.filter(move |word| word.letter != b'K' || !is_drilling(words)).chain(scaled)
-}
-
-fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
-    let is_axis = settings.axes.find(word.letter).is_some();
-    match (measured(words), word.letter) {
-        (Measured::Nothing, _) => false,
-        (Measured::Seconds, letter) => matches!(letter, b'X' | b'U'),
-        (Measured::ByTable, letter) => match parameters::data_input_kind(words) {
-            Some(2 | 20) => is_axis,
-            Some(1 | 10..=13) => letter == b'R',
-            _ => false,
-        },
-        (Measured::AsInMove, b'Q') => {
-            g_codes(words).any(|row| matches!(row.effect, Effect::Cycle(Some(cycle)) if cycle.uses_q()))
+impl<'w> BlockCodes<'w> {
+    fn of(words: &'w Words) -> Self {
+        let mut rows: Vec<&'static GCodeRow> = Vec::new();
+        for row in words.g_codes().filter_map(|found| found.row_for_any()) {
+            if !rows.iter().any(|other| std::ptr::eq(*other, row)) {
+                rows.push(row);
+            }
         }
-        (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => true,
-        (Measured::AsInMove, b'C') if word.comma => true,
-        (Measured::AsInMove | Measured::Axes, _) => is_axis,
+        let measured = rows.iter().map(|row| row.facts.words.measured).max().unwrap_or(Measured::AsInMove);
+        let codes = Self { words, rows, measured, counts_by_k: false };
+        let is_arc = codes
+            .has(|effect| matches!(effect, Effect::Motion(Motion::Clockwise | Motion::Counterclockwise)));
+        let counts_by_k = !is_arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'));
+        Self { counts_by_k, ..codes }
     }
-}
 
-fn is_drilling(words: &Words) -> bool {
-    let arc = g_codes(words)
-        .any(|row| matches!(row.effect, Effect::Motion(Motion::Clockwise | Motion::Counterclockwise)));
-    !arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'))
+    /// Returns true if one of the codes has an effect.
+    fn has(&self, is_one: impl Fn(&Effect) -> bool) -> bool {
+        self.rows.iter().any(|row| is_one(&row.effect))
+    }
+
+    /// Iterates over the words that are lengths, angles or seconds.
+    fn measured_words(&self, settings: &Settings) -> impl Iterator<Item = &'w LoweredWord> {
+        let plain = self.words.list.iter().filter(move |word| self.is_measure(word, settings));
+        // The arguments of a macro call that a control scales: all but D E F H M S T.
+        let arguments = self.words.call().into_iter().flat_map(|call| &call.arguments);
+        let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
+        plain.filter(move |word| word.letter != b'K' || !self.counts_by_k).chain(scaled)
+    }
+
+    fn is_measure(&self, word: &LoweredWord, settings: &Settings) -> bool {
+        let is_axis = settings.axes.find(word.letter).is_some();
+        match (self.measured, word.letter) {
+            (Measured::Nothing, _) => false,
+            (Measured::Seconds, letter) => matches!(letter, b'X' | b'U'),
+            (Measured::ByTable, letter) => match parameters::data_input_kind(self.words) {
+                Some(2 | 20) => is_axis,
+                Some(1 | 10..=13) => letter == b'R',
+                _ => false,
+            },
+            (Measured::AsInMove, b'Q') => {
+                self.has(|effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.uses_q()))
+            }
+            (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => true,
+            (Measured::AsInMove, b'C') if word.comma => true,
+            (Measured::AsInMove | Measured::Axes, _) => is_axis,
+        }
+    }
+
+    /// Returns the value of a number with its unit, `0.003 mm`.
+    fn meaning(&self, letter: u8, number: Decimal, settings: &Settings, inch: bool) -> String {
+        let is_angle = match letter {
+            b'A' | b'B' | b'C' => true,
+            letter => self.rows.iter().any(|row| row.facts.words.angles.has(letter)),
+        };
+        let is_dwell = self.measured == Measured::Seconds;
+        let finer = if inch && !is_angle && !is_dwell { 10.0 } else { 1.0 };
+        let per_unit = settings.increment.per_unit() * finer;
+        let unit = match () {
+            () if self.words.call().is_some() => "for the macro",
+            () if is_dwell => "seconds",
+            () if is_angle => "degrees",
+            () if inch => "inch",
+            () => "mm",
+        };
+        format!("{} {unit}", number.value() / per_unit)
+    }
 }
 
 /// Returns true for a program that counts in increments on purpose.
@@ -142,25 +181,6 @@ fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
 fn spelled(letter: u8, number: Decimal) -> String {
     let sign = if number.negative { "-" } else { "" };
     format!("{}{sign}{}", char::from(letter), number.digits)
-}
-
-/// Returns the value of a number with its unit, `0.003 mm`.
-fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
-    let is_angle = match letter {
-        b'A' | b'B' | b'C' => true,
-        letter => g_codes(words).any(|row| row.facts.words.angles.has(letter)),
-    };
-    let is_dwell = measured(words) == Measured::Seconds;
-    let finer = if inch && !is_angle && !is_dwell { 10.0 } else { 1.0 };
-    let per_unit = settings.increment.per_unit() * finer;
-    let unit = match () {
-        () if words.call().is_some() => "for the macro",
-        () if is_dwell => "seconds",
-        () if is_angle => "degrees",
-        () if inch => "inch",
-        () => "mm",
-    };
-    format!("{} {unit}", number.value() / per_unit)
 }
 
 #[cfg(test)]

@@ -16,14 +16,16 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             continue;
         }
         let depth = nominal.depth + error;
-        let message = format!(
-            "hole {} is {depth:.3} mm deep, nominal {}: {:.3} mm too {} (tolerance ±{})",
-            comparison.id(pair.nominal),
-            nominal.depth,
-            error.abs(),
-            if error > 0.0 { "deep" } else { "shallow" },
-            comparison.tolerances.depth
-        );
+        let (id, limit) = (comparison.id(pair.nominal), comparison.tolerances.depth);
+        let (nominal_depth, side) = (nominal.depth, if error > 0.0 { "deep" } else { "shallow" });
+        let off = format!("{:.3} mm too {side} (tolerance ±{limit})", error.abs());
+        let message = match depth < 0.0 {
+            true => format!(
+                "the feed at hole {id} ends {:.3} mm above its entry, nominal {nominal_depth} deep: {off}",
+                -depth
+            ),
+            false => format!("hole {id} is {depth:.3} mm deep, nominal {nominal_depth}: {off}"),
+        };
         let finding = Diagnostic::new(&HOLE_DEPTH, message)
             .help("check the programmed depth, the tool length and its offset")
             .with_backtrace(deepest_pass(drilled).clone());

@@ -1,6 +1,6 @@
 //! Features of each hole: each is made, to its depth, and no tool cuts wider than the hole is.
 use super::*;
-use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH, HOLE_NOT_THROUGH};
+use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH};
 use crate::machine::{PointShape, ToolKind};
 use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
@@ -232,7 +232,7 @@ impl Judgement<'_> {
         self.findings.push(finding);
     }
 
-    fn report_missing(&mut self, feature: &Feature) {
+    pub(super) fn report_missing(&mut self, feature: &Feature) {
         let message = format!("hole {}: no tool makes the {}", self.id, feature.describe());
         let cuts: Vec<_> =
             self.near.iter().map(|cut| format!("{} to {:.3} mm", cut.name(), cut.tip)).collect();
@@ -394,73 +394,6 @@ impl Judgement<'_> {
             .help("correct the programmed depth, or give the hole's features in the reference")
             .with_backtrace(cut.pass.backtrace.clone());
         self.findings.push(finding);
-    }
-
-    /// Reports the cuts that go farther beyond the far side of a through hole than any of them has to.
-    fn judge_break_through(&mut self, surface: Option<Surface>) {
-        let (nominal, id) = (self.nominal, self.id);
-        if !nominal.through {
-            return;
-        }
-        let thickness =
-            surface.map_or(0.0, |surface| through::thickness(&surface, nominal)).max(nominal.depth);
-        let beyond = |cut: &&Cut<'_>| through::break_through(cut, nominal, thickness);
-        let all = self.near.iter().chain(&self.far);
-        let Some(cut) = all.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else { return };
-        let (limit, beyond) = (MAX_BREAK_THROUGH, beyond(&cut));
-        if !exceeds(beyond, limit) {
-            return;
-        }
-        let message = format!(
-            "hole {id} is {thickness:.3} mm deep, and {} goes through it by {beyond:.3} mm besides its point: limit {limit}",
-            cut.name()
-        );
-        let finding = Diagnostic::new(&HOLE_DEPTH, message)
-            .note("below the part are the table, the vise and the parallels")
-            .help("check the programmed depth, the tool length and its offset")
-            .with_backtrace(cut.pass.backtrace.clone());
-        self.findings.push(finding);
-    }
-
-    /// Reports a through hole, or a feature of one, that does not break out.
-    fn judge_through(&mut self, feature: Option<&Feature>, surface: Option<Surface>) {
-        let tolerances = self.comparison.tolerances;
-        let own = self.nominal.diameter;
-        let makes =
-            |cut: &&Cut<'_>| match feature {
-                Some(feature) => cut.mismatch(feature, tolerances).is_some(),
-                // A pilot of another diameter doesn't make the hole.
-                None => cut.pass.diameter.zip(own).is_none_or(|(diameter, nominal)| {
-                    !exceeds((diameter - nominal).abs(), tolerances.diameter)
-                }),
-            };
-        let diameter = feature.map(|feature| feature.diameter).or(self.nominal.diameter).unwrap_or(0.0);
-        let mut gaps = Vec::new();
-        let mut reach = |cuts: &[Cut<'_>]| {
-            let depth = |cut: &Cut<'_>| cut.full_depth(diameter).unwrap_or(cut.tip);
-            let deepest = cuts.iter().filter(makes).max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
-            if deepest.full_depth(diameter).is_none() {
-                gaps.push(ShapeGap::FullThrough(deepest.pass.tool));
-            }
-            Some((depth(deepest).max(0.0), deepest.pass.backtrace.clone()))
-        };
-        let sides = [reach(&self.near), reach(&self.far)];
-        self.gaps.extend(gaps);
-        let thickness =
-            surface.map_or(0.0, |surface| through::rim_thickness(&surface, self.nominal, diameter / 2.0));
-        let depth = thickness.max(self.nominal.depth);
-        let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
-        let Some((_, place)) = sides.into_iter().flatten().next() else {
-            feature.into_iter().for_each(|feature| self.report_missing(feature));
-            return;
-        };
-        if exceeds(depth, cut) {
-            let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
-            let message =
-                format!("hole {}{name} does not break out: {cut:.3} mm of {depth:.3} mm are cut", self.id);
-            let finding = Diagnostic::new(&HOLE_NOT_THROUGH, message).with_backtrace(place);
-            self.findings.push(finding.help("drill deeper: the full diameter has to pass the far side"));
-        }
     }
 }
 

@@ -5,6 +5,9 @@ use crate::findings::{MIRROR_IMAGE, ROTARY_SIGN};
 /// Least share of the nominal holes that the mirrored ones must match.
 const MIN_AGREEING_SHARE: f64 = 0.8;
 
+/// Cosine of the largest angle between the negated axis and holes that the image turns over: 30°.
+const MIN_TURNED_COSINE: f64 = 0.866_025_403_784_438_6;
+
 /// A mirror image of the pattern in place of the pattern.
 pub(in crate::verify) struct MirrorImage {
     /// Negated axis of the part, 0 to 2 for x, y, z.
@@ -22,7 +25,12 @@ impl MirrorImage {
         }
         let count = |one: &Comparison<'_>| one.pairs.iter().filter(|pair| one.is_in_place(pair)).count();
         let before = count(comparison);
-        [2, 0, 1].into_iter().find_map(|axis| {
+        // A mirror image of a coordinate leaves the direction from which the tool cuts.
+        let is_turned_over = |axis: usize| {
+            let mut extra = comparison.extra.iter();
+            extra.all(|index| MIN_TURNED_COSINE <= comparison.actual[*index].axis[axis].abs())
+        };
+        [2, 0, 1].into_iter().filter(|axis| !is_turned_over(*axis)).find_map(|axis| {
             let mirrored: Vec<_> = comparison.actual.iter().map(|hole| mirror(hole, axis)).collect();
             let compared =
                 Comparison::new(comparison.nominal, &mirrored, comparison.tolerances, comparison.pattern);

@@ -3,6 +3,15 @@ use super::*;
 use crate::findings::HOLE_MISSING;
 use crate::verify::bottom;
 
+/// Cosine of the largest angle between holes of one side of the part: 30°.
+const MIN_SIDE_COSINE: f64 = 0.866_025_403_784_438_6;
+
+/// Steps of a component of a direction.
+const DIRECTION_STEPS: f64 = 100.0;
+
+/// Largest distance from the axis of a hole at which a feed is on it, mm.
+const ON_AXIS: f64 = 0.5;
+
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
     // A repeated hole is not a missing one in a wrong position.
@@ -12,20 +21,36 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let left_out = comparison.in_air.first().map(|index| &comparison.actual[*index]);
     let left_out = left_out.map(|hole| (hole.bottom(), hole.backtrace.clone()));
     let beside = left_out.or_else(|| inspection.extraction.feeds_in_air.first().cloned());
+    let directions: BTreeSet<[i32; 3]> = comparison.actual.iter().map(|hole| rounded(&hole.axis)).collect();
+    let has_direction = |nominal: &Hole| {
+        let out = Vector3::from(nominal.axis);
+        let cosine = |one: &[i32; 3]| Vector3::from(one.map(f64::from)).dot(&out) / DIRECTION_STEPS;
+        directions.is_empty() || directions.iter().any(|one| MIN_SIDE_COSINE <= cosine(one))
+    };
     for nominal in &comparison.missing {
         let end = bottom(&comparison.nominal[*nominal]);
         let finding = Diagnostic::new(&HOLE_MISSING, format!("hole {} is missing", comparison.id(*nominal)));
         let finding = match tree.nearest(&end) {
+            _ if beside.is_none() && !has_direction(&comparison.nominal[*nominal]) => finding
+                .note("no tool cuts from its side of the part")
+                .help("check the angle of the table or of the head, and whether the program commands it"),
             Some((near, distance)) => {
                 let off = extra[near].bottom() - end;
-                finding
-                    .note(format!(
-                        "the nearest extra hole ends {distance:.3} mm away; actual − nominal: x {:+.3}, y \
-                         {:+.3}, z {:+.3} mm",
-                        off.x, off.y, off.z
-                    ))
-                    .help("if that hole is the intended one, correct its position; otherwise add the missing hole")
-                    .with_backtrace(extra[near].backtrace.clone())
+                if let Some(height) = height_above(&comparison.nominal[*nominal], &off) {
+                    finding
+                        .note(format!("the feed on its axis ends {height:.3} mm above its entry"))
+                        .help("check Z and R of the cycle: in G91 R counts from the level before it, and Z from R")
+                        .with_backtrace(extra[near].backtrace.clone())
+                } else {
+                    finding
+                        .note(format!(
+                            "the nearest extra hole ends {distance:.3} mm away; actual − nominal: x {:+.3}, y \
+                             {:+.3}, z {:+.3} mm",
+                            off.x, off.y, off.z
+                        ))
+                        .help("if that hole is the intended one, correct its position; otherwise add the missing hole")
+                        .with_backtrace(extra[near].backtrace.clone())
+                }
             }
             None => match &beside {
                 Some((end, backtrace)) => finding
@@ -40,4 +65,16 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         };
         findings.add(Subject::Nominal(*nominal), finding);
     }
+}
+
+/// Returns a direction in steps, so that many holes have the same.
+fn rounded(axis: &Unit<Vector3<f64>>) -> [i32; 3] {
+    axis.into_inner().map(|part| (part * DIRECTION_STEPS).round() as i32).into()
+}
+
+/// Returns how far above the entry of a hole a feed on its axis ends, by the offset of that end from the bottom.
+fn height_above(nominal: &Hole, off: &Vector3<f64>) -> Option<f64> {
+    let out = Vector3::from(nominal.axis);
+    let (height, aside) = (off.dot(&out) - nominal.depth, off.cross(&out).norm());
+    (0.0 < height && aside <= ON_AXIS).then_some(height)
 }

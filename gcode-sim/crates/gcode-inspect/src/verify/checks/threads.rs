@@ -46,14 +46,16 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     {
         let Some(cut) = cut.map(|cut| &judged.near[cut]) else { continue };
         if let Some(helix) = cut.thread {
-            match milled_length(id, cut, &helix) {
+            match milled_length(id, cut, &helix, &judged.near) {
                 Some(MilledLength::Fault(finding)) => findings.push(finding),
                 Some(MilledLength::Comb) => judged.gaps.push(ShapeGap::ThreadLength(cut.pass.tool)),
                 None => {}
             }
         }
-        findings.extend(pitch(id, feature, cut));
-        findings.extend(hand(id, feature, cut));
+        // Each pass along the thread follows it.
+        let own = || judged.near.iter().filter(|one| one.is_thread() && one.is_same_size(&cut.pass));
+        findings.extend(own().find_map(|one| pitch(id, feature, one)));
+        findings.extend(own().find_map(|one| hand(id, feature, one)));
     }
     judged.findings.extend(findings);
 }
@@ -249,13 +251,28 @@ enum MilledLength {
     Comb,
 }
 
+/// Returns the upper end of a milled thread: that of its deepest pass, or of those of the same size that go on from there.
+fn top_of_thread(cut: &Cut<'_>, helix: &Helix, cuts: &[Cut<'_>]) -> f64 {
+    let span = |one: &Cut<'_>| {
+        let own = one.thread?;
+        let is_alike = !exceeds((own.lead - helix.lead).abs(), LEAD_TOLERANCE);
+        (is_alike && one.is_same_size(&cut.pass)).then_some((one.tip - own.height, one.tip))
+    };
+    let spans = || cuts.iter().filter_map(span);
+    let mut top = cut.tip - helix.height;
+    while let Some((higher, _)) = spans().find(|(start, tip)| *start < top && top - MAX_STEP <= *tip) {
+        top = higher;
+    }
+    top
+}
+
 /// Judges the upper end of a milled thread, which is at the entry or less than a turn below it.
-fn milled_length(id: &str, cut: &Cut<'_>, helix: &Helix) -> Option<MilledLength> {
-    let (top, lead) = (cut.tip - helix.height, helix.lead.abs());
+fn milled_length(id: &str, cut: &Cut<'_>, helix: &Helix, cuts: &[Cut<'_>]) -> Option<MilledLength> {
+    let (top, lead) = (top_of_thread(cut, helix, cuts), helix.lead.abs());
     if top < lead - LEAD_TOLERANCE {
         return None;
     }
-    if helix.height < MAX_COMB_TURNS * lead {
+    if cut.tip - top < MAX_COMB_TURNS * lead {
         return Some(MilledLength::Comb);
     }
     let message = format!(

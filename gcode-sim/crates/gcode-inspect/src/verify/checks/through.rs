@@ -1,11 +1,14 @@
+//! Through holes: they break out, and not too far.
+//!
 //! Nominal holes deeper than the part is thick along their axis: a warning, since the drawing may specify a through hole.
 //! The part may be thinner than its surface shows, a shell or cut off: no finding is no proof.
+use super::features::{Judgement, ShapeGap};
 use super::*;
-use crate::findings::HOLE_THROUGH;
+use crate::findings::{HOLE_DEPTH, HOLE_NOT_THROUGH, HOLE_THROUGH};
 use crate::holes::ring;
 use crate::verify::bottom;
 use crate::verify::hole_cuts::Cut;
-use gcode_part::POINT_LENGTH;
+use gcode_part::{Feature, POINT_LENGTH};
 
 /// Number of points on the wall of a hole.
 const RIM_POINTS: u32 = 16;
@@ -71,6 +74,78 @@ pub(super) fn rim_thickness(surface: &Surface, hole: &Hole, radius: f64) -> f64 
 pub(super) fn break_through(cut: &Cut<'_>, nominal: &Hole, thickness: f64) -> f64 {
     let diameter = cut.pass.diameter.or(nominal.widest_diameter()).unwrap_or(0.0);
     cut.full_depth(diameter).unwrap_or(cut.tip - POINT_LENGTH * diameter) - thickness
+}
+
+impl Judgement<'_> {
+    /// Reports the cuts that go farther beyond the far side of a through hole than any of them has to.
+    pub(super) fn judge_break_through(&mut self, surface: Option<Surface>) {
+        let (nominal, id) = (self.nominal, self.id);
+        if !nominal.through {
+            return;
+        }
+        let thickness = surface.map_or(0.0, |surface| thickness(&surface, nominal)).max(nominal.depth);
+        let beyond = |cut: &&Cut<'_>| break_through(cut, nominal, thickness);
+        let all = self.near.iter().chain(&self.far);
+        let Some(cut) = all.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else { return };
+        let (limit, beyond) = (MAX_BREAK_THROUGH, beyond(&cut));
+        if !exceeds(beyond, limit) {
+            return;
+        }
+        let message = format!(
+            "hole {id} is {thickness:.3} mm deep, and {} goes through it by {beyond:.3} mm besides its point: limit {limit}",
+            cut.name()
+        );
+        let finding = Diagnostic::new(&HOLE_DEPTH, message)
+            .note("below the part are the table, the vise and the parallels")
+            .help("check the programmed depth, the tool length and its offset")
+            .with_backtrace(cut.pass.backtrace.clone());
+        self.findings.push(finding);
+    }
+
+    /// Reports a through hole, or a feature of one, that does not break out.
+    pub(super) fn judge_through(&mut self, feature: Option<&Feature>, surface: Option<Surface>) {
+        let tolerances = self.comparison.tolerances;
+        let own = self.nominal.diameter;
+        let makes =
+            |cut: &&Cut<'_>| match feature {
+                Some(feature) => cut.mismatch(feature, tolerances).is_some(),
+                // A pilot of another diameter doesn't make the hole.
+                None => cut.pass.diameter.zip(own).is_none_or(|(diameter, nominal)| {
+                    !exceeds((diameter - nominal).abs(), tolerances.diameter)
+                }),
+            };
+        let diameter = feature.map(|feature| feature.diameter).or(self.nominal.diameter).unwrap_or(0.0);
+        let mut gaps = Vec::new();
+        let mut reach = |cuts: &[Cut<'_>]| {
+            let depth = |cut: &Cut<'_>| cut.full_depth(diameter).unwrap_or(cut.tip);
+            let deepest = cuts.iter().filter(makes).max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
+            if deepest.full_depth(diameter).is_none() {
+                gaps.push(ShapeGap::FullThrough(deepest.pass.tool));
+            }
+            Some((depth(deepest).max(0.0), deepest.pass.backtrace.clone()))
+        };
+        let sides = [reach(&self.near), reach(&self.far)];
+        self.gaps.extend(gaps);
+        let thickness = surface.map_or(0.0, |surface| rim_thickness(&surface, self.nominal, diameter / 2.0));
+        let depth = thickness.max(self.nominal.depth);
+        let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
+        let Some((_, place)) = sides.into_iter().flatten().next() else {
+            feature.into_iter().for_each(|feature| self.report_missing(feature));
+            return;
+        };
+        if !exceeds(depth, cut) {
+            return;
+        }
+        // A coaxial hole from the far side is the rest of this one.
+        let depth = depth.min(self.comparison.counter_depth(self.nominal, diameter));
+        if exceeds(depth, cut) {
+            let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
+            let message =
+                format!("hole {}{name} does not break out: {cut:.3} mm of {depth:.3} mm are cut", self.id);
+            let finding = Diagnostic::new(&HOLE_NOT_THROUGH, message).with_backtrace(place);
+            self.findings.push(finding.help("drill deeper: the full diameter has to pass the far side"));
+        }
+    }
 }
 
 #[cfg(test)]
