@@ -126,3 +126,22 @@ fn a_refused_request_writes_no_document() {
         }
     }
 }
+
+/// What a command needs stands first among its options, and the conditions of a run are a group of their own.
+#[test]
+fn help_has_groups_and_begins_with_what_is_required() {
+    for (command, first) in [
+        ("verify", "--reference"),
+        ("render", "-o, --output"),
+        ("budget", "--errors"),
+        ("new reference", "--from"),
+    ] {
+        let text = help(&format!("gcode-sim {command}"));
+        let options = text.split("\nOptions:\n").nth(1).unwrap();
+        assert!(options.trim_start().starts_with(first), "{command}\n{text}");
+        if command != "budget" {
+            let group = text.split("\nMachine, control and start of the run:\n").nth(1).unwrap();
+            assert!(group.contains("--machine") && !group.contains("--format"), "{command}\n{text}");
+        }
+    }
+}

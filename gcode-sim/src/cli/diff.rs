@@ -7,7 +7,7 @@ use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::library::Folders;
 use super::project::{self, Project};
-use super::{ExitStatus, UsageError, options, output, page, render, unused_machine};
+use super::{ExitStatus, UsageError, options, output, page, progress, render, unused_machine};
 use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
@@ -86,8 +86,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     }
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
-    let old = Revision::observed(&old_request, &mut old_folders, metal(&old_request), &mut old_trace)?;
-    let new = Revision::observed(&new_request, &mut new_folders, metal(&new_request), &mut new_trace)?;
+    let old = progress::of_run(&mut old_request, |request| {
+        Revision::observed(request, &mut old_folders, metal(request), &mut old_trace)
+    })?;
+    let new = progress::of_run(&mut new_request, |request| {
+        Revision::observed(request, &mut new_folders, metal(request), &mut new_trace)
+    })?;
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let unexecuted = unexecuted(&old, &new);
     let report = ChangesReport::new(

@@ -17,7 +17,7 @@ pub mod output;
 pub mod overwrite_guard;
 pub mod packaging;
 mod page;
-mod progress;
+pub mod progress;
 mod project;
 mod readings;
 mod reference;

@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     program: ProgramArguments,
 
     /// The picture to write
-    #[arg(short, long, value_name = "OUT.png")]
+    #[arg(short, long, value_name = "OUT.png", display_order = 0)]
     output: PathBuf,
 
     /// The reference: draws the outline, each hole's verdict and its deviation
