@@ -141,6 +141,7 @@ fn help_has_groups_and_begins_with_what_is_required() {
         assert!(options.trim_start().starts_with(first), "{command}\n{text}");
         if command != "budget" {
             let group = text.split("\nMachine, control and start of the run:\n").nth(1).unwrap();
+            let group = group.split("\nExamples:").next().unwrap();
             assert!(group.contains("--machine") && !group.contains("--format"), "{command}\n{text}");
         }
     }

@@ -28,9 +28,6 @@ pub(super) struct Arguments {
     #[arg(value_name = "NEW.nc")]
     new: PathBuf,
 
-    #[command(flatten)]
-    run: RunConditions,
-
     /// A folder that holds the programs OLD.nc calls, instead of --lib (repeatable)
     #[arg(long = "old-lib", value_name = "DIR")]
     old_libraries: Vec<PathBuf>,
@@ -55,6 +52,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
+
+    #[command(flatten)]
+    run: RunConditions,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {

@@ -13,9 +13,6 @@ use gcode_session::{Request, Simulation};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    program: ProgramArguments,
-
-    #[command(flatten)]
     deny: DenyArguments,
 
     /// Also write a page to this file: the holes, the path, the blocks and the values of the variables; opens in
@@ -26,6 +23,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
     format: ListFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {

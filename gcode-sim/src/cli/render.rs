@@ -19,9 +19,6 @@ use gcode_session::{Request, Run, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    program: ProgramArguments,
-
     /// The picture to write
     #[arg(short, long, value_name = "OUT.png", display_order = 0)]
     output: PathBuf,
@@ -56,6 +53,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

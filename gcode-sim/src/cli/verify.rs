@@ -22,9 +22,6 @@ use gcode_session::{Request, Run, Simulation};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    program: ProgramArguments,
-
     /// The reference: a hole list (JSON or CSV) or a job file (TOML) [default: that of the program in gcode.toml]
     #[arg(long, value_name = "REF", display_order = 0)]
     reference: Option<PathBuf>,
@@ -61,6 +58,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 impl Arguments {
