@@ -17,6 +17,7 @@ pub mod output;
 pub mod overwrite_guard;
 pub mod packaging;
 mod page;
+mod page_command;
 pub mod progress;
 mod project;
 mod readings;
@@ -133,6 +134,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Readings(arguments) => readings::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Page(arguments) => page_command::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
