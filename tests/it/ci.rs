@@ -171,3 +171,27 @@ fn the_commands_of_the_workflow_have_the_results_of_the_page() {
     assert!(sarif.contains("\"uri\": \"macros/O9001.nc\""), "{sarif}");
     assert!(std::fs::read_to_string(place.path().join("result.xml")).unwrap().contains("failures=\"1\""));
 }
+
+/// The last step of docs/tutorial.md: the case of the dump is accepted and committed, and the commit of its edited digit is refused.
+#[cfg(unix)]
+#[test]
+fn the_hook_refuses_the_changed_digit_of_the_tutorial() {
+    let repository = repository();
+    let place = repository.path();
+    let tutorial = workspace().join("examples/first-hour");
+    copy_folder(&tutorial.join("parts"), &place.join("parts"));
+    let machine = "gcode-sim new machine --kind 3-axis -o parts/flange/machine.toml";
+    for line in [machine, "gcode-sim test parts --lib macros --only flange --accept"] {
+        assert!(run_line(line, place).status.success(), "{line}");
+    }
+    git(place, &["add", "--all"]);
+    assert!(git(place, &["commit", "--quiet", "-m", "Flange"]).status.success());
+    std::fs::copy(tutorial.join("edited/flange/DUMP.TXT"), place.join("parts/flange/DUMP.TXT")).unwrap();
+    git(place, &["add", "--all"]);
+    let refused = git(place, &["commit", "--quiet", "-m", "Digit"]);
+    let words = [refused.stdout, refused.stderr].concat();
+    let words = String::from_utf8_lossy(&words);
+    assert!(!refused.status.success() && words.contains("commit refused"), "{words}");
+    // The radius is 0.5 larger, and so is the way of each hole from the centre.
+    assert!(words.contains("holes 1, 2, 3, 4, 5, 6: moved by up to 0.5000 mm"), "{words}");
+}

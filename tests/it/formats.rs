@@ -8,6 +8,7 @@ const COMMANDS: &[(&str, &str, &[&str])] = &[
     ("gcode-sim", "reference", &["json", "text", "csv"]),
     ("gcode-sim", "verify", &["text", "json", "sarif"]),
     ("gcode-sim", "render", &["text", "json"]),
+    ("gcode-sim", "page", &[]),
     ("gcode-sim", "readings", &["text", "json", "csv"]),
     ("gcode-sim", "check", &["text", "json", "sarif"]),
     ("gcode-sim", "diff", &["text", "json", "sarif"]),
@@ -123,6 +124,26 @@ fn a_refused_request_writes_no_document() {
             let done = run_line(&line, &std::env::temp_dir());
             assert_eq!((done.status.code(), done.stdout.len()), (Some(2), 0), "{line}");
             assert!(!done.stderr.is_empty(), "{line}");
+        }
+    }
+}
+
+/// What a command needs stands first among its options, and the conditions of a run are a group of their own.
+#[test]
+fn help_has_groups_and_begins_with_what_is_required() {
+    for (command, first) in [
+        ("verify", "--reference"),
+        ("render", "-o, --output"),
+        ("budget", "--errors"),
+        ("new reference", "--from"),
+    ] {
+        let text = help(&format!("gcode-sim {command}"));
+        let options = text.split("\nOptions:\n").nth(1).unwrap();
+        assert!(options.trim_start().starts_with(first), "{command}\n{text}");
+        if command != "budget" {
+            let group = text.split("\nMachine, control and start of the run:\n").nth(1).unwrap();
+            let group = group.split("\nExamples:").next().unwrap();
+            assert!(group.contains("--machine") && !group.contains("--format"), "{command}\n{text}");
         }
     }
 }

@@ -469,3 +469,31 @@ fn sha256(bytes: Vec<u8>) -> String {
     let said = sum.wait_with_output().unwrap().stdout;
     String::from_utf8(said).unwrap().split(' ').next().unwrap().to_owned()
 }
+
+/// A page of one program: its path is played move by move, and goes back.
+#[test]
+fn a_person_plays_a_program_and_goes_back() {
+    let place = tempfile::tempdir().unwrap();
+    let program = "O1\nG21 G90 G54 G0 X0. Y0. Z50.\nG1 Z-1. F100\nX10.\nY10.\nX0.\nG0 Z50.\nM30\n";
+    std::fs::write(place.path().join("O1.nc"), program).unwrap();
+    assert!(programs::run_line("gcode-sim page O1.nc -o page.html", place.path()).status.success());
+    let browser = Browser::start(1400, 1000);
+    browser.open(&place.path().join("page.html"));
+    let all = picture(&browser, "new");
+    browser.click("[data-play=step]");
+    browser.click("[data-play=step]");
+    browser.click("[data-play=step]");
+    assert!(picked(&browser).contains("O0001:4 X10."), "{}", picked(&browser));
+    let third = picture(&browser, "new");
+    assert_ne!(third, all);
+    browser.click("[data-play=back]");
+    assert!(picked(&browser).contains("O0001:3 G1 Z-1. F100"), "{}", picked(&browser));
+    browser.click("[data-play=step]");
+    assert_eq!(picture(&browser, "new"), third, "back and forward again");
+    // Played, it ends at its last move, and the button is one to play again.
+    browser.click("[data-play=play]");
+    std::thread::sleep(std::time::Duration::from_millis(800));
+    assert_eq!(browser.run("return document.getElementById('progress-count').textContent"), "6 of 6");
+    assert!(picked(&browser).contains("O0001:7 G0 Z50."), "{}", picked(&browser));
+    is_quiet(&browser);
+}

@@ -7,7 +7,7 @@ use anstream::adapter::strip_str;
 use gcode_draw::{FileFormat, Picture, Size};
 use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
-use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
+use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard, progress};
 
 use super::emitted_files::{self, EmittedFiles};
 use crate::check::{CheckError, CheckedPackage, check};
@@ -30,7 +30,8 @@ pub(super) fn emit_verified(path: &Path) -> Result<Emitted, UsageError> {
     let job = Job::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))?;
     let package = families::emit(&job);
     let name = path.display();
-    let (checked, reasons) = match check(&job, &package) {
+    let checked = progress::of_work("simulating and verifying the programs", || check(&job, &package));
+    let (checked, reasons) = match checked {
         Ok(checked) if checked.refusals.is_empty() => (Some(checked), None),
         Ok(checked) => {
             let reasons = checked.refusals.concat();

@@ -4,8 +4,8 @@ use clap::{Parser, Subcommand};
 
 use super::common::Colours;
 use super::{
-    budget, check, compare, diff, explain, holes, new, packaging, readings, reference, render, run, schema,
-    settings, test, verify,
+    budget, check, compare, diff, explain, holes, new, packaging, page_command, readings, reference, render,
+    run, schema, settings, test, verify,
 };
 
 /// Executes Fanuc Custom Macro B programs as the control does, follows the tool on the part, and compares the holes
@@ -80,6 +80,16 @@ Examples:
   gcode-sim render O1234.nc --view iso --color-by tool -o iso.png
   gcode-sim render O8100.nc --reference job.toml -o top.png --size 1600x1200")]
     Render(render::Arguments),
+
+    /// Write a page that shows a program: its path in 3-D to rotate and to play, its blocks and variables; opens in any browser
+    #[command(after_help = "\
+Examples:
+  gcode-sim page O1234.nc -o page.html
+  gcode-sim page O1234.nc -o page.html --machine machine.toml --reference O1234.csv
+
+The page is one file and needs no network. Click a move to see its block and the calls that led there; a finding links to
+its block.")]
+    Page(page_command::Arguments),
 
     /// Show edge-finder readings along the part surface
     #[command(after_help = "\

@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     job: PathBuf,
 
     /// The set-up and machine errors
-    #[arg(long, value_name = "ERRORS.toml")]
+    #[arg(long, value_name = "ERRORS.toml", display_order = 0)]
     errors: PathBuf,
 
     /// Number of simulated parts

@@ -9,7 +9,7 @@ use super::{ExitStatus, UsageError, output};
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Colours {
     /// Colours on the terminal; NO_COLOR is obeyed
-    #[arg(long = "color", global = true, value_enum, default_value_t = Colour::Auto)]
+    #[arg(long = "color", global = true, value_enum, default_value_t = Colour::Auto, display_order = 100)]
     colour: Colour,
 }
 

@@ -49,6 +49,7 @@ pub(super) struct ProgramArguments {
 
 /// The conditions of a run without its program.
 #[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Machine, control and start of the run")]
 pub(super) struct RunConditions {
     /// The main program of a file with several, by O number, name or path in a dump, e.g. O1234 or
     /// //CNC_MEM/USER/PATH1/O1234 [default: the first]

@@ -8,7 +8,7 @@ use super::format::FindingFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
 use super::project::{self, Project};
-use super::{ExitStatus, UsageError, options, output, page, render, unused_machine};
+use super::{ExitStatus, UsageError, options, output, page, progress, render, unused_machine};
 use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
@@ -28,9 +28,6 @@ pub(super) struct Arguments {
     /// The revision to review
     #[arg(value_name = "NEW.nc")]
     new: PathBuf,
-
-    #[command(flatten)]
-    run: RunConditions,
 
     /// A folder that holds the programs OLD.nc calls, instead of --lib (repeatable)
     #[arg(long = "old-lib", value_name = "DIR")]
@@ -56,6 +53,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
+
+    #[command(flatten)]
+    run: RunConditions,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
@@ -91,8 +91,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     }
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
-    let old = Revision::observed(&old_request, &mut old_folders, metal(&old_request), &mut old_trace)?;
-    let new = Revision::observed(&new_request, &mut new_folders, metal(&new_request), &mut new_trace)?;
+    let old = progress::of_run(&mut old_request, |request| {
+        Revision::observed(request, &mut old_folders, metal(request), &mut old_trace)
+    })?;
+    let new = progress::of_run(&mut new_request, |request| {
+        Revision::observed(request, &mut new_folders, metal(request), &mut new_trace)
+    })?;
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let unexecuted = unexecuted(&old, &new);
     let report = ChangesReport::new(

@@ -13,9 +13,6 @@ use gcode_session::{Request, Simulation};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    program: ProgramArguments,
-
-    #[command(flatten)]
     deny: DenyArguments,
 
     /// Also write a page to this file: the holes, the path, the blocks and the values of the variables; opens in
@@ -26,6 +23,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
     format: ListFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) =
         options::checked_request(&program, None, None, arguments.page.as_deref())?;
     if let Some(path) = &arguments.page {
-        let traced = page::simulate_traced(&request, &mut folders, None)?;
+        let traced = page::simulate_traced(&mut request, &mut folders, None)?;
         page::write_alone(&request, &traced, None, &program.conditions, path)?;
         let status = print_result(arguments, &request, &traced.0.simulation)?;
         output::written("page", path, arguments.format == ListFormat::Text)?;

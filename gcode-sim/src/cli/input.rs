@@ -42,8 +42,17 @@ const OTHERS: [(&[u8], &str); 5] = [
     (b"{\\rtf", "a word processor's document"),
 ];
 
-/// Reads a program as UTF-8 text; refuses files of another kind.
+/// Reads a program as UTF-8 text; refuses files of another kind, and text that is no program.
 pub fn program(path: &Path) -> Result<Bytes, UsageError> {
+    let program = program_text(path)?;
+    match not_a_program(&program) {
+        Some(why) => Err(UsageError::new(format!("{} is not a program: {why}", path.display()))),
+        None => Ok(program),
+    }
+}
+
+/// Reads a file that may hold called programs as UTF-8 text; refuses files of another kind.
+pub(super) fn program_text(path: &Path) -> Result<Bytes, UsageError> {
     let bytes = bytes(path)?;
     let name = path.display();
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
@@ -55,6 +64,39 @@ pub fn program(path: &Path) -> Result<Bytes, UsageError> {
         )));
     }
     Ok(to_utf8(bytes))
+}
+
+/// Lines at the beginning of a file in which blocks are looked for.
+const FIRST_LINES: usize = 200;
+
+/// Returns the reason why bytes are no program: zero bytes, or lines of which hardly one begins as a block does.
+fn not_a_program(bytes: &[u8]) -> Option<String> {
+    if bytes.iter().take(1 << 16).filter(|byte| **byte == 0).count() > 1 {
+        return Some("it has zero bytes; a program is text".to_owned());
+    }
+    let lines = bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    let lines: Vec<&[u8]> = lines.filter(|line| !line.is_empty()).take(FIRST_LINES).collect();
+    let blocks = lines.iter().filter(|line| begins_as_block(line)).count();
+    let first = lines.first().filter(|_| blocks * 10 < lines.len())?;
+    let start = String::from_utf8_lossy(&first[..first.len().min(60)]);
+    Some(format!("its first lines are no blocks; the first is '{}'", start.escape_debug()))
+}
+
+/// Returns true for a line that begins as a block or a statement does: `%`, a comment, `/`, a letter with its number, `#`, IF.
+fn begins_as_block(line: &[u8]) -> bool {
+    const STATEMENTS: [&str; 13] =
+        ["IF", "WHILE", "DO", "END", "GOTO", "THEN", "DPRNT", "BPRNT", "POPEN", "PCLOS", "SETVN", "PRM", "<"];
+    let is_value = |byte: &u8| byte.is_ascii_digit() || b"+-.#[".contains(byte);
+    let text = line.to_ascii_uppercase();
+    match text.as_slice() {
+        [b'%' | b'(' | b'/' | b'#' | b':' | b';' | b'&' | b'\'' | b'!' | b'$', ..] => true,
+        [letter, rest @ ..]
+            if letter.is_ascii_alphabetic() && rest.trim_ascii_start().first().is_some_and(is_value) =>
+        {
+            true
+        }
+        _ => STATEMENTS.iter().any(|word| text.starts_with(word.as_bytes())),
+    }
 }
 
 /// Converts the text of a program to UTF-8. UTF-16 is recognised by its byte order mark or by its zero bytes; any other
@@ -130,6 +172,33 @@ mod tests {
         assert_eq!(text(&big), program);
         assert_eq!(text(&[&[0xff, 0xfe], &little[..]].concat()), program);
         assert_eq!(text(&[&[0xfe, 0xff], &big[..]].concat()), program);
+    }
+
+    #[test]
+    fn what_is_no_text_or_has_hardly_a_block_is_no_program() {
+        let why = |text: &str| not_a_program(text.as_bytes());
+        for text in [
+            "",
+            "\n\n",
+            "%\nO1\nM30\n%\n",
+            "(ONE)\n",
+            "g0 x1\n",
+            "N 10 G0\n",
+            "<PART>\nM30\n",
+            "WHILE[1]DO1\nEND1\n",
+            "&F=/CNC/\n",
+        ] {
+            assert_eq!(why(text), None, "{text}");
+        }
+        // One line in ten is enough: a transfer can have text in front of the program.
+        let header = "Machine 7, program of today\n".repeat(9);
+        assert_eq!(why(&format!("{header}G0X1.\n")), None);
+        assert!(why(&format!("{header}{header}G0X1.\n")).is_some());
+        assert_eq!(
+            why("Dear colleague,\nhere it is\n").unwrap(),
+            "its first lines are no blocks; the first is 'Dear colleague,'"
+        );
+        assert!(why("\x7fELF\0\0\0\0").unwrap().starts_with("it has zero bytes"));
     }
 
     /// 钻孔加工程序 in GBK, 穴あけ加工のプログラム in Shift-JIS: tables of the two standards.

@@ -57,7 +57,7 @@ impl Folders {
     }
 
     fn bytes(&mut self, path: &Path) -> Option<Bytes> {
-        match input::program(path) {
+        match input::program_text(path) {
             Ok(bytes) => Some(bytes),
             Err(refusal) => {
                 self.unread.insert(refusal.to_string());

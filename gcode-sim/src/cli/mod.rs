@@ -17,8 +17,9 @@ pub mod output;
 pub mod overwrite_guard;
 pub mod packaging;
 mod page;
+mod page_command;
 mod picture_file;
-mod progress;
+pub mod progress;
 mod project;
 mod readings;
 mod reference;
@@ -134,6 +135,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Readings(arguments) => readings::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Page(arguments) => page_command::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),

@@ -19,6 +19,32 @@ pub fn print(text: &str) -> Result<(), UsageError> {
     }
 }
 
+/// Prints a verdict: PASS and FAIL in colour where the output is a terminal.
+pub(super) fn print_verdict(text: &str) -> Result<(), UsageError> {
+    print(&coloured(text))
+}
+
+/// Colours the verdict at the beginning of a line, and those of single holes at the end of theirs.
+fn coloured(text: &str) -> String {
+    const GOOD: &str = "\x1b[1;32m";
+    const BAD: &str = "\x1b[1;31m";
+    const END: &str = "\x1b[0m";
+    let line = |line: &str| {
+        let in_front = [("PASS", GOOD), ("FAIL", BAD)].into_iter().find(|(word, _)| line.starts_with(word));
+        let behind = || line.find("  FAIL ").map(|at| (at + 2, BAD));
+        match (in_front, behind()) {
+            (Some((word, style)), _) => format!("{style}{word}{END}{}", &line[word.len()..]),
+            (None, Some((at, style))) => format!("{}{style}{}{END}", &line[..at], &line[at..]),
+            (None, None) => line.to_owned(),
+        }
+    };
+    let mut lines: String = text.lines().map(|one| line(one) + "\n").collect();
+    if !text.ends_with('\n') {
+        lines.pop();
+    }
+    lines
+}
+
 /// Prints one JSON document.
 pub fn json(document: &impl serde::Serialize) -> Result<(), UsageError> {
     let text = serde_json::to_string_pretty(document)
@@ -128,6 +154,31 @@ fn allow_reading(file: &std::fs::File) -> std::io::Result<()> {
 #[cfg(not(unix))]
 fn allow_reading(_: &std::fs::File) -> std::io::Result<()> {
     Ok(())
+}
+
+#[cfg(test)]
+mod colour_tests {
+    use super::*;
+    use anstream::adapter::strip_str;
+
+    #[test]
+    fn verdicts_are_coloured_and_nothing_else_changes() {
+        let text = "1   10.000  pass\n2   20.000  FAIL position\n\nFAIL     1 of 2 holes in tolerance\nworst    PASS\n";
+        let shown = coloured(text);
+        assert_eq!(strip_str(&shown).to_string(), text);
+        let coloured_lines: Vec<usize> = shown
+            .lines()
+            .enumerate()
+            .filter(|(_, line)| line.contains('\x1b'))
+            .map(|(index, _)| index)
+            .collect();
+        assert_eq!(coloured_lines, [1, 3]);
+        assert!(
+            coloured("PASS     all\n").starts_with("\x1b[1;32mPASS\x1b[0m "),
+            "{:?}",
+            coloured("PASS     all\n")
+        );
+    }
 }
 
 #[cfg(all(test, unix))]

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::conditions::RunConditions;
 use super::library::Folders;
-use super::{UsageError, input, output};
+use super::{UsageError, input, output, progress};
 use crate::report::page::{Document, ObservedProgram, Page};
 use gcode_inspect::verify::Verdict;
 use gcode_part::Metal;
@@ -13,12 +13,13 @@ use gcode_session::{Request, Trace};
 
 /// Runs a program and records the trace that the page shows.
 pub(super) fn simulate_traced(
-    request: &Request,
+    request: &mut Request,
     folders: &mut Folders,
     metal: impl Into<Metal>,
 ) -> Result<(Revision, Trace), UsageError> {
     let mut trace = Trace::default();
-    let revision = Revision::observed(request, folders, metal, &mut trace)?;
+    let revision =
+        progress::of_run(request, |request| Revision::observed(request, folders, metal, &mut trace))?;
     Ok((revision, trace))
 }
 

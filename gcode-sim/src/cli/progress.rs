@@ -12,6 +12,9 @@ use gcode_session::Request;
 /// Width of the line; larger than any line shown.
 const WIDTH: usize = 60;
 
+/// Times in a second that the line is shown.
+const TICKS: usize = 10;
+
 /// Does the work and shows which part of `all` is counted.
 pub(super) fn with_progress<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() -> T) -> T {
     let bar = || {
@@ -42,6 +45,13 @@ pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T)
     showing(count, || work(request))
 }
 
+/// Does work without a measure of its progress, and shows what it is and how long it takes.
+pub fn of_work<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    let seconds = AtomicUsize::new(0);
+    let line = || format!("{what}, {} s", seconds.fetch_add(1, Ordering::Relaxed) / TICKS + 1);
+    showing(line, work)
+}
+
 /// Does the work and, from one second on, repeatedly shows the text of `line`.
 fn showing<T>(line: impl Fn() -> String + Sync, work: impl FnOnce() -> T) -> T {
     if !std::io::stderr().is_terminal() {
@@ -63,7 +73,7 @@ fn show(line: &impl Fn() -> String, done: &AtomicBool) {
     while !done.load(Ordering::Relaxed) {
         output::print_message(&format!("\r{:<WIDTH$}", line()));
         shown = true;
-        std::thread::park_timeout(Duration::from_millis(100));
+        std::thread::park_timeout(Duration::from_millis(1000 / TICKS as u64));
     }
     if shown {
         output::print_message(&format!("\r{:WIDTH$}\r", ""));

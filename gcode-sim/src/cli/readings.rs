@@ -12,9 +12,6 @@ use gcode_inspect::verify::Answer;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    program: ProgramArguments,
-
     /// Tolerance of a reading either way, mm [default: no verdict]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
@@ -30,6 +27,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
     format: ListFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {

@@ -21,11 +21,8 @@ use gcode_session::{Request, Run, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    program: ProgramArguments,
-
     /// The picture to write: .png, .svg or .pdf
-    #[arg(short, long, value_name = "OUT.png", value_parser = PictureFile::parser())]
+    #[arg(short, long, value_name = "OUT.png", display_order = 0, value_parser = PictureFile::parser())]
     output: PictureFile,
 
     /// The reference: draws the outline, each hole's verdict and its deviation
@@ -58,6 +55,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

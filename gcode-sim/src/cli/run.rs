@@ -14,9 +14,6 @@ use gcode_session::SessionError;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    program: ProgramArguments,
-
     /// Add every move to the result, in machine coordinates
     #[arg(long)]
     moves: bool,
@@ -35,6 +32,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {

@@ -23,11 +23,8 @@ use gcode_session::{Request, Run, Simulation};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    program: ProgramArguments,
-
     /// The reference: a hole list (JSON or CSV) or a job file (TOML) [default: that of the program in gcode.toml]
-    #[arg(long, value_name = "REF")]
+    #[arg(long, value_name = "REF", display_order = 0)]
     reference: Option<PathBuf>,
 
     /// Diameter of the tolerance zone, or tolerance of a burr's contact from its surface, mm [default: the job's,
@@ -62,6 +59,9 @@ pub(super) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 impl Arguments {
@@ -135,7 +135,7 @@ fn print_verdict(
     let sources = run.control.memory().sources();
     match arguments.format {
         FindingFormat::Json => output::json(verdict)?,
-        FindingFormat::Text => output::print(&table())?,
+        FindingFormat::Text => output::print_verdict(&table())?,
         FindingFormat::Sarif => {
             let findings = findings.iter().map(|finding| Finding::of(finding, sources));
             let exit_code = ExitStatus::from(conclusion) as u8;
@@ -166,7 +166,8 @@ fn holes(
         print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
     if let Some(path) = &arguments.page {
-        let traced = page::simulate_traced(request, &mut folders, request.metal(reference))?;
+        let metal = request.metal(reference);
+        let traced = page::simulate_traced(request, &mut folders, metal)?;
         let verdict = traced.0.simulation.verify(reference, tolerances, request);
         let judged = Some((path_of_reference, reference, &verdict));
         page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;

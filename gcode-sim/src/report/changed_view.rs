@@ -131,9 +131,10 @@ fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Pa
     for (side_index, side) in sides.into_iter().enumerate() {
         let different: BTreeSet<usize> = compared.steps[side_index].iter().copied().collect();
         let legs = side.record.path(machine, MAX_MOVES, MAX_POINTS);
-        has_other_rapids |= legs.iter().any(|leg| leg.kind == "rapid" && different.contains(&leg.step));
+        has_other_rapids |=
+            legs.iter().any(|leg| leg.kind == "rapid" && different.contains(leg.steps.start()));
         for leg in legs.iter().filter(|leg| leg.kind != "rapid" && !leg.is_of_hole) {
-            let pen = match (different.contains(&leg.step), side_index) {
+            let pen = match (different.contains(leg.steps.start()), side_index) {
                 (false, 0) => continue,
                 (false, _) => Pen::Unchanged,
                 (true, 0) => Pen::Old,

@@ -37,3 +37,67 @@ pub fn count<N: std::fmt::Display + PartialEq + From<u8>>(number: N, what: &str)
 pub fn short(value: f64) -> String {
     rounded(value, 6).trim_end_matches('0').trim_end_matches('.').to_owned()
 }
+
+/// Formats a variable as the control's screen shows it: eight digits at most, and 0 for what is less than the last of them.
+pub fn as_on_control(value: f64) -> String {
+    const DIGITS: i32 = 8;
+    let value = if value.abs() < 5e-8 { 0.0 } else { value };
+    let whole = if value.abs() < 1.0 { 0 } else { libm::log10(value.abs()).floor() as i32 + 1 };
+    let places = (DIGITS - whole.max(1)).max(0) as usize;
+    let text = rounded(value, places);
+    if places == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
+}
+
+/// Formats a time: `13.2 s`, `18 min 22 s`, `2 h 05 min`.
+pub fn duration(seconds: f64) -> String {
+    let (whole, minutes) = (seconds.round(), (seconds / 60.0).round());
+    if seconds < 59.95 {
+        format!("{seconds:.1} s")
+    } else if whole < 3600.0 {
+        format!("{:.0} min {:02.0} s", (whole / 60.0).floor(), whole % 60.0)
+    } else {
+        format!("{:.0} h {:02.0} min", (minutes / 60.0).floor(), minutes % 60.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_variable_has_eight_digits_at_most() {
+        for (value, expected) in [
+            (2.909_14e-18, "0"),
+            (-4.9e-8, "0"),
+            (1e-7, "0.0000001"),
+            (58.212_999_999_9, "58.213"),
+            (0.049_997_160_670_518_46, "0.0499972"),
+            (-0.020_008_345_607, "-0.0200083"),
+            (12.5, "12.5"),
+            (1.0 / 3.0, "0.3333333"),
+            (1234.567_891_2, "1234.5679"),
+            (100.0, "100"),
+            (99_999_999.0, "99999999"),
+            (123_456_789.4, "123456789"),
+        ] {
+            assert_eq!(as_on_control(value), expected, "{value}");
+        }
+    }
+
+    #[test]
+    fn a_time_is_in_seconds_minutes_or_hours() {
+        for (seconds, expected) in [
+            (0.0, "0.0 s"),
+            (59.94, "59.9 s"),
+            (59.96, "1 min 00 s"),
+            (1102.4, "18 min 22 s"),
+            (3599.4, "59 min 59 s"),
+            (3599.6, "1 h 00 min"),
+            (7499.0, "2 h 05 min"),
+            (7169.0, "1 h 59 min"),
+            (7171.0, "2 h 00 min"),
+        ] {
+            assert_eq!(duration(seconds), expected, "{seconds}");
+        }
+    }
+}

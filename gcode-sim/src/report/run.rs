@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+use super::figures::{as_on_control, count, duration, rounded};
 use gcode_control::{Outcome, Value, printable};
 use gcode_inspect::machine::Machine;
 use gcode_lang::alarm::remedy;
@@ -54,6 +55,9 @@ pub(crate) struct RunReport {
     /// Number of holes that the run makes.
     #[serde(skip)]
     total: Total,
+    /// Decimals of a position on the control's screen, in the work's unit and in the machine's.
+    #[serde(skip)]
+    decimals: [usize; 2],
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -74,6 +78,9 @@ pub(crate) struct AlarmReport {
 pub(crate) struct StopReport {
     pub(crate) kind: &'static str,
     pub(crate) text: String,
+    /// Variables that the text names, with their values.
+    #[serde(skip)]
+    variables: Vec<(u32, f64)>,
 }
 
 /// An M code without an effect on the control, and its first block.
@@ -125,13 +132,11 @@ impl Serialize for Coordinates {
     }
 }
 
-impl std::fmt::Display for Coordinates {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        for (index, (letter, value)) in self.0.iter().enumerate() {
-            let gap = if index == 0 { "" } else { "  " };
-            write!(f, "{gap}{letter} {value:.4}")?;
-        }
-        Ok(())
+impl Coordinates {
+    /// Formats the coordinates with the decimals of the control.
+    fn text(&self, decimals: usize) -> String {
+        let axes = self.0.iter().map(|(letter, value)| format!("{letter} {}", rounded(*value, decimals)));
+        axes.collect::<Vec<_>>().join("  ")
     }
 }
 
@@ -147,6 +152,9 @@ fn variables<S: Serializer>(all: &[(u32, f64)], serializer: S) -> Result<S::Ok, 
 fn shown<S: Serializer>(all: &[(u32, Option<f64>)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(all.iter().map(|(number, value)| (format!("#{number}"), value.map(plain))))
 }
+
+/// Common variables that a control clears when it is switched off: programs use them as scratch memory.
+const SCRATCH: std::ops::RangeInclusive<u32> = 100..=199;
 
 /// Largest number of recorded moves: a loop that never ends must not fill the memory.
 pub(crate) const MAX_MOVES: usize = 1_000_000;
@@ -214,7 +222,11 @@ impl RunReport {
             stops: control
                 .stops()
                 .iter()
-                .map(|stop| StopReport { kind: stop.kind.name(), text: stop.text.clone() })
+                .map(|stop| StopReport {
+                    kind: stop.kind.name(),
+                    text: stop.text.clone(),
+                    variables: stop.variables.clone(),
+                })
                 .collect(),
             output: control.output().iter().map(|line| printable(line)).collect(),
             auxiliary_codes: control
@@ -245,6 +257,10 @@ impl RunReport {
             path,
             uncommanded: axes.names(uncommanded),
             work_unit: if control.is_inch() { "inches" } else { "mm" },
+            decimals: {
+                let increment = control.settings().increment.decimals();
+                [increment + usize::from(control.is_inch()), increment]
+            },
         }
     }
 
@@ -256,9 +272,10 @@ impl RunReport {
             "limit" => "not ended: a limit was reached",
             _ => "stopped by an alarm",
         };
+        let [work, machine] = self.decimals;
         let _ = writeln!(text, "outcome    {word}");
-        let _ = writeln!(text, "position   {} ({}, degrees)", self.position, self.work_unit);
-        let _ = writeln!(text, "machine    {} (mm, degrees)", self.machine);
+        let _ = writeln!(text, "position   {} ({}, degrees)", self.position.text(work), self.work_unit);
+        let _ = writeln!(text, "machine    {} (mm, degrees)", self.machine.text(machine));
         if !self.uncommanded.is_empty() {
             let _ = writeln!(
                 text,
@@ -267,9 +284,16 @@ impl RunReport {
             );
         }
         let _ = writeln!(text, "executed   {} blocks, {} moves", self.blocks, self.moves);
-        let _ = writeln!(text, "time       {:.1} s (paths and rapid rates, no acceleration)", self.seconds);
+        let _ =
+            writeln!(text, "time       {} (paths and rapid rates, no acceleration)", duration(self.seconds));
         for stop in &self.stops {
-            let _ = writeln!(text, "stop       {} {}", stop.kind, stop.text);
+            let values = stop
+                .variables
+                .iter()
+                .map(|(number, value)| format!(" #{number} = {}", as_on_control(*value)));
+            let values: Vec<_> = values.collect();
+            let shown = if values.is_empty() { String::new() } else { format!(":{}", values.join(",")) };
+            let _ = writeln!(text, "stop       {} {}{shown}", stop.kind, stop.text);
         }
         for line in &self.output {
             let _ = writeln!(text, "output     {line}");
@@ -283,11 +307,24 @@ impl RunReport {
         for assumption in &self.assumptions {
             let _ = writeln!(text, "assumes    {}", assumption.sentence(self.total));
         }
-        for (number, value) in &self.variables {
-            let _ = writeln!(text, "{:<11}{}", format!("#{number}"), plain(*value));
+        let is_shown = |number: u32| self.system.iter().any(|(shown, _)| *shown == number);
+        let (scratch, kept): (Vec<_>, Vec<_>) = self
+            .variables
+            .iter()
+            .filter(|(number, _)| !is_shown(*number))
+            .partition(|(number, _)| SCRATCH.contains(number));
+        if let [(first, _), ..] = scratch.as_slice() {
+            let commons = count(scratch.len() as u64, "variable");
+            let _ = writeln!(
+                text,
+                "not shown  {commons} of #100 to #199: --show '#{first}' shows one, --format json all"
+            );
+        }
+        for (number, value) in kept {
+            let _ = writeln!(text, "{:<11}{}", format!("#{number}"), as_on_control(value));
         }
         for (number, value) in &self.system {
-            let value = value.map_or_else(|| "vacant".to_owned(), |v| plain(v).to_string());
+            let value = value.map_or_else(|| "vacant".to_owned(), as_on_control);
             let _ = writeln!(text, "{:<11}{value}", format!("#{number}"));
         }
         if self.path.is_some() {
@@ -296,8 +333,13 @@ impl RunReport {
         for step in self.path.iter().flatten() {
             let feed = step.feed.map(|f| format!("  F{f}")).unwrap_or_default();
             let location = format!("{}:{}", step.program, step.line);
-            let _ =
-                writeln!(text, "{location:<14} {:<6} {}{feed}  {:.2} s", step.kind, step.to, step.seconds);
+            let _ = writeln!(
+                text,
+                "{location:<14} {:<6} {}{feed}  {:.2} s",
+                step.kind,
+                step.to.text(machine),
+                step.seconds
+            );
         }
         text
     }

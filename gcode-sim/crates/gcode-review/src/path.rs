@@ -1,6 +1,7 @@
 //! Path of the tool on the part, move by move, for drawings.
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
 
 use nalgebra::Point3;
 
@@ -15,11 +16,16 @@ use gcode_lang::motion::{PlanarArc, Position, StopKind};
 /// Largest deviation of a curved path from its chords, mm.
 const CHORD: f64 = 0.05;
 
+/// Tolerance at which a path is not simplified further, mm.
+const MAX_SIMPLIFICATION: f64 = 100.0;
+
 /// One move in the frame of the part; of a grinder the path of the wheel's contact.
 #[derive(Clone, Debug)]
 pub struct Leg {
-    /// Number of the step in the record.
-    pub step: usize,
+    /// Numbers of its steps in the record: one, or several moves of one kind that are drawn together.
+    pub steps: RangeInclusive<usize>,
+    /// Number of moves.
+    pub moves: usize,
     /// `rapid`, `feed`, `arc` or `probing move`.
     pub kind: &'static str,
     /// Feed of a cut, mm/min.
@@ -41,6 +47,30 @@ impl Record {
     /// Counts the moves.
     pub fn moves(&self) -> usize {
         self.steps.kinds().filter(|kind| kind.is_move()).count()
+    }
+
+    /// Returns all moves in at most about `legs` legs with at most `points` points: consecutive moves of one kind are drawn
+    /// together, without the points that are no farther from the line than the least tolerance that leaves few enough.
+    pub fn whole_path(&self, machine: &Machine, legs: usize, points: usize) -> Vec<Leg> {
+        let joined = self.moves().div_ceil(legs.max(1)).max(1);
+        let mut all: Vec<Leg> = Vec::new();
+        for next in self.path(machine, usize::MAX, usize::MAX) {
+            match all.last_mut() {
+                Some(leg) if leg.kind == next.kind && leg.feed == next.feed && leg.moves < joined => {
+                    leg.steps = *leg.steps.start()..=*next.steps.end();
+                    leg.moves += next.moves;
+                    leg.is_of_hole |= next.is_of_hole;
+                    leg.points.extend(next.points.into_iter().skip(1));
+                }
+                _ => all.push(next),
+            }
+        }
+        let mut tolerance = CHORD;
+        while points < all.iter().map(|leg| leg.points.len()).sum() && tolerance < MAX_SIMPLIFICATION {
+            all.iter_mut().for_each(|leg| leg.points = simplified(&leg.points, tolerance));
+            tolerance *= 2.0;
+        }
+        all
     }
 
     /// Returns the first moves, at most `moves` with at most `points` points in all.
@@ -75,7 +105,33 @@ impl Record {
 
 fn leg(index: usize, step: &Step<'_>, is_of_hole: bool, points: Vec<Point3<f64>>) -> Leg {
     let (kind, feed) = (step.kind.name(), step.kind.rate());
-    Leg { step: index, kind, feed, is_of_hole, block_number: step.block_number, points }
+    Leg { steps: index..=index, moves: 1, kind, feed, is_of_hole, block_number: step.block_number, points }
+}
+
+/// Returns the points of a line that are farther than `tolerance` from the line without them, and its ends (Douglas and Peucker).
+fn simplified(points: &[Point3<f64>], tolerance: f64) -> Vec<Point3<f64>> {
+    let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
+    let mut is_kept = vec![false; points.len()];
+    is_kept[0] = true;
+    is_kept[last] = true;
+    let mut open = vec![(0, last)];
+    while let Some((from, to)) = open.pop() {
+        let away = |index: &usize| distance_to_line(&points[*index], &points[from], &points[to]);
+        let farthest = (from + 1..to).max_by(|a, b| away(a).total_cmp(&away(b)));
+        if let Some(farthest) = farthest.filter(|index| tolerance < away(index)) {
+            is_kept[farthest] = true;
+            open.extend([(from, farthest), (farthest, to)]);
+        }
+    }
+    points.iter().zip(is_kept).filter(|(_, is_kept)| *is_kept).map(|(point, _)| *point).collect()
+}
+
+/// Returns the distance of a point from the line between two others, mm.
+fn distance_to_line(point: &Point3<f64>, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+    let along = to - from;
+    let length = along.norm_squared();
+    let part = if length == 0.0 { 0.0 } else { ((point - from).dot(&along) / length).clamp(0.0, 1.0) };
+    (point - (from + along * part)).norm()
 }
 
 /// Returns true if a path ends where the path before starts.
@@ -134,6 +190,38 @@ mod tests {
             assert!((0..3).all(|i| (end[i] - point[i]).abs() < 1e-9), "{end:?} instead of {point:?}");
         }
         assert_eq!(path.len(), 3);
+    }
+
+    /// A zigzag of 40 feeds of 1 mm, 0.4 high, and the rapid before it, in 5 legs: 8 feeds each. The points of the zigzag are 0.4 from
+    /// the line between its ends, which is more than 0.05, 0.1 and 0.2 and no more than 0.4.
+    #[test]
+    fn a_whole_path_joins_moves_and_leaves_out_points() {
+        let zigzag: String = (1..=40)
+            .map(|index| format!("G1 X{index}. Y{} F100\n", if index % 2 == 0 { "0" } else { "0.4" }))
+            .collect();
+        let request = Request::new(
+            "O1.nc",
+            format!("O1\nG0 X0 Y0 Z1.\n{zigzag}M30\n").into_bytes(),
+            Machine::default(),
+        );
+        let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
+        let whole = revision.record.whole_path(&request.machine, 5, 100);
+        let counts: Vec<_> = whole.iter().map(|leg| (leg.kind, leg.moves, leg.points.len())).collect();
+        assert_eq!(
+            counts,
+            [
+                ("rapid", 1, 2),
+                ("feed", 9, 10),
+                ("feed", 9, 10),
+                ("feed", 9, 10),
+                ("feed", 9, 10),
+                ("feed", 4, 5)
+            ]
+        );
+        let few = revision.record.whole_path(&request.machine, 5, 20);
+        assert!(few.iter().all(|leg| leg.points.len() <= 3), "{few:?}");
+        let end = few.last().unwrap().points.last().unwrap();
+        assert_eq!((end.x, few.iter().map(|leg| leg.moves).sum::<usize>()), (40.0, 41));
     }
 
     #[test]

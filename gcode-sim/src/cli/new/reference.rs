@@ -13,7 +13,7 @@ use gcode_session::{Request, Simulation};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The program; '-' reads standard input
-    #[arg(long, value_name = "PROGRAM.nc")]
+    #[arg(long, value_name = "PROGRAM.nc", display_order = 0)]
     from: PathBuf,
 
     /// Distance of the R point level from the surface, mm: entries lie so far below the start of the feed

@@ -40,11 +40,22 @@
   const linesOf = (choice) => (choice.hole ? choice.hole.lines : choice.side.places[choice.side.at[choice.move]]);
   const anchorsOf = (choice) => linesOf(choice).map((number) => choice.side.lines[number][0]);
 
+  // Number of the first move of a stroke, counted from 1, and of its last one.
+  function numbers(side, move) {
+    if (side.joined.length === 0) return `move ${move + 1}`;
+    if (!side.firsts) {
+      side.firsts = [1];
+      side.joined.forEach((count) => side.firsts.push(side.firsts.at(-1) + count));
+    }
+    const [first, next] = [side.firsts[move], side.firsts[move + 1]];
+    return next - first === 1 ? `move ${first}` : `moves ${first} to ${next - 1}`;
+  }
+
   function pickMove(side, move) {
     viewer.pick = { side, move };
     const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${side.xyz[3 * at + axis].toFixed(3)}`).join(" ");
     const [from, to] = [point(side.starts[move]), point(side.starts[move + 1] - 1)];
-    describe(`${name(side)}move ${move + 1} of ${side.all_moves}, ${side.kinds[side.kind[move]]} from ${from} to ${to}`, side, linesOf(viewer.pick));
+    describe(`${name(side)}${numbers(side, move)} of ${side.all_moves}, ${side.kinds[side.kind[move]]} from ${from} to ${to}`, side, linesOf(viewer.pick));
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     viewer.ask();
@@ -94,6 +105,43 @@
     let move = viewer.pick.side === side && viewer.pick.move !== undefined ? viewer.pick.move + by : by > 0 ? 0 : side.moves.length - 1;
     while (move >= 0 && move < side.moves.length && !shown(move)) move += by;
     if (move >= 0 && move < side.moves.length) pickMove(side, move);
+  }
+
+  // Plays the path: the moves made so far are drawn, those that follow are faint.
+  function player(side) {
+    const progress = document.getElementById("progress");
+    if (!progress) return;
+    const button = document.querySelector("[data-play=play]");
+    let timer = null;
+    const go = (moves) => {
+      const upTo = Math.max(0, Math.min(side.moves.length, moves));
+      viewer.options.upTo = upTo;
+      progress.value = upTo;
+      document.getElementById("progress-count").textContent = `${upTo} of ${side.moves.length}`;
+      if (upTo > 0) pickMove(side, upTo - 1);
+      viewer.ask();
+    };
+    const stop = () => {
+      clearInterval(timer);
+      timer = null;
+      button.textContent = "Play";
+      button.setAttribute("aria-pressed", "false");
+    };
+    const play = () => {
+      if (timer !== null) return stop();
+      // A long path takes half a minute.
+      const stride = Math.max(1, Math.round(side.moves.length / 600));
+      if (Number(progress.value) >= side.moves.length) go(0);
+      button.textContent = "Pause";
+      button.setAttribute("aria-pressed", "true");
+      timer = setInterval(() => {
+        go(Number(progress.value) + stride);
+        if (Number(progress.value) >= side.moves.length) stop();
+      }, 50);
+    };
+    const actions = { play, back: () => (stop(), go(Number(progress.value) - 1)), step: () => (stop(), go(Number(progress.value) + 1)) };
+    document.querySelectorAll("[data-play]").forEach((one) => one.addEventListener("click", actions[one.dataset.play]));
+    progress.addEventListener("input", () => (stop(), go(Number(progress.value))));
   }
 
   const follow = () => viewer.pick.side && land(anchorsOf(viewer.pick)[0]);
@@ -175,6 +223,7 @@
   }
 
   sides.forEach(pointers);
+  player(sides.at(-1));
   document.querySelectorAll("[data-view]").forEach((button) =>
     button.addEventListener("click", () => {
       const factor = { in: 1.2, out: 1 / 1.2 }[button.dataset.view];

@@ -49,8 +49,10 @@ struct SidePath {
     #[serde(rename = "places")]
     blocks: Vec<Vec<usize>>,
     holes: Vec<HoleLinks>,
-    /// Total number of moves, drawn or not.
+    /// Number of moves.
     all_moves: usize,
+    /// Number of moves of each stroke; empty if each stroke is one.
+    joined: Vec<usize>,
     all_holes: usize,
 }
 
@@ -64,13 +66,24 @@ struct HoleLinks {
 }
 
 pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable) -> Data {
-    let up = match page.machine.head.kind {
-        HeadKind::Fixed(out) if out.z > 0.99 => 'z',
-        _ => 'y',
-    };
+    let up = up(page);
     let drawn =
         sides.iter().enumerate().map(|(side_index, side)| drawn(page, side_index, side, table, sides.len()));
     Data { up, sides: drawn.collect() }
+}
+
+/// Returns the axis of the part that points up: along a vertical spindle; without a known head that of most holes.
+fn up(page: &Page<'_>) -> char {
+    match page.machine.head.kind {
+        HeadKind::Fixed(out) if out.z > 0.99 => 'z',
+        HeadKind::Free => {
+            let holes = &page.new.revision.simulation.extracted.holes;
+            let vertical = holes.iter().filter(|hole| 0.9 < hole.axis.z).count();
+            if holes.len() <= 2 * vertical { 'z' } else { 'y' }
+        }
+        HeadKind::Axes { ref direction, .. } if direction.z > 0.99 => 'z',
+        _ => 'y',
+    }
 }
 
 /// Index of lines, each stored once.
@@ -107,7 +120,11 @@ fn drawn(
     sides: usize,
 ) -> SidePath {
     let record = &side.observed.revision.record;
-    let legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
+    let mut legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
+    let all_moves = record.moves();
+    if legs.len() < all_moves {
+        legs = record.whole_path(page.machine, MOST_MOVES, MOST_POINTS);
+    }
     let mut known = LineIndex::default();
     let (marks, holes) = holes(page, side_index, side, table, &mut known).into_iter().unzip();
     let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
@@ -124,18 +141,24 @@ fn drawn(
         (Some((_, difference)), 2) => difference.compared.steps[side_index].as_slice(),
         _ => &[],
     };
-    let is_different = |step: &usize| different.binary_search(step).is_ok();
+    let is_different = |leg: &Leg| {
+        let next = different.partition_point(|step| step < leg.steps.start());
+        different.get(next).is_some_and(|step| step <= leg.steps.end())
+    };
+    let joined: Vec<usize> =
+        if legs.len() < all_moves { legs.iter().map(|leg| leg.moves).collect() } else { Vec::new() };
     SidePath {
         word: side.word,
         scene: Scene { strokes: legs.iter().map(stroke).collect(), marks, ..Scene::default() },
         kind: legs.iter().map(|leg| kinds.binary_search(&kind(leg)).unwrap_or_default()).collect(),
         kinds,
         at,
-        changed: (0..legs.len()).filter(|leg| is_different(&legs[*leg].step)).collect(),
+        changed: (0..legs.len()).filter(|leg| is_different(&legs[*leg])).collect(),
         lines: known.lines,
         blocks,
         holes,
-        all_moves: record.moves(),
+        all_moves,
+        joined,
         all_holes: side.observed.revision.simulation.extracted.holes.len(),
     }
 }
@@ -217,6 +240,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                 label { input #rapids type="checkbox" checked; " Rapids" }
                 @if sides.len() == 2 { label { input #changed-only type="checkbox"; " Changes only" } }
             }
+            @if sides.len() == 1 { (player(data)) }
             div.canvases {
                 @for side in sides {
                     figure {
@@ -248,14 +272,28 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
     }
 }
 
+/// Returns the controls that play the path move by move.
+fn player(data: &Data) -> Markup {
+    let last = data.sides.first().map_or(0, |side| side.scene.strokes.len());
+    html! {
+        div.tools #player role="toolbar" aria-label="Moves" {
+            button type="button" data-play="back" aria-label="Back by one move" { "\u{25c2} Back" }
+            button type="button" data-play="play" aria-pressed="false" { "Play" }
+            button type="button" data-play="step" aria-label="Forward by one move" { "Step \u{25b8}" }
+            input #progress type="range" min="0" max=(last) value="0" aria-label="Moves made";
+            output #progress-count for="progress" { "0 of " (last) }
+        }
+    }
+}
+
 /// Returns notes on omitted moves and holes.
 fn left_out(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>], drawn: &SidePath) -> Markup {
     let shown = drawn.scene.strokes.len();
     html! {
         @if shown < drawn.all_moves {
             p.note {
-                (heading(side, sides)) ": the first " (count(shown as u64)) " of " (count(drawn.all_moves as u64))
-                " moves are drawn."
+                (heading(side, sides)) ": " (count(drawn.all_moves as u64)) " moves are drawn as " (count(shown as u64))
+                " lines, consecutive moves of one kind together."
             }
         }
         @if MOST_HOLES < drawn.all_holes {

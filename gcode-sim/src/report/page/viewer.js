@@ -109,7 +109,14 @@ class Side {
     const context = this.context;
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
     const few = this.moves.length < 5000;
-    const shown = (move) => !options.changedOnly || this.isChanged.has(move);
+    const { upTo } = options;
+    if (upTo !== null) {
+      // The moves that follow are faint.
+      context.globalAlpha = 0.18;
+      this.strokeMoves(colours.feed, 1, [], (move) => move >= upTo && (options.rapids || this.moves[move].pen !== "rapid"));
+      context.globalAlpha = 1;
+    }
+    const shown = (move) => (!options.changedOnly || this.isChanged.has(move)) && (upTo === null || move < upTo);
     const plain = (pen) => (move) => shown(move) && this.moves[move].pen === pen && !this.isChanged.has(move);
     if (options.rapids) this.strokeMoves(colours.rapid, 1, few ? [5, 4] : [], plain("rapid"));
     this.strokeMoves(colours.feed, 1.6, [], plain("feed"));
@@ -123,7 +130,20 @@ class Side {
       this.strokeMoves(colours.pick, 5, [], (move) => move === pick.move);
     }
     this.drawHoles(colours, pick);
+    if (upTo !== null) this.drawTool(colours, upTo);
     this.drawAxes(colours);
+  }
+
+  // Marks where the tool stands after a number of moves.
+  drawTool(colours, upTo) {
+    if (this.moves.length === 0) return;
+    const at = 2 * (upTo === 0 ? 0 : this.starts[upTo] - 1);
+    const context = this.context;
+    Object.assign(context, { strokeStyle: colours.paper, fillStyle: colours.pick, lineWidth: 2 });
+    context.beginPath();
+    context.arc(this.screen[at], this.screen[at + 1], 6, 0, 2 * Math.PI);
+    context.fill();
+    context.stroke();
   }
 
   // Whether the entry of a hole faces away from the viewer.
@@ -271,7 +291,7 @@ function toSegment(x, y, ax, ay, bx, by) {
 // Fits the extents into the canvases, and draws after changes.
 class Viewer {
   constructor(data, sides) {
-    Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false } });
+    Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false, upTo: null } });
     this.extents = sides.flatMap((side) => side.extent());
     this.middle = [0, 1, 2].map((axis) => {
       let [low, high] = [Infinity, -Infinity];

@@ -51,6 +51,15 @@ impl Increment {
         }
     }
 
+    /// Returns the number of decimals of a value in mm or degrees.
+    pub fn decimals(self) -> usize {
+        match self {
+            Self::IsA => 2,
+            Self::IsB => 3,
+            Self::IsC => 4,
+        }
+    }
+
     /// Rounds `value` to the nearest multiple of the increment, halves away from zero.
     pub fn round(self, value: f64) -> f64 {
         round_scaled(value, self.per_unit()) / self.per_unit()
