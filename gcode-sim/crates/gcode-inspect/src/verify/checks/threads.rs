@@ -19,7 +19,10 @@ const LEAD_TOLERANCE: f64 = 1e-3;
 /// Largest distance along the axis between two passes of one thread, mm.
 const MAX_STEP: f64 = 0.05;
 
-/// Turns that a comb mill makes at most: one, and its lead-in and lead-out.
+/// Depth of an internal thread by its pitch, in diameter (ISO 724).
+const THREAD_DEPTH: f64 = 1.082_532;
+
+/// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
 
 /// Adds the findings on the threads of a hole.
@@ -45,15 +48,18 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     for (feature, cut) in nominal.features.iter().zip(made_by).filter(|(one, _)| one.kind == FeatureKind::Tap)
     {
         let Some(cut) = cut.map(|cut| &judged.near[cut]) else { continue };
-        if let Some(helix) = cut.thread {
-            match milled_length(id, cut, &helix) {
-                Some(MilledLength::Fault(finding)) => findings.push(finding),
-                Some(MilledLength::Comb) => judged.gaps.push(ShapeGap::ThreadLength(cut.pass.tool)),
-                None => {}
-            }
+        let turns = turns(judged, feature, cut);
+        let faults = [
+            turns.iter().find_map(|cut| pitch(id, feature, cut)),
+            turns.iter().find_map(|cut| hand(id, feature, cut)),
+        ];
+        let is_even = faults.iter().all(Option::is_none);
+        findings.extend(faults.into_iter().flatten());
+        match milled_length(judged, feature, cut).filter(|_| is_even) {
+            Some(MilledLength::Fault(finding)) => findings.push(finding),
+            Some(MilledLength::Comb) => judged.gaps.push(ShapeGap::ThreadLength(cut.pass.tool)),
+            None => {}
         }
-        findings.extend(pitch(id, feature, cut));
-        findings.extend(hand(id, feature, cut));
     }
     judged.findings.extend(findings);
 }
@@ -205,12 +211,21 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     )))
 }
 
-/// Reports a milled thread whose turns are not as high as its pitch.
+/// Returns the cuts that make a thread: the one that makes it whole, and all helices that cut its flanks.
+fn turns<'c>(judged: &Judgement<'c>, feature: &Feature, made: &Cut<'c>) -> Vec<Cut<'c>> {
+    let minor = feature.diameter - THREAD_DEPTH * feature.pitch.unwrap_or(feature.diameter);
+    let is_single = stated_threads(judged.nominal).len() == 1;
+    let is_turn = |cut: &&Cut<'_>| {
+        std::ptr::eq(cut.pass.backtrace, made.pass.backtrace)
+            || is_single && cut.thread.is_some() && cut.pass.diameter.is_none_or(|own| minor < own)
+    };
+    judged.near.iter().filter(is_turn).copied().collect()
+}
+
+/// Reports a milled thread with a turn that is not as high as its pitch.
 fn milled_pitch(id: &str, nominal: f64, cut: &Cut<'_>, helix: &Helix) -> Option<Diagnostic> {
-    let lead = helix.lead.abs();
-    if !exceeds((lead - nominal).abs(), LEAD_TOLERANCE) {
-        return None;
-    }
+    let is_off = |lead: &f64| exceeds((lead - nominal).abs(), LEAD_TOLERANCE);
+    let lead = helix.uneven_lead.into_iter().chain([helix.lead]).map(f64::abs).find(is_off)?;
     let message = format!(
         "hole {id}: {} goes {lead:.4} mm along the axis in a turn, the pitch is {nominal}",
         cut.name()
@@ -228,7 +243,8 @@ fn out_of_step(id: &str, cuts: &[Cut<'_>]) -> Option<Diagnostic> {
         let off = (helix.phase - one.phase).rem_euclid(lead);
         let off = off.min(lead - off);
         // Another lead has its own finding.
-        let is_alike = !exceeds((helix.lead - one.lead).abs(), LEAD_TOLERANCE);
+        let is_even = helix.uneven_lead.is_none() && one.uneven_lead.is_none();
+        let is_alike = is_even && !exceeds((helix.lead - one.lead).abs(), LEAD_TOLERANCE);
         if !is_alike || !exceeds(off, MAX_STEP) {
             return None;
         }
@@ -242,26 +258,54 @@ fn out_of_step(id: &str, cuts: &[Cut<'_>]) -> Option<Diagnostic> {
     })
 }
 
-/// Judgement of a milled thread that begins below the entry.
+/// Judgement of a milled thread that is not cut all along.
 enum MilledLength {
     Fault(Diagnostic),
     /// In one turn a comb mill cuts more than the turn.
     Comb,
 }
 
-/// Judges the upper end of a milled thread, which is at the entry or less than a turn below it.
-fn milled_length(id: &str, cut: &Cut<'_>, helix: &Helix) -> Option<MilledLength> {
-    let (top, lead) = (cut.tip - helix.height, helix.lead.abs());
-    if top < lead - LEAD_TOLERANCE {
-        return None;
-    }
-    if helix.height < MAX_COMB_TURNS * lead {
+/// Judges how far the helices of full width cover a milled thread, which begins at the entry or less than a turn below it.
+fn milled_length(judged: &Judgement<'_>, feature: &Feature, made: &Cut<'_>) -> Option<MilledLength> {
+    let lead = made.thread?.lead.abs();
+    let is_full = |cut: &&Cut<'_>| cut.mismatch(feature, judged.comparison.tolerances).is_some();
+    let covered = covered_depths(judged.near.iter().filter(is_full));
+    let [top, _] = *covered.first()?;
+    let uncut = match covered.get(1).filter(|[_, upper]| 0.0 < *upper) {
+        Some([_, upper]) => [*upper, top],
+        None if top < lead - LEAD_TOLERANCE => return None,
+        None => [0.0, top],
+    };
+    let own = covered_depths(judged.near.iter().filter(|cut| cut.pass.tool == made.pass.tool));
+    if own.iter().all(|[upper, lower]| lower - upper < MAX_COMB_TURNS * lead) {
         return Some(MilledLength::Comb);
     }
-    let message = format!(
-        "hole {id}: {} mills the thread from {top:.3} mm below the entry on, limit {lead:.3}, a turn",
-        cut.name()
-    );
-    let finding = Diagnostic::new(&FEATURE_DEPTH, message).with_backtrace(cut.pass.backtrace.clone());
-    Some(MilledLength::Fault(finding.help("mill up to the entry")))
+    let [from, to] = uncut;
+    let (id, name) = (judged.id, made.name());
+    let message = match from == 0.0 {
+        true => format!(
+            "hole {id}: {name} mills the thread from {to:.3} mm below the entry on, limit {lead:.3}, a turn"
+        ),
+        false => format!(
+            "hole {id}: {name} mills no thread from {from:.3} to {to:.3} mm below the entry, limit {MAX_STEP}"
+        ),
+    };
+    let finding = Diagnostic::new(&FEATURE_DEPTH, message).with_backtrace(made.pass.backtrace.clone());
+    Some(MilledLength::Fault(finding.help("mill up to the entry, each turn to the diameter of the thread")))
+}
+
+/// Returns the depths that some helices cover without a step between them, from the top of each stretch to its bottom, the
+/// deepest first.
+fn covered_depths<'c>(cuts: impl Iterator<Item = &'c Cut<'c>>) -> Vec<[f64; 2]> {
+    let mut spans: Vec<[f64; 2]> =
+        cuts.filter_map(|cut| Some([cut.tip - cut.thread?.height, cut.tip])).collect();
+    spans.sort_by(|a, b| b[1].total_cmp(&a[1]));
+    let mut covered: Vec<[f64; 2]> = Vec::new();
+    for [upper, lower] in spans {
+        match covered.last_mut() {
+            Some(last) if last[0] <= lower + MAX_STEP => last[0] = last[0].min(upper),
+            _ => covered.push([upper, lower]),
+        }
+    }
+    covered
 }
