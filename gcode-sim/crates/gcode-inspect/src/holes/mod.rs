@@ -352,6 +352,9 @@ impl<'m> HoleExtractor<'m> {
             return;
         }
         self.check_thread_wall(event, &before.tip);
+        if kind == MotionKind::Rapid {
+            self.check_rapid_into_thread(event, &before.tip);
+        }
         let free_from = self.update_line(event, kind, before.tip);
         match (kind, free_from) {
             (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),

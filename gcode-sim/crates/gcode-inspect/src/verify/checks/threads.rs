@@ -142,7 +142,7 @@ pub(super) fn stated_threads(nominal: &Hole) -> Vec<(f64, f64, f64)> {
     threads.map(|one| (one.diameter, one.pitch.unwrap_or(0.0), one.bottom())).collect()
 }
 
-/// Reports a thread that the spindle cuts with the wrong hand.
+/// Reports a thread that the spindle cuts with the wrong hand, or a tap of the other hand.
 fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     let (own, remedy) = match (cut.thread, cut.pass.cut.direction) {
         (Some(Helix { lead, .. }), _) => {
@@ -152,12 +152,18 @@ fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
         (None, SpindleDirection::Counterclockwise) => (Hand::Left, "tap with G84"),
         (None, SpindleDirection::Off) => return None,
     };
-    if own == feature.hand {
-        return None;
-    }
     let name = |hand| if hand == Hand::Left { "left-hand" } else { "right-hand" };
-    let message =
-        format!("hole {id}: {} cuts a {} thread, nominal {}", cut.name(), name(own), name(feature.hand));
+    let nominal = name(feature.hand);
+    let (message, remedy) = match cut.hand.filter(|_| cut.thread.is_none()) {
+        _ if own != feature.hand => {
+            (format!("cuts a {} thread, nominal {nominal}", name(own)), remedy.to_owned())
+        }
+        Some(tap) if tap != feature.hand => {
+            (format!("is a {} tap, nominal {nominal}", name(tap)), format!("use a {nominal} tap"))
+        }
+        _ => return None,
+    };
+    let message = format!("hole {id}: {} {message}", cut.name());
     let finding = Diagnostic::new(&TAP_HAND, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help(format!("{remedy}, or correct the hand of the thread in the reference")))
 }
@@ -251,7 +257,7 @@ fn out_of_step(id: &str, cuts: &[Cut<'_>]) -> Option<Diagnostic> {
         let message = format!(
             "hole {id}: {} follows the thread {off:.3} mm beside the pass of {}, limit {MAX_STEP}",
             cut.name(),
-            first.name()
+            first.name().trim_end_matches(',')
         );
         let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
         Some(finding.help("begin each pass at the same angle, or higher by its part of the pitch"))
