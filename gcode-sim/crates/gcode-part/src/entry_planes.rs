@@ -299,11 +299,13 @@ fn steps(hole: &Hole, radius: f64, tolerance: f64) -> Vec<Step> {
             let taper = Taper { radius: radius - slope * tolerance, slope };
             return Step { taper, max_depth: bottom + tolerance };
         }
-        let point = match feature.to {
-            DepthTo::Full => POINT_LENGTH * feature.diameter,
-            DepthTo::Point => 0.0,
+        let below = match (feature.kind, feature.to) {
+            // A thread mill comes in along half a turn, where the hole is deeper than its thread.
+            (FeatureKind::Tap, _) => (feature.pitch.unwrap_or(0.0) / 2.0).min(hole.depth - bottom).max(0.0),
+            (_, DepthTo::Full) => POINT_LENGTH * feature.diameter,
+            (_, DepthTo::Point) => 0.0,
         };
-        step(radius, bottom + point)
+        step(radius, bottom + below)
     };
     match hole.features[..] {
         [] => vec![step(radius, hole.depth)],

@@ -21,6 +21,9 @@ const LEAD_ROUNDING: f64 = 0.003;
 /// Largest difference of two circles that are one, mm.
 const SAME_CIRCLE: f64 = 1e-9;
 
+/// Number of kinds of slope that are kept.
+const MAX_SLOPES: usize = 4;
+
 /// Largest angle between two samples of an arc, degrees.
 const MAX_SAMPLE: f64 = 5.0;
 
@@ -92,10 +95,19 @@ pub(super) struct ArcRun {
     turn: Option<FullTurn>,
     /// All turns of a helix that makes no hole: its lowest point.
     helix_turn: Option<FullTurn>,
-    /// Rise of the first arc, mm per degree.
-    slope: f64,
-    /// True if all arcs rise alike.
-    is_uniform: bool,
+    /// Kinds of slope among the arcs, in the order of the run.
+    slopes: Vec<Slope>,
+}
+
+/// Arcs of a run that rise alike.
+#[derive(Clone, Debug)]
+struct Slope {
+    /// Height that they gain, mm per degree.
+    rise: f64,
+    /// Angle that they sweep, degrees.
+    swept: f64,
+    /// Block of the first.
+    backtrace: Backtrace,
 }
 
 /// Extremes of the last heights of a path, each with the angle swept before it: of the upper ones each is above all later
@@ -152,6 +164,8 @@ pub(super) struct Ring {
     /// Height of the start of the run along `out`.
     pub top: f64,
     pub helix: Option<Helix>,
+    /// Block of the first arc whose lead is not that of the helix.
+    pub uneven_turn: Option<Backtrace>,
     /// Block of the last arc.
     pub backtrace: Backtrace,
     pub axis_position: Position,
@@ -176,12 +190,10 @@ impl Ring {
 }
 
 impl ArcRun {
-    pub(super) fn new(arc: PartArc, place: impl FnOnce() -> (Backtrace, Position)) -> Self {
+    pub(super) fn new(arc: PartArc, place: impl Fn() -> (Backtrace, Position)) -> Self {
         let top = arc.from.coords.dot(&arc.out);
-        let slope = arc.rise() / arc.sweep.0.abs();
-        let (arcs, heights) = (VecDeque::new(), HeightRange::default());
-        let mut run =
-            Self { arcs, swept: 0.0, top, heights, turn: None, helix_turn: None, slope, is_uniform: true };
+        let (arcs, heights, slopes) = (VecDeque::new(), HeightRange::default(), Vec::new());
+        let mut run = Self { arcs, swept: 0.0, top, heights, turn: None, helix_turn: None, slopes };
         run.push(arc, place);
         run
     }
@@ -190,7 +202,7 @@ impl ArcRun {
     pub(super) fn extend(
         &mut self,
         arc: PartArc,
-        place: impl FnOnce() -> (Backtrace, Position),
+        place: impl Fn() -> (Backtrace, Position),
     ) -> Result<(), PartArc> {
         if !self.arcs.back().is_some_and(|(_, last)| last.continues(&arc)) {
             return Err(arc);
@@ -199,11 +211,10 @@ impl ArcRun {
         Ok(())
     }
 
-    fn push(&mut self, arc: PartArc, place: impl FnOnce() -> (Backtrace, Position)) {
+    fn push(&mut self, arc: PartArc, place: impl Fn() -> (Backtrace, Position)) {
         let end = arc.to.coords.dot(&arc.out);
         let before = self.swept;
-        let expected = self.slope * arc.sweep.0.abs();
-        self.is_uniform &= (arc.rise() - expected).abs() <= LEAD_ROUNDING;
+        self.add_slope(arc.rise(), arc.sweep.0.abs(), || place().0);
         self.swept += arc.sweep.0.abs();
         self.heights.push(before, arc.from.coords.dot(&arc.out));
         self.heights.push(self.swept, end);
@@ -223,11 +234,26 @@ impl ArcRun {
         if (is_level || is_helix) && self.turn.as_ref().is_none_or(|turn| level < turn.level - 1e-9) {
             let (backtrace, axis_position) = place();
             self.turn = Some(FullTurn { level, backtrace, axis_position });
-        } else if self.turn.is_none() && self.is_uniform {
+        } else if self.turn.is_none() && self.is_steady() {
             let (backtrace, axis_position) = place();
             let (first, last) = (self.top, end);
             self.helix_turn = Some(FullTurn { level: first.min(last), backtrace, axis_position });
         }
+    }
+
+    fn add_slope(&mut self, rise: f64, swept: f64, place: impl FnOnce() -> Backtrace) {
+        let is_alike = |slope: &Slope| (rise - slope.rise * swept).abs() <= LEAD_ROUNDING;
+        if let Some(index) = self.slopes.iter().position(is_alike) {
+            self.slopes[index].swept += swept;
+        } else if self.slopes.len() < MAX_SLOPES {
+            self.slopes.push(Slope { rise: rise / swept, swept, backtrace: place() });
+        }
+    }
+
+    /// Returns true if all arcs rise, or all fall.
+    fn is_steady(&self) -> bool {
+        let way = self.slopes.first().map_or(0.0, |slope| slope.rise.signum());
+        self.slopes.iter().all(|slope| MAX_LEVEL_CHANGE < 360.0 * slope.rise * way)
     }
 
     /// Returns the angle of a full turn of this radius, less the largest gap, degrees.
@@ -246,7 +272,7 @@ impl ArcRun {
     pub(super) fn finish(self) -> Option<Ring> {
         let (_, last) = self.arcs.back()?;
         let (out, end) = (last.out, last.to.coords.dot(&last.out));
-        let mut helix = self.helix(end - self.top, last.sweep.0.signum());
+        let (mut helix, uneven_turn) = self.helix(end - self.top, last.sweep.0.signum()).unzip();
         if self.turn.is_none() && helix.is_none() {
             return None;
         }
@@ -256,14 +282,25 @@ impl ArcRun {
         }
         let FullTurn { level, backtrace, axis_position } = self.turn.or(self.helix_turn)?;
         let centre = centre + out.into_inner() * (level - centre.coords.dot(&out));
-        Some(Ring { centre, out, radius, roundness, top: self.top, helix, backtrace, axis_position })
+        let (top, uneven_turn) = (self.top, uneven_turn.flatten());
+        Some(Ring { centre, out, radius, roundness, top, helix, uneven_turn, backtrace, axis_position })
     }
 
-    /// Returns the helix, without its phase, of a run that rises in all, or falls; `None` if it is level anywhere, or less than a full turn.
-    fn helix(&self, rise: f64, sense: f64) -> Option<Helix> {
-        let lead = rise * sense * 360.0 / self.swept;
-        let is_helix = self.is_uniform && self.full_turn() <= self.swept && MAX_LEVEL_CHANGE < lead.abs();
-        is_helix.then(|| Helix { lead, phase: 0.0, height: rise.abs(), is_thread: self.turn.is_none() })
+    /// Returns the helix, without its phase, of a run that rises in all, or falls, with the block of the first arc whose lead is
+    /// another one; `None` if it is level anywhere, or less than a full turn.
+    fn helix(&self, rise: f64, sense: f64) -> Option<(Helix, Option<Backtrace>)> {
+        if !self.is_steady() || self.swept < self.full_turn() {
+            return None;
+        }
+        let main =
+            self.slopes.iter().reduce(|best, slope| if best.swept < slope.swept { slope } else { best })?;
+        let uneven = self.slopes.iter().find(|slope| !std::ptr::eq(*slope, main));
+        // The whole run gives the lead of even turns to the last digit.
+        let lead = if uneven.is_some() { main.rise } else { rise / self.swept } * sense * 360.0;
+        let uneven_lead = uneven.map(|slope| slope.rise * sense * 360.0);
+        let helix =
+            Helix { lead, uneven_lead, phase: 0.0, height: rise.abs(), is_thread: self.turn.is_none() };
+        Some((helix, uneven.map(|slope| slope.backtrace.clone())))
     }
 
     /// Returns the least squares circle of the last full turn: centre, radius, and largest minus least distance.

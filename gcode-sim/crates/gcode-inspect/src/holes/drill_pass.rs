@@ -39,15 +39,17 @@ pub struct MilledCut {
     pub roundness: f64,
     /// Diameter of the metal that the mill leaves on the axis; `None` without any, or if it is unknown.
     pub core: Option<f64>,
-    /// Helix of the path; `None` if it is level anywhere, or of varying lead.
+    /// Helix of the path; `None` if it is level anywhere.
     pub helix: Option<Helix>,
 }
 
-/// Helix of one lead along which a mill goes round.
+/// Helix along which a mill goes round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Helix {
     /// Height of a turn, mm; negative if it is left-hand.
     pub lead: f64,
+    /// Lead of the first arc whose own is another one; `None` if all turns are alike.
+    pub uneven_lead: Option<f64>,
     /// Height at which it crosses the direction from which angles count, from 0 to a turn, mm.
     pub phase: f64,
     /// Height of the whole helix, mm.
@@ -61,7 +63,18 @@ impl PassCut {
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
         let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
         let (feed, is_tapping, is_cycle, rigid_run) = (None, false, false, 0);
-        Self { start, bottom, feed, speed, direction, is_tapping, is_cycle, rigid_run, milled: None, order: 0 }
+        Self {
+            start,
+            bottom,
+            feed,
+            speed,
+            direction,
+            is_tapping,
+            is_cycle,
+            rigid_run,
+            milled: None,
+            order: 0,
+        }
     }
 }
 

@@ -253,7 +253,9 @@ fn push_holes<'p>(
         if cuts {
             *lowest = height(&pass.cut.bottom);
         }
-        if cuts { cutting.push(pass) } else { repeated.push(pass) }
+        // Every turn cuts the flanks of a thread.
+        let is_helix = pass.cut.milled.is_some_and(|circle| circle.helix.is_some());
+        if cuts || is_helix { cutting.push(pass) } else { repeated.push(pass) }
     }
     let lowest = cutting.iter().map(|pass| height(&pass.cut.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing_pass(&cutting, lowest, height, machine);

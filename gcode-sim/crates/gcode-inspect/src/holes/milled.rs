@@ -9,7 +9,7 @@ use super::drill_pass::{DrillPass, MilledCut, PassCut};
 use super::hole_circles::HoleCircles;
 use super::per_block::Findings;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
-use gcode_lang::motion::{Event, SpindleDirection, UnknownAxes};
+use gcode_lang::motion::{Backtrace, Event, SpindleDirection, UnknownAxes};
 
 /// Largest number of points of an engagement; with more the tool mills something larger than a hole.
 const MAX_POINTS: usize = 50_000;
@@ -262,7 +262,7 @@ impl HoleExtractor<'_> {
                 is_tool_axis_known: self.pose.axis.is_some(),
                 feed_direction: out,
                 tool,
-                backtrace: ring.backtrace.clone(),
+                backtrace: self.place_of(ring).clone(),
                 axis_position: ring.axis_position,
                 unknown_axes,
             };
@@ -273,5 +273,11 @@ impl HoleExtractor<'_> {
             let order = self.strokes.begin_pass();
             self.strokes.push(order, pass, CutKind::Drilled);
         }
+    }
+
+    /// Returns the block of a circle; at a thread, that of its first uneven turn.
+    fn place_of<'r>(&self, ring: &'r Ring) -> &'r Backtrace {
+        let is_thread = || self.strokes.nominal_of_ring(ring, true).is_some_and(|axis| axis.thread.is_some());
+        ring.uneven_turn.as_ref().filter(|_| is_thread()).unwrap_or(&ring.backtrace)
     }
 }

@@ -351,6 +351,9 @@ impl<'m> HoleExtractor<'m> {
             return;
         }
         self.check_thread_wall(event, &before.tip);
+        if kind == MotionKind::Rapid {
+            self.check_rapid_into_thread(event, &before.tip);
+        }
         let free_from = self.update_line(event, kind, before.tip);
         self.follow_bar_shift(event, kind, &before.tip);
         match (kind, free_from) {

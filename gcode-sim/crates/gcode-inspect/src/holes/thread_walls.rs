@@ -1,9 +1,9 @@
-//! Threads of nominal holes that a tool cuts away along their axis: only a tap, and a mill along its helix, may enter them.
+//! Threads of nominal holes that a tool cuts away: only a tap, and a mill along its helix, may enter them, and no rapid.
 use nalgebra::Point3;
 
 use super::HoleExtractor;
 use super::rapids::format_point;
-use crate::findings::FEED_BESIDE_HOLE;
+use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
 use crate::machine::{ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Event;
@@ -58,6 +58,40 @@ impl HoleExtractor<'_> {
             );
             Diagnostic::new(finding, message)
                 .help("lead the mill to the axis of the hole before it goes down or up")
+        });
+    }
+
+    /// Reports a rapid away from the axis of a threaded hole whose edge enters the flanks.
+    pub(super) fn check_rapid_into_thread(&mut self, event: &Event<'_>, from: &Point3<f64>) {
+        if !self.strokes.nominal_axes().has_threads() {
+            return;
+        }
+        let to = self.pose.tip;
+        let (Some(axis), Some(diameter)) = (self.pose.axis, self.machine.diameter_of(self.setup.tool)) else {
+            return;
+        };
+        let Some((hole, thread, aside)) = self.strokes.nominal_axes().threaded([&to, &to], &axis) else {
+            return;
+        };
+        let spoke = from - hole.entry;
+        let before = (spoke - hole.out * spoke.dot(&hole.out)).norm();
+        let depth = (hole.entry - to).dot(&hole.out).min(thread.span[1]);
+        let reach = aside + diameter / 2.0;
+        if !exceeds(aside - before, MAX_FLANK_CUT)
+            || !exceeds(reach - thread.core, MAX_FLANK_CUT)
+            || exceeds(reach - thread.major, MAX_FLANK_CUT)
+            || !exceeds(depth - thread.span[0], MAX_FLANK_CUT)
+        {
+            return;
+        }
+        let (tool, core) = (tool_name(self.setup.tool), 2.0 * thread.core);
+        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |finding| {
+            let message = format!(
+                "{tool} enters the thread {:.3} mm deep in a rapid, at {}: the hole before the thread is Φ{core:.3}",
+                reach - core / 2.0,
+                format_point(&to),
+            );
+            Diagnostic::new(finding, message).help("only a feed along the helix may enter the thread")
         });
     }
 }

@@ -8,7 +8,7 @@ use super::{DIAMETER_TOLERANCE, Tolerances};
 use crate::holes::{DrilledHole, Helix, ToolPass};
 use crate::machine::{Machine, PointShape, Tool, ToolKind, tool_name};
 use gcode_lang::units::Deg;
-use gcode_part::{DepthTo, Feature, FeatureKind, Hole, exceeds};
+use gcode_part::{DepthTo, Feature, FeatureKind, Hand, Hole, exceeds};
 
 /// Largest difference between the angles of a countersink and its tool, degrees.
 const ANGLE_TOLERANCE: f64 = 0.5;
@@ -22,6 +22,8 @@ pub(super) struct Cut<'a> {
     /// Depth of the tip.
     pub tip: f64,
     pub kind: Option<ToolKind>,
+    /// Hand of the tool; `None` if the machine file has none.
+    pub hand: Option<Hand>,
     pub point: PointShape,
     /// Helix of a mill along a thread; `None` if it makes none.
     pub thread: Option<Helix>,
@@ -39,16 +41,20 @@ impl<'a> Cut<'a> {
             let thread = milled_thread(nominal, &pass);
             // A helix that makes a hole counts from the highest point of its last turn.
             let below = thread.filter(|helix| !helix.is_thread).map_or(0.0, |helix| helix.lead.abs());
+            let point = match tool.map_or(PointShape::Unknown, Tool::point) {
+                PointShape::Unknown if is_milled => PointShape::Flat,
+                point => point,
+            };
+            // A circle is that of an end mill, or of a chamfer mill.
+            let is_end_mill = is_milled && point == PointShape::Flat;
             Self {
                 pass,
                 thread,
                 start: depth(&pass.cut.start),
                 tip: depth(&pass.cut.bottom) + below,
-                kind: tool.and_then(|tool| tool.kind).or(is_milled.then_some(ToolKind::EndMill)),
-                point: match tool.map_or(PointShape::Unknown, Tool::point) {
-                    PointShape::Unknown if is_milled => PointShape::Flat,
-                    point => point,
-                },
+                kind: tool.and_then(|tool| tool.kind).or(is_end_mill.then_some(ToolKind::EndMill)),
+                hand: tool.and_then(|tool| tool.hand),
+                point,
             }
         };
         drilled.passes().map(cut).collect()
@@ -78,6 +84,10 @@ impl<'a> Cut<'a> {
     fn can_make(&self, feature: FeatureKind) -> bool {
         self.kind.is_none_or(|kind| match self.thread {
             Some(_) => feature == FeatureKind::Tap && !kind.cuts_with_end(),
+            // The flat end of a drill leaves the floor of a counterbore.
+            None if kind == ToolKind::Drill && self.point == PointShape::Flat => {
+                kind.can_make(feature) || feature == FeatureKind::Counterbore
+            }
             None => kind.can_make(feature),
         })
     }

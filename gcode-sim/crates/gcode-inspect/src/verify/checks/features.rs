@@ -305,7 +305,8 @@ impl Judgement<'_> {
             cut.tip
         );
         let finding = Diagnostic::new(&FEATURE_EXTRA, message).with_backtrace(cut.pass.backtrace.clone());
-        let is_edge_break = cut.kind == Some(ToolKind::SpotDrill) && !exceeds(excess, self.max_edge_break());
+        let is_cone = matches!(cut.point, PointShape::Pointed(_)) && !exceeds(shape.full_depth(), 0.0);
+        let is_edge_break = is_cone && !exceeds(excess, self.max_edge_break());
         let severity = if is_edge_break { Severity::Warning } else { Severity::Error };
         let finding = match cut.point {
             PointShape::Unknown => {
@@ -317,7 +318,7 @@ impl Judgement<'_> {
         self.findings.push(finding.help("remove the pass, or add its feature to the hole in the reference"));
     }
 
-    /// Returns the width by which a spot drill may break the edge of the hole, mm in diameter: that of a countersink is its
+    /// Returns the width by which a cone may break the edge of the hole, mm in diameter: that of a countersink is its
     /// tolerance.
     fn max_edge_break(&self) -> f64 {
         let cones = self.nominal.features.iter().filter(|feature| feature.kind == FeatureKind::Countersink);

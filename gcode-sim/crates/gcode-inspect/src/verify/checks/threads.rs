@@ -19,7 +19,10 @@ const LEAD_TOLERANCE: f64 = 1e-3;
 /// Largest distance along the axis between two passes of one thread, mm.
 const MAX_STEP: f64 = 0.05;
 
-/// Turns that a comb mill makes at most: one, and its lead-in and lead-out.
+/// Depth of an internal thread by its pitch, in diameter (ISO 724).
+const THREAD_DEPTH: f64 = 1.082_532;
+
+/// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
 
 /// Adds the findings on the threads of a hole.
@@ -45,17 +48,18 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     for (feature, cut) in nominal.features.iter().zip(made_by).filter(|(one, _)| one.kind == FeatureKind::Tap)
     {
         let Some(cut) = cut.map(|cut| &judged.near[cut]) else { continue };
-        if let Some(helix) = cut.thread {
-            match milled_length(id, cut, &helix, &judged.near) {
-                Some(MilledLength::Fault(finding)) => findings.push(finding),
-                Some(MilledLength::Comb) => judged.gaps.push(ShapeGap::ThreadLength(cut.pass.tool)),
-                None => {}
-            }
+        let turns = turns(judged, feature, cut);
+        let faults = [
+            turns.iter().find_map(|cut| pitch(id, feature, cut)),
+            turns.iter().find_map(|cut| hand(id, feature, cut)),
+        ];
+        let is_even = faults.iter().all(Option::is_none);
+        findings.extend(faults.into_iter().flatten());
+        match milled_length(judged, feature, cut).filter(|_| is_even) {
+            Some(MilledLength::Fault(finding)) => findings.push(finding),
+            Some(MilledLength::Comb) => judged.gaps.push(ShapeGap::ThreadLength(cut.pass.tool)),
+            None => {}
         }
-        // Each pass along the thread follows it.
-        let own = || judged.near.iter().filter(|one| one.is_thread() && one.is_same_size(&cut.pass));
-        findings.extend(own().find_map(|one| pitch(id, feature, one)));
-        findings.extend(own().find_map(|one| hand(id, feature, one)));
     }
     judged.findings.extend(findings);
 }
@@ -138,7 +142,7 @@ pub(super) fn stated_threads(nominal: &Hole) -> Vec<(f64, f64, f64)> {
     threads.map(|one| (one.diameter, one.pitch.unwrap_or(0.0), one.bottom())).collect()
 }
 
-/// Reports a thread that the spindle cuts with the wrong hand.
+/// Reports a thread that the spindle cuts with the wrong hand, or a tap of the other hand.
 fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     let (own, remedy) = match (cut.thread, cut.pass.cut.direction) {
         (Some(Helix { lead, .. }), _) => {
@@ -148,12 +152,18 @@ fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
         (None, SpindleDirection::Counterclockwise) => (Hand::Left, "tap with G84"),
         (None, SpindleDirection::Off) => return None,
     };
-    if own == feature.hand {
-        return None;
-    }
     let name = |hand| if hand == Hand::Left { "left-hand" } else { "right-hand" };
-    let message =
-        format!("hole {id}: {} cuts a {} thread, nominal {}", cut.name(), name(own), name(feature.hand));
+    let nominal = name(feature.hand);
+    let (message, remedy) = match cut.hand.filter(|_| cut.thread.is_none()) {
+        _ if own != feature.hand => {
+            (format!("cuts a {} thread, nominal {nominal}", name(own)), remedy.to_owned())
+        }
+        Some(tap) if tap != feature.hand => {
+            (format!("is a {} tap, nominal {nominal}", name(tap)), format!("use a {nominal} tap"))
+        }
+        _ => return None,
+    };
+    let message = format!("hole {id}: {} {message}", cut.name());
     let finding = Diagnostic::new(&TAP_HAND, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help(format!("{remedy}, or correct the hand of the thread in the reference")))
 }
@@ -207,12 +217,21 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     )))
 }
 
-/// Reports a milled thread whose turns are not as high as its pitch.
+/// Returns the cuts that make a thread: the one that makes it whole, and all helices that cut its flanks.
+fn turns<'c>(judged: &Judgement<'c>, feature: &Feature, made: &Cut<'c>) -> Vec<Cut<'c>> {
+    let minor = feature.diameter - THREAD_DEPTH * feature.pitch.unwrap_or(feature.diameter);
+    let is_single = stated_threads(judged.nominal).len() == 1;
+    let is_turn = |cut: &&Cut<'_>| {
+        std::ptr::eq(cut.pass.backtrace, made.pass.backtrace)
+            || is_single && cut.thread.is_some() && cut.pass.diameter.is_none_or(|own| minor < own)
+    };
+    judged.near.iter().filter(is_turn).copied().collect()
+}
+
+/// Reports a milled thread with a turn that is not as high as its pitch.
 fn milled_pitch(id: &str, nominal: f64, cut: &Cut<'_>, helix: &Helix) -> Option<Diagnostic> {
-    let lead = helix.lead.abs();
-    if !exceeds((lead - nominal).abs(), LEAD_TOLERANCE) {
-        return None;
-    }
+    let is_off = |lead: &f64| exceeds((lead - nominal).abs(), LEAD_TOLERANCE);
+    let lead = helix.uneven_lead.into_iter().chain([helix.lead]).map(f64::abs).find(is_off)?;
     let message = format!(
         "hole {id}: {} goes {lead:.4} mm along the axis in a turn, the pitch is {nominal}",
         cut.name()
@@ -230,55 +249,69 @@ fn out_of_step(id: &str, cuts: &[Cut<'_>]) -> Option<Diagnostic> {
         let off = (helix.phase - one.phase).rem_euclid(lead);
         let off = off.min(lead - off);
         // Another lead has its own finding.
-        let is_alike = !exceeds((helix.lead - one.lead).abs(), LEAD_TOLERANCE);
+        let is_even = helix.uneven_lead.is_none() && one.uneven_lead.is_none();
+        let is_alike = is_even && !exceeds((helix.lead - one.lead).abs(), LEAD_TOLERANCE);
         if !is_alike || !exceeds(off, MAX_STEP) {
             return None;
         }
         let message = format!(
             "hole {id}: {} follows the thread {off:.3} mm beside the pass of {}, limit {MAX_STEP}",
             cut.name(),
-            first.name()
+            first.name().trim_end_matches(',')
         );
         let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
         Some(finding.help("begin each pass at the same angle, or higher by its part of the pitch"))
     })
 }
 
-/// Judgement of a milled thread that begins below the entry.
+/// Judgement of a milled thread that is not cut all along.
 enum MilledLength {
     Fault(Diagnostic),
     /// In one turn a comb mill cuts more than the turn.
     Comb,
 }
 
-/// Returns the upper end of a milled thread: that of its deepest pass, or of those of the same size that go on from there.
-fn top_of_thread(cut: &Cut<'_>, helix: &Helix, cuts: &[Cut<'_>]) -> f64 {
-    let span = |one: &Cut<'_>| {
-        let own = one.thread?;
-        let is_alike = !exceeds((own.lead - helix.lead).abs(), LEAD_TOLERANCE);
-        (is_alike && one.is_same_size(&cut.pass)).then_some((one.tip - own.height, one.tip))
+/// Judges how far the helices of full width cover a milled thread, which begins at the entry or less than a turn below it.
+fn milled_length(judged: &Judgement<'_>, feature: &Feature, made: &Cut<'_>) -> Option<MilledLength> {
+    let lead = made.thread?.lead.abs();
+    let is_full = |cut: &&Cut<'_>| cut.mismatch(feature, judged.comparison.tolerances).is_some();
+    let covered = covered_depths(judged.near.iter().filter(is_full));
+    let [top, _] = *covered.first()?;
+    let uncut = match covered.get(1).filter(|[_, upper]| 0.0 < *upper) {
+        Some([_, upper]) => [*upper, top],
+        None if top < lead - LEAD_TOLERANCE => return None,
+        None => [0.0, top],
     };
-    let spans = || cuts.iter().filter_map(span);
-    let mut top = cut.tip - helix.height;
-    while let Some((higher, _)) = spans().find(|(start, tip)| *start < top && top - MAX_STEP <= *tip) {
-        top = higher;
-    }
-    top
-}
-
-/// Judges the upper end of a milled thread, which is at the entry or less than a turn below it.
-fn milled_length(id: &str, cut: &Cut<'_>, helix: &Helix, cuts: &[Cut<'_>]) -> Option<MilledLength> {
-    let (top, lead) = (top_of_thread(cut, helix, cuts), helix.lead.abs());
-    if top < lead - LEAD_TOLERANCE {
-        return None;
-    }
-    if cut.tip - top < MAX_COMB_TURNS * lead {
+    let own = covered_depths(judged.near.iter().filter(|cut| cut.pass.tool == made.pass.tool));
+    if own.iter().all(|[upper, lower]| lower - upper < MAX_COMB_TURNS * lead) {
         return Some(MilledLength::Comb);
     }
-    let message = format!(
-        "hole {id}: {} mills the thread from {top:.3} mm below the entry on, limit {lead:.3}, a turn",
-        cut.name()
-    );
-    let finding = Diagnostic::new(&FEATURE_DEPTH, message).with_backtrace(cut.pass.backtrace.clone());
-    Some(MilledLength::Fault(finding.help("mill up to the entry")))
+    let [from, to] = uncut;
+    let (id, name) = (judged.id, made.name());
+    let message = match from == 0.0 {
+        true => format!(
+            "hole {id}: {name} mills the thread from {to:.3} mm below the entry on, limit {lead:.3}, a turn"
+        ),
+        false => format!(
+            "hole {id}: {name} mills no thread from {from:.3} to {to:.3} mm below the entry, limit {MAX_STEP}"
+        ),
+    };
+    let finding = Diagnostic::new(&FEATURE_DEPTH, message).with_backtrace(made.pass.backtrace.clone());
+    Some(MilledLength::Fault(finding.help("mill up to the entry, each turn to the diameter of the thread")))
+}
+
+/// Returns the depths that some helices cover without a step between them, from the top of each stretch to its bottom, the
+/// deepest first.
+fn covered_depths<'c>(cuts: impl Iterator<Item = &'c Cut<'c>>) -> Vec<[f64; 2]> {
+    let mut spans: Vec<[f64; 2]> =
+        cuts.filter_map(|cut| Some([cut.tip - cut.thread?.height, cut.tip])).collect();
+    spans.sort_by(|a, b| b[1].total_cmp(&a[1]));
+    let mut covered: Vec<[f64; 2]> = Vec::new();
+    for [upper, lower] in spans {
+        match covered.last_mut() {
+            Some(last) if last[0] <= lower + MAX_STEP => last[0] = last[0].min(upper),
+            _ => covered.push([upper, lower]),
+        }
+    }
+    covered
 }
