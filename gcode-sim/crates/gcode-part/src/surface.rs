@@ -157,16 +157,6 @@ impl Surface {
         }
     }
 
-    /// Returns true if a point lies beside the body: on a line along `out` that misses it, and not above its highest point along
-    /// `out`.
-    pub fn is_beside(&self, point: &Point3<f64>, out: &Unit<Vector3<f64>>) -> bool {
-        let [low, high] = self.bounds();
-        let support = |axis: usize| out[axis] * if out[axis] < 0.0 { low[axis] } else { high[axis] };
-        // An axis across `out` adds nothing, even where the body is infinitely long along it.
-        let top: f64 = (0..3).filter(|axis| out[*axis] != 0.0).map(support).sum();
-        out.dot(&point.coords) < top && self.exit(point, out).is_none()
-    }
-
     /// Returns true if rotation about this axis leaves the body unchanged, to rounding.
     pub fn is_round(&self, on: &Point3<f64>, about: &Unit<Vector3<f64>>) -> bool {
         let (own, centre, all) = match *self {

@@ -20,8 +20,6 @@ pub struct PassCut {
     pub direction: SpindleDirection,
     /// True if the spindle reverses in the hole, as it does for a tap.
     pub is_tapping: bool,
-    /// True if a canned cycle makes it.
-    pub is_cycle: bool,
     /// Run of rigid tapping: in one run the spindle keeps its angle at each height; 0 outside.
     pub rigid_run: u32,
     /// Figures of a mill's circle; `None` for a stroke.
@@ -62,19 +60,8 @@ impl PassCut {
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
         let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
-        let (feed, is_tapping, is_cycle, rigid_run) = (None, false, false, 0);
-        Self {
-            start,
-            bottom,
-            feed,
-            speed,
-            direction,
-            is_tapping,
-            is_cycle,
-            rigid_run,
-            milled: None,
-            order: 0,
-        }
+        let (feed, is_tapping, rigid_run) = (None, false, 0);
+        Self { start, bottom, feed, speed, direction, is_tapping, rigid_run, milled: None, order: 0 }
     }
 }
 

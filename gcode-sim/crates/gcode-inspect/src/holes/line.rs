@@ -368,7 +368,6 @@ impl CuttingLine {
                 speed: self.cutting_state.speed,
                 direction: self.cutting_state.spindle_direction,
                 is_tapping: self.is_tapping,
-                is_cycle: self.is_cycle,
                 rigid_run: end.rigid_run,
                 milled: None,
                 order: 0,

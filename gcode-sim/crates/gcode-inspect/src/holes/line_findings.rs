@@ -58,10 +58,7 @@ impl HoleExtractor<'_> {
             let is_fed_inside = is_forward && TOUCH_DEPTH < s.depth(&line.start);
             0.0 <= slope && !is_fed_inside && !(is_parallel && may_cut())
         });
-        // What a canned cycle drills beside the part, below its top, is a hole in something else.
-        let is_beside = surface.is_some_and(|s| line.is_cycle && s.is_beside(&line.bottom(), &line.out));
-        let is_in_air = is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH);
-        if is_in_air && !is_beside {
+        if is_outward || is_backward && inside().is_none_or(|depth| depth <= TOUCH_DEPTH) {
             if line.is_inward() && self.feeds_in_air.len() < MAX_FEEDS_IN_AIR {
                 self.feeds_in_air.push((line.bottom(), line.backtrace().clone()));
             }
@@ -145,7 +142,7 @@ impl HoleExtractor<'_> {
     /// unknown position, a warning if the surface is unknown.
     fn report_no_retract(&mut self, line: &CuttingLine, inside: Option<f64>, moves_on: bool) {
         let unknown = without_assumed(line.unknown_axes, self.machine);
-        if self.metal.holes.is_some() && !unknown.is_none() {
+        if self.surface.is_some() && self.metal.holes.is_some() && !unknown.is_none() {
             self.findings.add(&START_UNKNOWN, line.backtrace(), u32::from(unknown.all()), |_| {
                 unknown_position_finding(&self.machine.axes, unknown, "a feed ends")
             });

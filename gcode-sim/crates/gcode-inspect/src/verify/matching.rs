@@ -244,11 +244,7 @@ impl<'a> Comparison<'a> {
             };
             // A feed across the tool has no depth: its ends count.
             let is_known = actual[*index].unknown_axes.is_none();
-            let is_beside = actual[*index]
-                .passes()
-                .any(|pass| pass.cut.is_cycle && surface.is_beside(&pass.cut.bottom, &pass.axis));
             let is_in_air = is_known
-                && !is_beside
                 && actual[*index].passes().all(|pass| {
                     let nominal = widest_by_tool.get(&pass.tool).copied();
                     is_in_air(&pass, surface, machine, nominal)
