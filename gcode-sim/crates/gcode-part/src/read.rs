@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use super::feature::{Feature, FeatureKind};
 use super::hole::{Hole, HoleList};
 use crate::reader::FileError;
+use crate::reader::bounds::{KeyRange, Length, MachinePoint};
 
 fn error(line: Option<usize>, message: impl Into<String>) -> FileError {
     FileError { line, message: message.into() }
@@ -64,6 +65,14 @@ fn find_fault(hole: &Hole) -> Option<String> {
     let numbers = hole.entry.iter().chain(&hole.axis).chain([&hole.depth]).chain(&hole.diameter);
     if let Some(number) = numbers.clone().find(|n| !n.is_finite()) {
         return Some(format!("a number is {number}: all must be finite"));
+    }
+    if let Some(number) = hole.entry.iter().find(|number| !MachinePoint::contains(**number)) {
+        return Some(format!("a coordinate of the entry is {number:?}: {}", MachinePoint::allowed()));
+    }
+    let sizes = hole.features.iter().flat_map(|one| one.depth.into_iter().chain([one.diameter]));
+    let mut sizes = sizes.chain([hole.depth]).chain(hole.diameter);
+    if let Some(size) = sizes.find(|size| Length::MAX < *size) {
+        return Some(format!("a depth or a diameter is {size:?}: at most {} mm", Length::MAX));
     }
     let length = Vector3::from(hole.axis).norm();
     if length == 0.0 {
@@ -204,6 +213,14 @@ mod tests {
             (
                 "id,x,y,z,i,j,k,depth,diameter,features\n1,0,0,0,0,1,0,15,7,drill 6 15\n".to_owned(),
                 "line 2: hole 1 (id '1'): the diameter is 7, which no feature has: leave it out",
+            ),
+            (
+                HOLE.replace("[1, 2, 3]", "[1, 2, 6e307]"),
+                "hole 1 (id '1'): a coordinate of the entry is 6e307: -100000 to 100000",
+            ),
+            (
+                HOLE.replace("5}]}", "1e300}]}"),
+                "hole 1 (id '1'): a depth or a diameter is 1e300: at most 99999 mm",
             ),
             (HOLE.replace("depth", "deep"), "line 1: column 86: unknown field `deep`"),
             (HOLE.replace("5}]}", "5}"), "line 1: column 91: EOF while parsing a list"),
