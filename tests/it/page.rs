@@ -413,13 +413,13 @@ fn a_program_that_stops_shows_where_and_why() {
 }
 
 #[test]
-fn a_long_program_is_cut_and_says_so() {
+fn a_long_program_is_drawn_in_fewer_lines_and_says_so() {
     let moves = "WHILE[#1 LT 45000]DO1\n#1=#1+1\nG1 X[#1 MOD 100] Y[#1/1000.] F900\nEND1\n";
     let program = format!("O1\n#1=0\nG0 Z5.\n{moves}G0 Z50.\nM30\n");
     let (_place, page) = of_texts(program.as_bytes(), program.as_bytes());
     let text = std::fs::read_to_string(&page).unwrap();
     assert!(text.len() < 5_000_000, "{} bytes", text.len());
-    assert!(text.contains("the first 40\u{a0}000 of 45\u{a0}002 moves are drawn"));
+    assert!(text.contains("45\u{a0}002 moves are drawn as 22\u{a0}502 lines"));
     assert!(text.contains("#1 0 … 44999 (45000×)"), "the variable's first and last value before the block");
     let browser = Browser::start(1200, 900);
     browser.open(&page);

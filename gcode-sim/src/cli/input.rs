@@ -71,6 +71,10 @@ const FIRST_LINES: usize = 200;
 
 /// Returns the reason why bytes are no program: zero bytes, or lines of which hardly one begins as a block does.
 fn not_a_program(bytes: &[u8]) -> Option<String> {
+    // The leader and the trailer of a tape are zeros.
+    let start = bytes.iter().position(|byte| *byte != 0).unwrap_or(bytes.len());
+    let end = bytes.iter().rposition(|byte| *byte != 0).map_or(start, |last| last + 1);
+    let bytes = &bytes[start..end];
     if bytes.iter().take(1 << 16).filter(|byte| **byte == 0).count() > 1 {
         return Some("it has zero bytes; a program is text".to_owned());
     }
@@ -198,7 +202,8 @@ mod tests {
             why("Dear colleague,\nhere it is\n").unwrap(),
             "its first lines are no blocks; the first is 'Dear colleague,'"
         );
-        assert!(why("\x7fELF\0\0\0\0").unwrap().starts_with("it has zero bytes"));
+        assert!(why("\x7fELF\0\0\0\0X").unwrap().starts_with("it has zero bytes"));
+        assert_eq!(why("\0\0\0%\nO1\nM30\n%\n\0\0\0"), None, "a tape with leader and trailer");
     }
 
     /// 钻孔加工程序 in GBK, 穴あけ加工のプログラム in Shift-JIS: tables of the two standards.
