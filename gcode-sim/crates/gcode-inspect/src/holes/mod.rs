@@ -29,6 +29,7 @@ mod rapids;
 mod removed_metal;
 mod room;
 mod shares;
+mod slug;
 pub(crate) mod spindle;
 mod strokes;
 mod swallowed;
