@@ -20,6 +20,9 @@ const MAX_LEVEL_CHANGE: f64 = 0.01;
 /// Rounding of the height of an arc, mm.
 const LEAD_ROUNDING: f64 = 0.003;
 
+/// Largest distance between whole turns of one thread, mm.
+const SAME_TURN: f64 = 0.01;
+
 /// Largest difference of two circles that are one, mm.
 const SAME_CIRCLE: f64 = 1e-9;
 
@@ -64,16 +67,29 @@ impl PartArc {
         self.centre + spoke * cos + self.out.cross(&spoke) * sin + self.out.into_inner() * (self.rise() * t)
     }
 
-    /// Returns true if the other arc is on the same circle, or above or below it, to rounding.
-    fn is_on_same_circle(&self, other: &Self) -> bool {
+    /// Returns the largest distance of the other arc's circle from this one, seen along the axis.
+    fn circle_distance(&self, other: &Self) -> f64 {
         let aside = other.centre - self.centre;
         let aside = aside - self.out.into_inner() * aside.dot(&self.out);
-        !self.is_chord && aside.norm() + (other.radius() - self.radius()).abs() < SAME_CIRCLE
+        aside.norm() + (other.radius() - self.radius()).abs()
+    }
+
+    /// Returns true if the other arc is on the same circle, or above or below it, to rounding.
+    fn is_on_same_circle(&self, other: &Self) -> bool {
+        !self.is_chord && self.circle_distance(other) < SAME_CIRCLE
+    }
+
+    /// Returns true for a whole turn that rises.
+    fn is_rising_turn(&self) -> bool {
+        MAX_LEVEL_CHANGE < self.rise() && 360.0 - LEAD_ROUNDING < self.sweep.0.abs()
     }
 
     /// Returns true if the other arc goes round the same axis in the same sense, with the same radius. Centres given by R
-    /// may be off by some hundredths of the radius.
+    /// may be off by some hundredths of the radius; those of whole turns along a thread are given by I and J.
     fn continues(&self, other: &Self) -> bool {
+        if self.is_rising_turn() && other.is_rising_turn() && SAME_TURN < self.circle_distance(other) {
+            return false;
+        }
         let slack = (0.03 * self.radius()).max(0.05);
         let aside = other.centre - self.centre;
         (aside - self.out.into_inner() * aside.dot(&self.out)).norm() <= slack
