@@ -5,9 +5,11 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::drill_pass::Helix;
+use super::slug::Turn;
 use crate::machine::{AxisMotion, HeadKind};
 use gcode_lang::motion::{AxisIndex, Backtrace, Position};
 use gcode_lang::units::Deg;
+use gcode_part::exceeds;
 
 /// Largest gap of a full turn, mm: rounded ends of arcs. The cutter closes it.
 const MAX_GAP: f64 = 0.02;
@@ -17,6 +19,9 @@ const MAX_LEVEL_CHANGE: f64 = 0.01;
 
 /// Rounding of the height of an arc, mm.
 const LEAD_ROUNDING: f64 = 0.003;
+
+/// Largest distance between whole turns of one thread, mm.
+const SAME_TURN: f64 = 0.01;
 
 /// Largest difference of two circles that are one, mm.
 const SAME_CIRCLE: f64 = 1e-9;
@@ -62,16 +67,29 @@ impl PartArc {
         self.centre + spoke * cos + self.out.cross(&spoke) * sin + self.out.into_inner() * (self.rise() * t)
     }
 
-    /// Returns true if the other arc is on the same circle, or above or below it, to rounding.
-    fn is_on_same_circle(&self, other: &Self) -> bool {
+    /// Returns the largest distance of the other arc's circle from this one, seen along the axis.
+    fn circle_distance(&self, other: &Self) -> f64 {
         let aside = other.centre - self.centre;
         let aside = aside - self.out.into_inner() * aside.dot(&self.out);
-        !self.is_chord && aside.norm() + (other.radius() - self.radius()).abs() < SAME_CIRCLE
+        aside.norm() + (other.radius() - self.radius()).abs()
+    }
+
+    /// Returns true if the other arc is on the same circle, or above or below it, to rounding.
+    fn is_on_same_circle(&self, other: &Self) -> bool {
+        !self.is_chord && self.circle_distance(other) < SAME_CIRCLE
+    }
+
+    /// Returns true for a whole turn that rises.
+    fn is_rising_turn(&self) -> bool {
+        MAX_LEVEL_CHANGE < self.rise() && 360.0 - LEAD_ROUNDING < self.sweep.0.abs()
     }
 
     /// Returns true if the other arc goes round the same axis in the same sense, with the same radius. Centres given by R
-    /// may be off by some hundredths of the radius.
+    /// may be off by some hundredths of the radius; those of whole turns along a thread are given by I and J.
     fn continues(&self, other: &Self) -> bool {
+        if self.is_rising_turn() && other.is_rising_turn() && SAME_TURN < self.circle_distance(other) {
+            return false;
+        }
         let slack = (0.03 * self.radius()).max(0.05);
         let aside = other.centre - self.centre;
         (aside - self.out.into_inner() * aside.dot(&self.out)).norm() <= slack
@@ -97,6 +115,10 @@ pub(super) struct ArcRun {
     helix_turn: Option<FullTurn>,
     /// Kinds of slope among the arcs, in the order of the run.
     slopes: Vec<Slope>,
+    /// Diameter of the slug that a turn has cut loose; `None` without any.
+    pub slug: Option<f64>,
+    /// True until the slug of the deepest turn is looked for.
+    has_new_turn: bool,
 }
 
 /// Arcs of a run that rise alike.
@@ -166,6 +188,8 @@ pub(super) struct Ring {
     pub helix: Option<Helix>,
     /// Block of the first arc whose lead is not that of the helix.
     pub uneven_turn: Option<Backtrace>,
+    /// Diameter of the slug of a through hole that the circle cuts loose; `None` without any.
+    pub slug: Option<f64>,
     /// Block of the last arc.
     pub backtrace: Backtrace,
     pub axis_position: Position,
@@ -193,7 +217,8 @@ impl ArcRun {
     pub(super) fn new(arc: PartArc, place: impl Fn() -> (Backtrace, Position)) -> Self {
         let top = arc.from.coords.dot(&arc.out);
         let (arcs, heights, slopes) = (VecDeque::new(), HeightRange::default(), Vec::new());
-        let mut run = Self { arcs, swept: 0.0, top, heights, turn: None, helix_turn: None, slopes };
+        let (turn, helix_turn, slug, has_new_turn) = (None, None, None, false);
+        let mut run = Self { arcs, swept: 0.0, top, heights, turn, helix_turn, slopes, slug, has_new_turn };
         run.push(arc, place);
         run
     }
@@ -234,6 +259,7 @@ impl ArcRun {
         if (is_level || is_helix) && self.turn.as_ref().is_none_or(|turn| level < turn.level - 1e-9) {
             let (backtrace, axis_position) = place();
             self.turn = Some(FullTurn { level, backtrace, axis_position });
+            self.has_new_turn = true;
         } else if self.turn.is_none() && self.is_steady() {
             let (backtrace, axis_position) = place();
             let (first, last) = (self.top, end);
@@ -242,12 +268,23 @@ impl ArcRun {
     }
 
     fn add_slope(&mut self, rise: f64, swept: f64, place: impl FnOnce() -> Backtrace) {
-        let is_alike = |slope: &Slope| (rise - slope.rise * swept).abs() <= LEAD_ROUNDING;
+        let is_alike = |slope: &Slope| !exceeds((rise - slope.rise * swept).abs(), LEAD_ROUNDING);
         if let Some(index) = self.slopes.iter().position(is_alike) {
             self.slopes[index].swept += swept;
         } else if self.slopes.len() < MAX_SLOPES {
             self.slopes.push(Slope { rise: rise / swept, swept, backtrace: place() });
         }
+    }
+
+    /// Returns the deepest full turn once, if no turn has cut a slug loose.
+    pub(super) fn next_turn(&mut self) -> Option<Turn> {
+        if !std::mem::take(&mut self.has_new_turn) || self.slug.is_some() {
+            return None;
+        }
+        let (_, last) = self.arcs.back()?;
+        let out = last.out;
+        let rise = self.turn.as_ref()?.level - last.centre.coords.dot(&out);
+        Some(Turn { centre: last.centre + out.into_inner() * rise, out, radius: last.radius() })
     }
 
     /// Returns true if all arcs rise, or all fall.
@@ -282,8 +319,8 @@ impl ArcRun {
         }
         let FullTurn { level, backtrace, axis_position } = self.turn.or(self.helix_turn)?;
         let centre = centre + out.into_inner() * (level - centre.coords.dot(&out));
-        let (top, uneven_turn) = (self.top, uneven_turn.flatten());
-        Some(Ring { centre, out, radius, roundness, top, helix, uneven_turn, backtrace, axis_position })
+        let (top, slug, uneven_turn) = (self.top, self.slug, uneven_turn.flatten());
+        Some(Ring { centre, out, radius, roundness, top, helix, uneven_turn, slug, backtrace, axis_position })
     }
 
     /// Returns the helix, without its phase, of a run that rises in all, or falls, with the block of the first arc whose lead is

@@ -109,7 +109,12 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the distance from the axis of the farthest metal above the bottom of a hole, within gaps of the radius.
-    fn left_inside(&self, bottom: &Point3<f64>, axis: &Unit<Vector3<f64>>, gaps: &[[f64; 2]]) -> Option<f64> {
+    pub(super) fn left_inside(
+        &self,
+        bottom: &Point3<f64>,
+        axis: &Unit<Vector3<f64>>,
+        gaps: &[[f64; 2]],
+    ) -> Option<f64> {
         let out = axis.into_inner();
         let base = bottom + out * MAX_CORE_HEIGHT;
         let up = out * self.metal.removed.height_of_metal(bottom, &out);
@@ -146,6 +151,6 @@ fn is_wider_and_deeper(one: &ToolPass<'_>, other: &ToolPass<'_>) -> bool {
 
 fn set_core(cut: &mut PassCut, core: Option<f64>) {
     if let Some(circle) = &mut cut.milled {
-        circle.core = core;
+        circle.core = core.or(circle.core);
     }
 }

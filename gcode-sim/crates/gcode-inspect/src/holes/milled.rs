@@ -8,6 +8,7 @@ use super::cutting::CuttingState;
 use super::drill_pass::{DrillPass, MilledCut, PassCut};
 use super::hole_circles::HoleCircles;
 use super::per_block::Findings;
+use super::slug::Turn;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
 use gcode_lang::motion::{Backtrace, Event, SpindleDirection, UnknownAxes};
 
@@ -98,6 +99,17 @@ impl Engagement {
         along(p) <= highest + LEVEL_TOLERANCE
     }
 
+    /// Returns a turn of the current run of arcs whose slug is to be looked for.
+    pub(super) fn next_turn(&mut self) -> Option<Turn> {
+        self.run.as_mut()?.next_turn()
+    }
+
+    pub(super) fn set_slug(&mut self, slug: f64) {
+        if let Some(run) = &mut self.run {
+            run.slug = Some(slug);
+        }
+    }
+
     fn end_run(&mut self) {
         self.rings.extend(self.run.take().and_then(ArcRun::finish));
         self.rings.extend(self.chords.take().and_then(ChordRun::finish));
@@ -179,6 +191,8 @@ impl HoleExtractor<'_> {
         if is_across {
             engagement.push_point(to);
         }
+        self.note_slug();
+        let engagement = &mut self.engagement;
         engagement.has_descended |= end < top - LEVEL_TOLERANCE;
         let is_out =
             end > exit + LEVEL_TOLERANCE || engagement.has_descended && end >= exit - LEVEL_TOLERANCE;
@@ -254,7 +268,7 @@ impl HoleExtractor<'_> {
             let begin = if begin > ring.level() + LEVEL_TOLERANCE { begin } else { approach_level };
             let length = (begin - ring.level()).max(LEVEL_TOLERANCE);
             let Ring { radius, roundness, helix, .. } = *ring;
-            let milled = MilledCut { radius, roundness, core: None, helix };
+            let milled = MilledCut { radius, roundness, core: ring.slug, helix };
             let cut = PassCut::new(ring.centre + out.into_inner() * length, ring.centre);
             let pass = DrillPass {
                 cut: PassCut { milled: Some(milled), ..cut },

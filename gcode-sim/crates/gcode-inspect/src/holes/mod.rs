@@ -33,6 +33,7 @@ mod rapids;
 mod removed_metal;
 mod room;
 mod shares;
+mod slug;
 pub(crate) mod spindle;
 mod start_holes;
 mod strip;
