@@ -4,12 +4,14 @@ use std::sync::Arc;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
-use super::near_metal::{FeedPart, Judged, NearMetal, is_rounding};
 use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
 use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NOISE, NearestPoint, PARALLEL_COSINE, Surface, Taper};
+
+/// Least length of a piece in metal, mm; a shorter one is rounding.
+const MIN_PIECE: f64 = 1e-3;
 
 /// Largest distance of a feed from the axis of the hole that it cuts, mm, if the hole is narrower.
 pub(super) const MAX_OFFSET: f64 = 0.5;
@@ -136,30 +138,6 @@ impl KnownMetal {
             (None, None) => {}
         }
         shares
-    }
-
-    /// Returns the deepest point of a travel in metal that is not removed.
-    pub(super) fn uncut(&self, travel: &Line) -> Option<PointInMetal> {
-        self.judged_on(travel, Judged::Uncut(None))
-    }
-
-    /// Returns the deepest point of a travel in metal that has to stay.
-    pub(super) fn gouge(&self, travel: &Line, part: FeedPart) -> Option<PointInMetal> {
-        self.judged_on(travel, Judged::Kept(part, u32::MAX))
-    }
-
-    /// Returns the deepest point of a travel in metal that is judged.
-    pub(super) fn judged_on(&self, travel: &Line, judged: Judged<'_>) -> Option<PointInMetal> {
-        let line = Strip::line(*travel);
-        NearMetal::new(self, line.bounds(), judged).on_line(travel)
-    }
-
-    /// Returns true if a travel leads through metal that is known, false if all that is known there is removed, and `None`
-    /// if nothing is known.
-    pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
-        let travel = [*from, *to];
-        let is_in_known = self.body.is_some() || self.is_solid(&travel);
-        is_in_known.then(|| self.uncut(&travel).is_some())
     }
 
     /// Returns the tip that is fed through a nominal hole and deeper than any tool has to break through, with its depth
@@ -306,4 +284,9 @@ impl KnownMetal {
         });
         best
     }
+}
+
+/// Returns true if a piece of a line of this length is due to rounding.
+pub(super) fn is_rounding(length: f64, [first, last]: [f64; 2]) -> bool {
+    length * (last - first) < MIN_PIECE && MIN_PIECE < length
 }

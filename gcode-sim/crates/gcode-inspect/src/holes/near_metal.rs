@@ -3,7 +3,7 @@ use std::cell::OnceCell;
 
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::metal::{KnownMetal, MAX_OFFSET, PointInMetal, ROUNDING, SIDE_SLACK};
+use super::metal::{KnownMetal, MAX_OFFSET, PointInMetal, ROUNDING, SIDE_SLACK, is_rounding};
 use super::removed_metal::NearSweeps;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
@@ -12,9 +12,6 @@ use gcode_part::{Collar, NOISE, Step, Taper};
 
 /// Margin above a hole within which its room is looked for, mm.
 pub(super) const MAX_HEIGHT: f64 = 50.0;
-
-/// Least length of a piece in metal, mm; a shorter one is rounding.
-const MIN_PIECE: f64 = 1e-3;
 
 /// Largest number of strips that are halved in one search.
 const MAX_HALVED: usize = 4000;
@@ -49,6 +46,32 @@ pub(super) enum Contact {
     Metal(PointInMetal),
     /// The search was given up.
     Unknown,
+}
+
+impl KnownMetal {
+    /// Returns the deepest point of a travel in metal that is not removed.
+    pub(super) fn uncut(&self, travel: &Line) -> Option<PointInMetal> {
+        self.judged_on(travel, Judged::Uncut(None))
+    }
+
+    /// Returns the deepest point of a travel in metal that has to stay.
+    pub(super) fn gouge(&self, travel: &Line, part: FeedPart) -> Option<PointInMetal> {
+        self.judged_on(travel, Judged::Kept(part, u32::MAX))
+    }
+
+    /// Returns the deepest point of a travel in metal that is judged.
+    pub(super) fn judged_on(&self, travel: &Line, judged: Judged<'_>) -> Option<PointInMetal> {
+        let line = Strip::line(*travel);
+        NearMetal::new(self, line.bounds(), judged).on_line(travel)
+    }
+
+    /// Returns true if a travel leads through metal that is known, false if all that is known there is removed, and `None`
+    /// if nothing is known.
+    pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
+        let travel = [*from, *to];
+        let is_in_known = self.body.is_some() || self.is_solid(&travel);
+        is_in_known.then(|| self.uncut(&travel).is_some())
+    }
 }
 
 /// Metal that is judged near one motion.
@@ -232,9 +255,4 @@ impl<'m> NearMetal<'m> {
             sweeps.uncover(strip, is_certain, shares);
         }
     }
-}
-
-/// Returns true if a piece of a line of this length is due to rounding.
-pub(super) fn is_rounding(length: f64, [first, last]: [f64; 2]) -> bool {
-    length * (last - first) < MIN_PIECE && MIN_PIECE < length
 }
