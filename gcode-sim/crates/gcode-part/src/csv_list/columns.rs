@@ -86,6 +86,8 @@ pub(super) fn example(names: &[String], separator: char) -> String {
 pub(super) struct Columns {
     pub(super) names: Vec<String>,
     unused: Vec<String>,
+    /// Kinds of features with columns of their own.
+    pub(super) feature_kinds: Vec<FeatureKind>,
     pub(super) separator: char,
 }
 
@@ -127,7 +129,12 @@ impl Columns {
                 None => unused.push(name.clone()),
             }
         }
-        let columns = Self { names, unused, separator };
+        let is_of = |name: &str, kind: FeatureKind| {
+            name.strip_prefix(kind.name()).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+        };
+        let has_columns = |kind: &FeatureKind| names.iter().any(|name| is_of(name, *kind));
+        let feature_kinds = FeatureKind::ALL.into_iter().filter(has_columns).collect();
+        let columns = Self { names, unused, feature_kinds, separator };
         if let Some(missing) = ["x", "y"].into_iter().find(|name| !columns.has(name)) {
             return Err(format!("column '{missing}' is missing"));
         }

@@ -191,8 +191,9 @@ impl Cells<'_> {
         let mut features = in_column
             .map(|text| Feature::parse(text).map_err(|message| format!("column 'features': {message}")))
             .collect::<Result<Vec<_>, _>>()?;
-        for kind in FeatureKind::ALL {
-            features.extend(self.feature(kind)?);
+        let columns = self.columns;
+        for kind in &columns.feature_kinds {
+            features.extend(self.feature(*kind)?);
         }
         Ok(features)
     }
