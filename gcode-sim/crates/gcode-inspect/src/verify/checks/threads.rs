@@ -35,6 +35,9 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     let drilled =
         (0..judged.near.len()).filter_map(|cut| drilled_depth(nominal, id, &judged.near, cut, slack));
     let mut findings: Vec<_> = drilled.collect();
+    let width = judged.comparison.tolerances.diameter;
+    findings
+        .extend((0..judged.near.len()).find_map(|cut| drilled_after(nominal, id, &judged.near, cut, width)));
     judged.gaps.extend(open_depths(&judged.near));
     let wide: Vec<WideCut> = judged.near.iter().filter_map(|cut| wide_cut(judged, cut)).collect();
     for cut in wide {
@@ -192,6 +195,40 @@ fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize, slack
     Some(finding.help(
         "drill deeper than the thread, before the tap, by the point of the drill and the lead of the tap",
     ))
+}
+
+/// Part of a thread's depth from which on a cut after the tap belongs to the hole for the thread, and not to its mouth.
+const CORE_SHARE: f64 = 0.75;
+
+/// Reports a thread in a hole that is drilled to its width only afterwards.
+fn drilled_after(
+    nominal: &Hole,
+    id: &str,
+    cuts: &[Cut<'_>],
+    index: usize,
+    tolerance: f64,
+) -> Option<Diagnostic> {
+    let tap = cuts.get(index).filter(|cut| cut.is_thread())?;
+    let is_core = |cut: &&Cut<'_>| {
+        let full = cut.full_depth(nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip);
+        !cut.is_thread() && CORE_SHARE * tap.tip <= full
+    };
+    let width = |cut: &Cut<'_>| cut.pass.diameter;
+    let before = cuts[..index]
+        .iter()
+        .filter(is_core)
+        .map(width)
+        .try_fold(0.0_f64, |most, own| Some(most.max(own?)))?;
+    let is_wider = |cut: &&Cut<'_>| width(cut).is_some_and(|own| exceeds(own - before, tolerance));
+    let after = cuts[index + 1..].iter().filter(is_core).find(is_wider).filter(|_| 0.0 < before)?;
+    let verb = if tap.thread.is_some() { "mills a thread" } else { "taps" };
+    let message = format!(
+        "hole {id}: {} {verb} where Φ{before} is drilled before it, and {} follows",
+        tap.name(),
+        after.name()
+    );
+    let finding = Diagnostic::new(&TAP_DRILL, message).with_backtrace(tap.pass.backtrace.clone());
+    Some(finding.help("drill the hole for the thread to its width before the thread"))
 }
 
 /// Reports a thread whose feed per revolution is not the pitch.
