@@ -9,7 +9,7 @@ use gcode_draw::{FileFormat, Picture, PictureError, Plot, Size};
 /// A picture to write.
 #[derive(Clone, Debug)]
 pub(super) struct PictureFile {
-    pub(super) path: PathBuf,
+    path: PathBuf,
     format: FileFormat,
 }
 

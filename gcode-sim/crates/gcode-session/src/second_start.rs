@@ -1,14 +1,14 @@
 //! Second start of a program, with the offsets and modes that its first run leaves.
+use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
 use super::{Request, Run, extractor, set_up_control, set_up_control_behind};
-use gcode_control::{Limits, Outcome, ResidualKind, ResidualValue, mode_name};
+use gcode_control::{Limits, Outcome, ResidualKind, ResidualValue};
 use gcode_inspect::findings::SECOND_START;
 use gcode_inspect::holes::{DrilledHole, HoleExtraction};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, EventSink, MAX_AXES};
 use gcode_lang::program::g_codes::name;
-use gcode_lang::program::modes::ModalGroup;
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_part::Metal;
 
@@ -22,20 +22,14 @@ const MAX_BLOCKS_RATIO: u64 = 2;
 const MAX_NAMED: usize = 3;
 
 /// Trace of all feeds of a run: two runs with the same trace feed from place to place at the same rates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct FeedTrace(u64);
-
-impl FeedTrace {
-    fn add(&mut self, number: f64) {
-        self.0 = (self.0.rotate_left(5) ^ number.to_bits()).wrapping_mul(0x517c_c1b7_2722_0a95);
-    }
-}
+#[derive(Debug, Default)]
+pub(super) struct FeedTrace(DefaultHasher);
 
 impl EventSink for FeedTrace {
     fn event(&mut self, event: &Event<'_>) {
         let Some((rate, to)) = event.kind.rate().zip(event.kind.end()) else { return };
-        self.add(rate.0);
-        (0..MAX_AXES).for_each(|axis| self.add(to[axis]));
+        self.0.write_u64(rate.0.to_bits());
+        (0..MAX_AXES).for_each(|axis| self.0.write_u64(to[axis].to_bits()));
     }
 }
 
@@ -55,6 +49,7 @@ pub(super) fn finding(
     }
     let mut control =
         set_up_control_behind(request, run.control.memory().reload(), Some(&run.control)).ok()?;
+    let changes = changes(&start.residual_values(), &control.residual_values());
     if let Some(progress) = &request.progress {
         control.set_progress(Arc::clone(progress));
     }
@@ -74,14 +69,13 @@ pub(super) fn finding(
             let pairs = extracted.holes.iter().zip(&again);
             let aside = pairs.filter(|(one, other)| !is_same(one, other)).count();
             match aside + extracted.holes.len().abs_diff(again.len()) {
-                0 if feeds == feeds_again => return None,
+                0 if feeds.0.finish() == feeds_again.0.finish() => return None,
                 0 => "its holes are the same, and other feeds are elsewhere or at another rate".to_owned(),
                 1 => "one hole is elsewhere".to_owned(),
                 count => format!("{count} holes are elsewhere"),
             }
         }
     };
-    let changes = changes(&start.residual_values(), &run.control.residual_values());
     let message = format!("the program leaves {changes}: started again, {difference}");
     Some(
         Diagnostic::new(&SECOND_START, message)
@@ -89,15 +83,6 @@ pub(super) fn finding(
             .note("M30 keeps modes and the shift of G52 unless parameters 3402#6 (CLR) and 1202#3 (RLC) clear them")
             .help("set the offset or the mode before its first use, or restore it before M30"),
     )
-}
-
-/// Groups whose modes a control keeps behind M30, without those that are an assumption of the first start.
-const LEFT_GROUPS: [ModalGroup; 5] =
-    [ModalGroup::FeedMode, ModalGroup::Scaling, ModalGroup::Rotation, ModalGroup::Polar, ModalGroup::Mirror];
-
-fn is_left_mode(value: &ResidualValue) -> bool {
-    let is_named = |group: ModalGroup| mode_name(group.number()) == value.name;
-    value.kind == ResidualKind::Mode && LEFT_GROUPS.into_iter().any(is_named)
 }
 
 /// Returns true if two holes are at one place, of one depth and by one tool.
@@ -113,7 +98,8 @@ fn changes(before: &[ResidualValue], after: &[ResidualValue]) -> String {
     let is_offset =
         |value: &&ResidualValue| matches!(value.kind, ResidualKind::WorkOffset | ResidualKind::ToolOffset);
     if before.iter().filter(is_offset).eq(after.iter().filter(is_offset)) {
-        let modes = after.iter().filter(|value| is_left_mode(value) && !before.contains(value));
+        let is_mode = |value: &&ResidualValue| value.kind == ResidualKind::Mode;
+        let modes = after.iter().filter(is_mode).filter(|value| !before.contains(value));
         let codes: Vec<String> = modes.map(|value| name((value.value * 10.0).round() as u32)).collect();
         return format!("{} in force", codes.join(" and "));
     }

@@ -347,15 +347,16 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the gouge of the current line, in the metal before it.
-    fn plunge_gouge(&self) -> Option<Gouge> {
-        let Plunge { travel, axis, before } = self.plunge?;
+    fn plunge_gouge(&self, line: &CuttingLine) -> Option<Gouge> {
+        let Plunge { travel, axis, before } =
+            self.plunge.filter(|_| line.cutting_state.tool == self.setup.tool)?;
         let is_allowed = self.metal.is_allowed(&travel, &axis, &self.flat_tool());
         if is_allowed { None } else { self.gouge(&travel, &axis, before) }
     }
 
     /// Returns true if the current line makes a gouge.
     pub(super) fn has_gouged(&self, line: &CuttingLine) -> bool {
-        line.cutting_state.tool == self.setup.tool && self.plunge_gouge().is_some()
+        self.plunge_gouge(line).is_some()
     }
 
     /// Returns true if all metal in which a line feeds is in a pocket.
@@ -378,10 +379,10 @@ impl HoleExtractor<'_> {
     }
 
     /// Reports the gouge of the current line.
-    pub(super) fn report_plunge(&mut self, backtrace: &Backtrace) {
-        if let Some(gouge) = self.plunge_gouge() {
+    pub(super) fn report_plunge(&mut self, line: &CuttingLine) {
+        if let Some(gouge) = self.plunge_gouge(line) {
             self.plunge = None;
-            self.report_gouge(backtrace, gouge);
+            self.report_gouge(line.backtrace(), gouge);
         }
     }
 

@@ -68,9 +68,7 @@ impl HoleExtractor<'_> {
             ToolExit::Sideways { back } if back <= TOUCH_DEPTH => {
                 let inside = inside();
                 if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
-                    if self.has_gouged(&line) {
-                        self.report_plunge(line.backtrace());
-                    }
+                    self.report_plunge(&line);
                     return;
                 }
                 let is_in_body = inside.is_some();
