@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use nalgebra::Point3;
 
 use super::block_location::BlockLocation;
+use super::first_command::CommandKind;
 use super::record::Record;
 use super::steps::{Step, StepKind};
 use gcode_inspect::machine::AxisMotion;
@@ -34,7 +35,7 @@ pub struct Leg {
     pub is_of_hole: bool,
     /// Number of its block in [`Record::block_location`].
     pub block_number: usize,
-    /// Points from start to end, mm.
+    /// Points from start to end, mm; the end alone if an axis has not been commanded before the move.
     pub points: Vec<Point3<f64>>,
 }
 
@@ -60,7 +61,10 @@ impl Record {
                     leg.steps = *leg.steps.start()..=*next.steps.end();
                     leg.moves += next.moves;
                     leg.is_of_hole |= next.is_of_hole;
-                    leg.points.extend(next.points.into_iter().skip(1));
+                    match next.points.as_slice() {
+                        [_] => leg.points = next.points,
+                        _ => leg.points.extend(next.points.into_iter().skip(1)),
+                    }
                 }
                 _ => all.push(next),
             }
@@ -80,6 +84,8 @@ impl Record {
         let mut setup = Setup::default();
         let mut from = Position::default();
         let mut left = points;
+        let unknown_starts = self.moves_from_unknown_positions(machine);
+        let mut move_number = 0;
         for (index, step) in self.steps.iter().enumerate() {
             set_up(&mut setup, step.kind);
             let to = step.at;
@@ -88,7 +94,11 @@ impl Record {
                     StepKind::Arc(arc, _) => Some(arc),
                     _ => None,
                 };
-                let points_of_move = move_points(machine, &setup, &from, &to, arc);
+                let mut points_of_move = move_points(machine, &setup, &from, &to, arc);
+                if move_number < unknown_starts {
+                    points_of_move.drain(..points_of_move.len() - 1);
+                }
+                move_number += 1;
                 if legs.len() == moves || left < points_of_move.len() {
                     break;
                 }
@@ -100,6 +110,17 @@ impl Record {
             from = to;
         }
         legs
+    }
+
+    /// Counts the first moves that start at an unknown position: one of the axes that the program commands has not been commanded
+    /// by then, and the machine file does not state its start.
+    fn moves_from_unknown_positions(&self, machine: &Machine) -> usize {
+        let is_stated = |name: &str| {
+            let axis = name.bytes().next().and_then(|letter| self.axes.find(letter));
+            machine.start.iter().any(|(stated, _)| Some(*stated) == axis)
+        };
+        let axes = self.first_commands.iter().flatten().filter(|first| first.what == CommandKind::Axis);
+        axes.filter(|axis| !is_stated(&axis.name)).map(|axis| axis.moves + 1).max().unwrap_or(0)
     }
 }
 
@@ -192,7 +213,7 @@ mod tests {
         assert_eq!(path.len(), 3);
     }
 
-    /// A zigzag of 40 feeds of 1 mm, 0.4 high, and the rapid before it, in 5 legs: 8 feeds each. The points of the zigzag are 0.4 from
+    /// A zigzag of 40 feeds of 1 mm, 0.4 high, and the rapid before it from an unknown position, in 5 legs: 8 feeds each. The points of the zigzag are 0.4 from
     /// the line between its ends, which is more than 0.05, 0.1 and 0.2 and no more than 0.4.
     #[test]
     fn a_whole_path_joins_moves_and_leaves_out_points() {
@@ -210,7 +231,7 @@ mod tests {
         assert_eq!(
             counts,
             [
-                ("rapid", 1, 2),
+                ("rapid", 1, 1),
                 ("feed", 9, 10),
                 ("feed", 9, 10),
                 ("feed", 9, 10),
@@ -222,6 +243,24 @@ mod tests {
         assert!(few.iter().all(|leg| leg.points.len() <= 3), "{few:?}");
         let end = few.last().unwrap().points.last().unwrap();
         assert_eq!((end.x, few.iter().map(|leg| leg.moves).sum::<usize>()), (40.0, 41));
+    }
+
+    /// X is known after the first move, Z after the second: the third is the first one between known positions. A stated start
+    /// of X and Z makes all of them known; of X alone it changes nothing.
+    #[test]
+    fn a_move_from_an_unknown_position_is_its_end_alone() {
+        let text = "O1\nG90 G54 G0 X5. Y0\nG43 Z9. H1\nG1 Z-1. F100\nX8.\nM30\n";
+        let counts = |start: &str| -> Vec<usize> {
+            let machine = format!("[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n{start}");
+            let machine = Machine::parse(&machine).unwrap();
+            let request = Request::new("O1.nc", text.as_bytes().to_vec(), machine);
+            let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
+            let path = revision.record.path(&request.machine, 10, 1000);
+            path.iter().map(|leg| leg.points.len()).collect()
+        };
+        assert_eq!(counts(""), [1, 1, 2, 2]);
+        assert_eq!(counts("[start]\nX = 1.0\nY = 1.0\n"), [1, 1, 2, 2]);
+        assert_eq!(counts("[start]\nX = 1.0\nY = 1.0\nZ = 100.0\n"), [2, 2, 2, 2]);
     }
 
     #[test]

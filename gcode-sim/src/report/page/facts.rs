@@ -1,6 +1,7 @@
 //! The head of the page: the answer, and both runs in numbers.
 use maud::{Markup, html};
 
+use super::messages;
 use super::words::{count, duration, shown};
 use super::{Page, ReviewSide, heading};
 use crate::report::figures;
@@ -40,6 +41,9 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                         @if sides.len() == 2 { (heading(side, sides)) ": " }
                         "stopped, " (shown(record.words()))
                     }
+                }
+                @if page.old.is_none() && let Some(worst) = messages::worst_findings(side) {
+                    p.answer.no { a href="#messages" { (worst) } }
                 }
                 @for assumption in assumptions_alone(page, side) { p.note { "Assumes " (shown(&assumption)) } }
             }

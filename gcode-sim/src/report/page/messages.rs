@@ -8,6 +8,7 @@ use super::changed::chain;
 use super::stops::{Stop, stops};
 use super::words::{shown, value};
 use super::{Page, ReviewSide, heading};
+use crate::report::figures;
 use gcode_control::printable;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::StopKind;
@@ -40,6 +41,19 @@ fn findings_of<'a>(side: &ReviewSide<'a>) -> Vec<&'a Diagnostic> {
     };
     all.sort_by_key(|finding| Reverse(finding.severity));
     all
+}
+
+/// Returns the numbers of errors and warnings, `2 errors, 1 warning`; `None` without any.
+pub(super) fn worst_findings(side: &ReviewSide<'_>) -> Option<String> {
+    let all = findings_of(side);
+    let number = |severity| all.iter().filter(|finding| finding.severity == severity).count();
+    let counted = [(number(Severity::Error), "error"), (number(Severity::Warning), "warning")];
+    let named: Vec<String> = counted
+        .into_iter()
+        .filter(|(number, _)| 0 < *number)
+        .map(|(number, name)| figures::count(number, name))
+        .collect();
+    (!named.is_empty()).then(|| named.join(", "))
 }
 
 fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {

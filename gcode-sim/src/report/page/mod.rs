@@ -92,7 +92,6 @@ impl Page<'_> {
             .zip(&lines)
             .map(|((word, seen), lines)| ReviewSide { word, observed: seen, lines })
             .collect();
-        let difference = self.old.map(|(_, difference)| difference);
         let table = HoleTable::new(self, &sides);
         let data = path::data(self, &sides, &table);
         let body = html! {
@@ -101,22 +100,16 @@ impl Page<'_> {
                 p.basis { "Predicted by simulation, not measured" }
                 (facts::answer(self, &sides))
                 nav aria-label="Sections" {
-                    @for (id, name) in self.sections() { a href={ "#" (id) } { (name) } }
+                    @for section in self.sections() { a href={ "#" (section.id()) } { (section.name()) } }
                 }
             }
-            main {
-                (section("summary", "Summary", facts::summary(self, &sides)))
-                @if let Some(difference) = difference {
-                    (section("changes", "Changes", changed::changes(&difference, &sides)))
+            main.alone[self.old.is_none()] {
+                @for section in self.sections() {
+                    section id=(section.id()) aria-labelledby={ (section.id()) "-name" } {
+                        h2 id={ (section.id()) "-name" } { (section.name()) }
+                        (self.contents(section, &sides, &table, &data))
+                    }
                 }
-                (section("holes", "Holes", table.markup(self)))
-                (section("path", "Path and program", html! {
-                    (path::viewer(&sides, &data))
-                    (listing::listing(self, &sides))
-                }))
-                (section("messages", "Stops, alarms and findings", messages::messages(self, &sides)))
-                (section("proof", "Basis of the results", proof::proof(self, &sides)))
-                (section("signatures", "Signatures", proof::signatures()))
             }
         };
         document(&self.title(), &body, &data)
@@ -131,28 +124,79 @@ impl Page<'_> {
         let name = |seen: &ObservedProgram<'_>| words::shown(&seen.request.name);
         match &self.old {
             Some((old, _)) => format!("Review of {} against {}", name(&self.new), name(old)),
-            None => format!("Review of {}", name(&self.new)),
+            None => format!("Program {}", name(&self.new)),
         }
     }
 
-    fn sections(&self) -> Vec<(&'static str, &'static str)> {
-        let changes = self.old.map(|_| ("changes", "Changes"));
-        let others = [
-            ("holes", "Holes"),
-            ("path", "Path and program"),
-            ("messages", "Stops and alarms"),
-            ("proof", "SHA-256"),
-            ("signatures", "Signatures"),
-        ];
-        [("summary", "Summary")].into_iter().chain(changes).chain(others).collect()
+    /// Returns the sections in their order: a review begins with its numbers and changes, the page of one program with its path.
+    fn sections(&self) -> Vec<Section> {
+        use Section::{Changes, Holes, Messages, Path, Proof, Signatures, Summary};
+        let first: &[Section] =
+            if self.old.is_some() { &[Summary, Changes, Holes, Path] } else { &[Path, Summary, Holes] };
+        [first, &[Messages, Proof, Signatures]].concat()
+    }
+
+    fn contents(
+        &self,
+        section: Section,
+        sides: &[ReviewSide<'_>],
+        table: &HoleTable,
+        data: &path::Data,
+    ) -> Markup {
+        match section {
+            Section::Summary => facts::summary(self, sides),
+            Section::Changes => {
+                let difference = self.old.map(|(_, difference)| changed::changes(&difference, sides));
+                difference.unwrap_or_default()
+            }
+            Section::Holes => table.markup(self),
+            Section::Path => html! {
+                div.beside {
+                    (path::viewer(sides, data))
+                    div { (listing::listing(self, sides)) }
+                }
+            },
+            Section::Messages => messages::messages(self, sides),
+            Section::Proof => proof::proof(self, sides),
+            Section::Signatures => proof::signatures(),
+        }
     }
 }
 
-fn section(id: &str, name: &str, inside: Markup) -> Markup {
-    html! {
-        section id=(id) aria-labelledby={ (id) "-name" } {
-            h2 id={ (id) "-name" } { (name) }
-            (inside)
+/// A section of the page.
+#[derive(Clone, Copy, Debug)]
+enum Section {
+    Summary,
+    Changes,
+    Holes,
+    Path,
+    Messages,
+    Proof,
+    Signatures,
+}
+
+impl Section {
+    const fn id(self) -> &'static str {
+        match self {
+            Self::Summary => "summary",
+            Self::Changes => "changes",
+            Self::Holes => "holes",
+            Self::Path => "path",
+            Self::Messages => "messages",
+            Self::Proof => "proof",
+            Self::Signatures => "signatures",
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Summary => "Summary",
+            Self::Changes => "Changes",
+            Self::Holes => "Holes",
+            Self::Path => "Path and program",
+            Self::Messages => "Stops, alarms and findings",
+            Self::Proof => "Basis of the results",
+            Self::Signatures => "Signatures",
         }
     }
 }

@@ -36,6 +36,17 @@
     lines.forEach((number, place) => picked.append(place === 0 ? ". " : " called from ", lineOf(side, number)));
   }
 
+  // The editor in whose panel the page is shown.
+  const editor = typeof acquireVsCodeApi === "function" ? acquireVsCodeApi() : null;
+
+  // Tells the editor the line of an anchor, such as new-0-12: file and line, counted from 1.
+  function tellEditor(anchor) {
+    if (!editor || !anchor) return;
+    const [word, source, line] = anchor.split("-");
+    const side = sides.find((one) => one.word === word);
+    editor.postMessage({ file: side.files[source], line: Number(line) });
+  }
+
   const name = (side) => (sides.length === 2 ? `${side.word[0].toUpperCase()}${side.word.slice(1)}, ` : "");
   const linesOf = (choice) => (choice.hole ? choice.hole.lines : choice.side.places[choice.side.at[choice.move]]);
   const anchorsOf = (choice) => linesOf(choice).map((number) => choice.side.lines[number][0]);
@@ -55,9 +66,12 @@
     viewer.pick = { side, move };
     const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${side.xyz[3 * at + axis].toFixed(3)}`).join(" ");
     const [from, to] = [point(side.starts[move]), point(side.starts[move + 1] - 1)];
-    describe(`${name(side)}${numbers(side, move)} of ${side.all_moves}, ${side.kinds[side.kind[move]]} from ${from} to ${to}`, side, linesOf(viewer.pick));
+    const isWhole = side.starts[move + 1] - side.starts[move] > 1;
+    const way = isWhole ? `from ${from} to ${to}` : `from an unknown position to ${to}`;
+    describe(`${name(side)}${numbers(side, move)} of ${side.all_moves}, ${side.kinds[side.kind[move]]} ${way}`, side, linesOf(viewer.pick));
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
+    tellEditor(anchor);
     viewer.ask();
   }
 
@@ -68,6 +82,7 @@
     describe(`${name(side)}hole ${hole.id} at ${at}, depth ${hole.depth.toFixed(3)}`, side, hole.lines);
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
+    tellEditor(anchor);
     viewer.ask();
   }
 
@@ -78,12 +93,12 @@
     }
   }
 
-  // Shows the moves of the line that a link leads to, unless it is the block of the selection already.
-  function arrived() {
-    const anchor = decodeURIComponent(location.hash.slice(1));
+  // Shows the moves of a line, unless it is the block of the selection already.
+  function show(anchor) {
     const half = document.getElementById(anchor);
     if (!half?.classList.contains("half")) return;
-    half.focus({ preventScroll: true });
+    if (editor) half.scrollIntoView({ block: "nearest" });
+    else half.focus({ preventScroll: true });
     if (viewer.pick.side && anchorsOf(viewer.pick).includes(anchor)) {
       mark(anchor, anchorsOf(viewer.pick).filter((other) => other !== anchor));
       return;
@@ -255,7 +270,15 @@
   };
   addEventListener("beforeprint", () => paper(true));
   addEventListener("afterprint", () => paper(false));
-  addEventListener("hashchange", arrived);
+  const arrive = () => show(decodeURIComponent(location.hash.slice(1)));
+  addEventListener("hashchange", arrive);
+  // The editor names the line at its cursor: `{file, line}`, the line counted from 1.
+  addEventListener("message", ({ data: message }) => {
+    for (const side of editor ? sides : []) {
+      const source = Object.keys(side.files).find((number) => side.files[number] === message.file);
+      if (source !== undefined) show(`${side.word}-${source}-${message.line}`);
+    }
+  });
   measure();
-  arrived();
+  arrive();
 })();

@@ -43,6 +43,8 @@ struct SidePath {
     at: Vec<usize>,
     /// Moves that the other side does not make.
     changed: Vec<usize>,
+    /// Files of programs, by the number in an anchor.
+    files: BTreeMap<u32, String>,
     /// Anchor, name and text of every line with a move or a call.
     lines: Vec<(Option<String>, String, String)>,
     /// Block and calls of each location, innermost first, as indices into `lines`.
@@ -154,6 +156,7 @@ fn drawn(
         kinds,
         at,
         changed: (0..legs.len()).filter(|leg| is_different(&legs[*leg])).collect(),
+        files: side.lines.texts.iter().map(|text| (text.source.0, text.name.clone())).collect(),
         lines: known.lines,
         blocks,
         holes,
