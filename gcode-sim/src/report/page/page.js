@@ -3,6 +3,9 @@
   const data = JSON.parse(document.getElementById("data").textContent);
   const sides = data.sides.map((side) => new Side(side, document.getElementById(`canvas-${side.word}`)));
   const viewer = new Viewer(data, sides);
+  // The editor in whose panel the page is shown. It draws the page again after a change: the view stays.
+  const editor = typeof acquireVsCodeApi === "function" ? acquireVsCodeApi() : null;
+  Object.assign(viewer.camera, editor?.getState());
   const picked = document.getElementById("picked");
   const table = holeTable((row) => pickRow(row));
 
@@ -35,9 +38,6 @@
     picked.replaceChildren(text);
     lines.forEach((number, place) => picked.append(place === 0 ? ". " : " called from ", lineOf(side, number)));
   }
-
-  // The editor in whose panel the page is shown.
-  const editor = typeof acquireVsCodeApi === "function" ? acquireVsCodeApi() : null;
 
   // Tells the editor the line of an anchor, such as new-0-12: file and line, counted from 1.
   function tellEditor(anchor) {
@@ -279,6 +279,7 @@
       if (source !== undefined) show(`${side.word}-${source}-${message.line}`);
     }
   });
+  if (editor) viewer.drawn = () => editor.setState(viewer.camera);
   measure();
   arrive();
 })();

@@ -348,5 +348,6 @@ class Viewer {
       side.project({ rows, middle: this.middle, scale, width, height, cx: width / 2 + this.camera.panX, cy: (height - STRIP) / 2 + this.camera.panY });
       side.draw(colours, this.options, this.pick);
     }
+    this.drawn?.();
   }
 }

@@ -1,0 +1,106 @@
+// The part beside the text: a page of the active program that follows the cursor and the text.
+import { basename } from "node:path";
+import * as vscode from "vscode";
+import type { LanguageClient } from "vscode-languageclient/node";
+
+import { Argument, ArgumentView, argumentsOf, withArguments } from "./argument_view";
+
+// Delay between the last keystroke and a new picture, ms.
+const DELAY = 250;
+
+export class PartPanel implements vscode.Disposable {
+  private panel: vscode.WebviewPanel | undefined;
+  private document: vscode.TextDocument | undefined;
+  private timer: NodeJS.Timeout | undefined;
+  // Number of the last request: an answer to an older one is dropped.
+  private request = 0;
+  private readonly arguments: ArgumentView;
+  private readonly registered: vscode.Disposable;
+
+  constructor(
+    context: vscode.ExtensionContext,
+    private readonly client: () => LanguageClient | undefined,
+  ) {
+    this.arguments = new ArgumentView((values) => this.showWith(values));
+    this.registered = vscode.Disposable.from(
+      vscode.window.registerWebviewViewProvider("gcode-sim.arguments", this.arguments),
+      vscode.workspace.onDidChangeTextDocument(({ document }) => this.follows(document) && this.later()),
+      vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => this.select(textEditor)),
+      vscode.window.onDidChangeActiveTextEditor((editor) => editor && this.panel && this.change(editor)),
+    );
+    context.subscriptions.push(this.registered);
+  }
+
+  dispose(): void {
+    this.panel?.dispose();
+  }
+
+  open(): void {
+    const editor = vscode.window.activeTextEditor;
+    if (!editor) return;
+    if (!this.panel) {
+      const place = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
+      this.panel = vscode.window.createWebviewPanel("gcode-sim.part", "Part", place, { enableScripts: true });
+      this.panel.onDidDispose(() => {
+        this.panel = undefined;
+        void vscode.commands.executeCommand("setContext", "gcode-sim.partIsOpen", false);
+      });
+      this.panel.webview.onDidReceiveMessage(({ file, line }) => this.reveal(file, line));
+      void vscode.commands.executeCommand("setContext", "gcode-sim.partIsOpen", true);
+    }
+    this.change(editor);
+  }
+
+  private follows(document: vscode.TextDocument): boolean {
+    return this.panel !== undefined && document.languageId === "nc" && this.document !== undefined;
+  }
+
+  private change(editor: vscode.TextEditor): void {
+    if (editor.document.languageId !== "nc") return;
+    if (this.document !== editor.document) {
+      this.document = editor.document;
+      void this.draw();
+    }
+    this.select(editor);
+  }
+
+  private later(): void {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => void this.draw(), DELAY);
+  }
+
+  // Draws the program, with another text if arguments are tried.
+  private async draw(text?: string): Promise<void> {
+    const { panel, document } = this;
+    if (!panel || !document) return;
+    const request = ++this.request;
+    panel.title = `Part: ${basename(document.uri.fsPath)}`;
+    const argument = { uri: document.uri.toString(), ...(text === undefined ? {} : { text }) };
+    let html: string;
+    try {
+      const answer = await this.client()?.sendRequest<{ html: string }>("workspace/executeCommand", { command: "gcode-sim.page", arguments: [argument] });
+      html = answer?.html ?? "";
+    } catch (error) {
+      html = `<!DOCTYPE html><p>${String(error).replace(/[&<]/g, (sign) => `&#${sign.charCodeAt(0)};`)}</p>`;
+    }
+    if (request === this.request && this.panel === panel) panel.webview.html = html;
+  }
+
+  private select(editor: vscode.TextEditor): void {
+    if (!this.panel || editor.document.languageId !== "nc") return;
+    const { line } = editor.selection.active;
+    void this.panel.webview.postMessage({ file: editor.document.uri.fsPath, line: line + 1 });
+    this.arguments.show(argumentsOf(editor.document, line));
+  }
+
+  private showWith(values: Argument[]): void {
+    if (this.document) void this.draw(withArguments(this.document, values));
+  }
+
+  private async reveal(file: string, line: number): Promise<void> {
+    const known = vscode.workspace.textDocuments.find((document) => document.uri.fsPath === file);
+    const document = known ?? (await vscode.workspace.openTextDocument(file));
+    const at = new vscode.Range(line - 1, 0, line - 1, 0);
+    await vscode.window.showTextDocument(document, { viewColumn: vscode.ViewColumn.One, preserveFocus: true, selection: at });
+  }
+}

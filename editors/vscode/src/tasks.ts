@@ -1,0 +1,31 @@
+// Tasks that run gcode-sim on the active program, or on a folder of cases.
+import { dirname } from "node:path";
+import * as vscode from "vscode";
+
+import { binary } from "./binary";
+
+const COMMANDS = ["run", "check", "verify", "holes", "test"];
+
+export function registerTasks(context: vscode.ExtensionContext): vscode.Disposable[] {
+  const provider: vscode.TaskProvider = {
+    provideTasks: () => {
+      const document = vscode.window.activeTextEditor?.document;
+      if (document?.languageId !== "nc") return [];
+      const file = document.uri.fsPath;
+      return COMMANDS.map((command) => task(context, { type: "gcode-sim", command, file: command === "test" ? dirname(file) : file }));
+    },
+    resolveTask: (known) => {
+      const { command, file } = known.definition;
+      if (!COMMANDS.includes(command)) return undefined;
+      return task(context, { ...known.definition, type: "gcode-sim", command, file: file ?? "${file}" });
+    },
+  };
+  return [vscode.tasks.registerTaskProvider("gcode-sim", provider)];
+}
+
+function task(context: vscode.ExtensionContext, definition: vscode.TaskDefinition): vscode.Task {
+  const { command, file } = definition;
+  const name = `${command} ${vscode.workspace.asRelativePath(file)}`;
+  const execution = new vscode.ProcessExecution(binary(context), [command, file]);
+  return new vscode.Task(definition, vscode.TaskScope.Workspace, name, "gcode-sim", execution);
+}
