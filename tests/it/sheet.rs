@@ -117,3 +117,72 @@ mod screen {
         }
     }
 }
+
+/// Rapids at 15,000 mm/min, feeds at 600: Z from 50 to -2 takes 52/600 min and so on; the numbers of the tools' rows are worked out
+/// at each of them. T1 mills at S3000 with H1 and D11 in G54, T2 drills two holes at S1200 with H2 in G55, after M00 and a stop
+/// that names #101.
+const BY_HAND: &str = "%\nO1234 (PLATE <B>)\nG90 G17 G21 G40 G80 G49\nT1 M6\nG54 G0 X-10. Y0.\nG43 H1 Z50. S3000 M3\n\
+                       M8\nG1 Z0. F600\nG41 D11 X10. Y0.\nX310.\nG40 X320.\nG0 Z50. M9\nM5\nM00\n#101=12.5\n\
+                       #3006=1(SET JAW TO #101)\nT2 M6\nG55 G0 X10. Y10.\nG43 H2 Z50. S1200 M3\nM77\n\
+                       G99 G81 Z-10. R2. F120.\nX20.\nG80\nG0 Z50.\nM30\n%\n";
+
+/// Returns the cells of the rows of the table below a heading.
+fn rows(html: &str, heading: &str) -> Vec<Vec<String>> {
+    let below = html.split(&format!("<h2>{heading}</h2>")).nth(1).unwrap();
+    let table = below.split("<tbody>").nth(1).unwrap().split("</tbody>").next().unwrap();
+    let text = |cell: &str| {
+        let inside = cell.split_once('>').map_or("", |(_, inside)| inside);
+        let words = inside.split('<').map(|piece| piece.rsplit('>').next().unwrap()).collect::<String>();
+        words.trim().to_owned()
+    };
+    table.split("<tr>").skip(1).map(|row| row.split("<td").skip(1).map(text).collect()).collect()
+}
+
+#[test]
+fn a_program_by_hand_has_a_sheet_with_its_tools_offsets_stops_and_codes() {
+    let place = tempfile::tempdir().unwrap();
+    std::fs::write(place.path().join("O1234.nc"), BY_HAND).unwrap();
+    let done = programs::run_line("gcode-sim sheet O1234.nc -o sheet.html", place.path());
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let html = std::fs::read_to_string(place.path().join("sheet.html")).unwrap();
+    assert!(!html.contains("<script") && !html.contains("<B>") && html.contains("O1234 (PLATE &lt;B&gt;)"));
+    assert!(html.contains(&sha256(BY_HAND.as_bytes()).split_at(32).0.to_owned()));
+    assert!(html.contains("Not compared with a drawing."), "no reference, no verdict");
+
+    let systems: Vec<String> = rows(&html, "Work zeros").iter().map(|row| row[0].clone()).collect();
+    assert_eq!(systems, ["G54", "G55"]);
+
+    // T1 feeds 50 + 330 mm at 600 mm/min: 0.63 min. Each hole is fed 12 mm at 120 mm/min: 0.1 min, 0.2 for two.
+    let tools = rows(&html, "Tools, in the order of use");
+    assert_eq!(tools.len(), 2, "{tools:?}");
+    assert_eq!(tools[0][..8], ["T1", "", "H1", "D11", "3000", "600", "M08", ""], "{tools:?}");
+    assert_eq!(tools[1][..8], ["T2", "", "H2", "", "1200", "120", "", "2"], "{tools:?}");
+    assert_eq!([&tools[0][8], &tools[1][8]], ["0.6", "0.2"]);
+    assert_eq!([&tools[0][9], &tools[1][9]], ["O1234 line 5", "O1234 line 18"]);
+
+    let stops = rows(&html, "Operator stops");
+    assert_eq!(stops.len(), 2, "{stops:?}");
+    assert!(stops[0][1].starts_with("M00") && stops[0][2] == "T1", "{stops:?}");
+    assert!(stops[1][1].starts_with("#3006 SET JAW TO #101 #101 = 12.5"), "{stops:?}");
+    assert_eq!(rows(&html, "M codes of the machine builder")[0][..2], ["M77", "O1234 line 20"]);
+}
+
+/// The same holes 5 mm away are wrong: the sheet says FAIL, the exit code is 1, and the file is written.
+#[test]
+fn a_sheet_shows_the_verdict_and_has_its_exit_code() {
+    let place = tempfile::tempdir().unwrap();
+    std::fs::write(place.path().join("O1234.nc"), BY_HAND).unwrap();
+    let machine =
+        "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n[start]\nX = 0.0\nY = 0.0\nZ = 100.0\n";
+    std::fs::write(place.path().join("machine.toml"), machine).unwrap();
+    std::fs::write(
+        place.path().join("wrong.csv"),
+        "id,x,y,z,i,j,k,depth\n1,15,10,0,0,0,1,10\n2,25,10,0,0,0,1,10\n",
+    )
+    .unwrap();
+    let line = "gcode-sim sheet O1234.nc --machine machine.toml --reference wrong.csv -o wrong.html";
+    let done = programs::run_line(line, place.path());
+    assert_eq!(done.status.code(), Some(1), "{}", String::from_utf8_lossy(&done.stderr));
+    let html = std::fs::read_to_string(place.path().join("wrong.html")).unwrap();
+    assert!(html.contains("<b>FAIL. </b>") && html.contains("0 of 2 holes in tolerance"), "{html}");
+}

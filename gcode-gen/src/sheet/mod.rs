@@ -19,9 +19,6 @@ use cost::{Cost, MachineTime};
 use record::Record;
 use settings::RequiredSetting;
 
-/// Basis of all numbers on the page.
-const BASIS: &str = "Predicted by simulation, not measured";
-
 /// A verified package with the data for its sheet.
 pub struct Sheet<'a> {
     job: &'a Job,

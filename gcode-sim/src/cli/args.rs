@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use super::common::Colours;
 use super::{
     budget, check, compare, diff, explain, holes, new, packaging, page_command, readings, reference, render,
-    run, schema, settings, test, verify,
+    run, schema, settings, sheet, test, verify,
 };
 
 /// Executes Fanuc Custom Macro B programs as the control does, follows the tool on the part, and compares the holes
@@ -90,6 +90,15 @@ Examples:
 The page is one file and needs no network. Click a move to see its block and the calls that led there; a finding links to
 its block.")]
     Page(page_command::Arguments),
+
+    /// Write the set-up sheet of a program: tools, offsets, stops, M codes, times, hashes and a picture, to print
+    #[command(after_help = "\
+Examples:
+  gcode-sim sheet O1234.nc -o O1234.html
+  gcode-sim sheet O1234.nc -o O1234.html --machine machine.toml --reference O1234.csv
+
+The sheet of a job file is that of `gcode-gen sheet`.")]
+    Sheet(sheet::Arguments),
 
     /// Show edge-finder readings along the part surface
     #[command(after_help = "\

@@ -27,6 +27,7 @@ mod render;
 mod run;
 pub mod schema;
 mod settings;
+mod sheet;
 mod test;
 mod unused_machine;
 mod verify;
@@ -136,6 +137,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Readings(arguments) => readings::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Page(arguments) => page_command::run(&arguments),
+        Command::Sheet(arguments) => sheet::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),

@@ -154,7 +154,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         }
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
-            of_path(arguments, &views, &mut request, &mut folders, reference.as_ref(), tolerance)?
+            let style = Style { views, projection: arguments.projection, color_by: arguments.color_by };
+            let nominal =
+                reference.as_ref().map(|reference| (reference, Tolerances::of(reference, tolerance)));
+            of_path(&style, arguments.deny, &mut request, &mut folders, nominal)?
         }
     };
     arguments.output.draw(&drawn.picture, arguments.size.parse()?)?;
@@ -183,6 +186,14 @@ fn views(all: &[View]) -> Result<Vec<View>, UsageError> {
     }
 }
 
+/// What a picture of a path shows, and how.
+#[derive(Debug, Default)]
+pub(super) struct Style {
+    views: Vec<View>,
+    projection: Option<ProjectionAngle>,
+    color_by: Option<ColorMeaning>,
+}
+
 /// A picture with the verdict that it shows.
 struct Drawn {
     picture: Picture,
@@ -198,13 +209,13 @@ struct Drawn {
 
 /// Runs a program and draws its path and its holes.
 fn of_path(
-    arguments: &Arguments,
-    views: &[View],
+    style: &Style,
+    deny: DenyArguments,
     request: &mut Request,
     folders: &mut Folders,
-    reference: Option<&Reference>,
-    tolerance: Option<f64>,
+    nominal: Option<(&Reference, Tolerances)>,
 ) -> Result<Drawn, UsageError> {
+    let reference = nominal.map(|(reference, _)| reference);
     let metal = reference.map(|reference| request.metal(reference)).unwrap_or_default();
     request.process_limits = reference.map(|r| r.process_limits.clone()).unwrap_or_default();
     let machine = request.machine.clone();
@@ -214,9 +225,8 @@ fn of_path(
     };
     let simulation = progress::of_run(request, simulate)?;
     let path = recorder.finish();
-    let (mut holes, verdict, status, findings) = match reference {
-        Some(reference) => {
-            let tolerances = Tolerances::of(reference, tolerance);
+    let (holes, verdict, status, findings) = match nominal {
+        Some((reference, tolerances)) => {
             let verdict = simulation.verify(reference, tolerances, request);
             let holes = top::of_verdict(&name(request), &simulation, reference, &verdict, &machine);
             let status = Some(verdict.conclusion().into());
@@ -225,7 +235,7 @@ fn of_path(
         None => {
             let found = simulation.dependencies(request);
             let assumed = found.numbered(&simulation.run);
-            let denied = arguments.deny.errors(&assumed, Total::Holes(found.count()));
+            let denied = deny.errors(&assumed, Total::Holes(found.count()));
             let assumed: Vec<Assumption> = assumed.into_iter().map(|(one, _)| one).collect();
             let holes = top::of_holes(&name(request), &simulation, &machine, &assumed);
             let denial = (!denied.is_empty()).then(|| denied_words(denied.len()));
@@ -234,34 +244,47 @@ fn of_path(
             (holes, (!faults.is_empty()).then(|| (Answer::Fail, faults.join("; "))), None, findings)
         }
     };
+    let picture = path_picture(style, request, &simulation, path, holes, &findings, reference)?;
+    let names = if style.views.is_empty() {
+        vec![View::Top.name()]
+    } else {
+        style.views.iter().map(|view| view.name()).collect()
+    };
+    Ok(Drawn { picture, view: names.join(","), verdict, status, findings, run: simulation.run })
+}
+
+/// Builds the picture of a path with its holes and findings.
+pub(super) fn path_picture(
+    style: &Style,
+    request: &Request,
+    simulation: &Simulation,
+    path: ToolPath,
+    mut holes: TopView,
+    findings: &[Diagnostic],
+    reference: Option<&Reference>,
+) -> Result<Picture, UsageError> {
     // Warnings are about holes, which only a reference says are meant.
-    let warnings = reference.and_then(|_| tool_path::finding_line(&findings, Severity::Warning, "warning"));
+    let warnings = reference.and_then(|_| tool_path::finding_line(findings, Severity::Warning, "warning"));
     let errors = match reference {
-        Some(_) => tool_path::finding_line(&findings, Severity::Error, "error"),
+        Some(_) => tool_path::finding_line(findings, Severity::Error, "error"),
         None => tool_path::finding_line(&simulation.extracted.findings, Severity::Error, "error"),
     };
     holes.lines.extend(errors.into_iter().chain(warnings));
     let stock = reference.and_then(|reference| reference.stock.clone()).or(request.machine.stock.clone());
     let surroundings = (stock, request.settings.stroke_limits);
-    let picture = hole_picture(arguments, views, holes, path, &simulation, &machine, surroundings)?;
-    let names = if views.is_empty() {
-        vec![View::Top.name()]
-    } else {
-        views.iter().map(|view| view.name()).collect()
-    };
-    Ok(Drawn { picture, view: names.join(","), verdict, status, findings, run: simulation.run })
+    hole_picture(style, holes, path, simulation, &request.machine, surroundings)
 }
 
 /// Builds the picture of a path with its holes, of the holes alone where the path shows no more, or of a development.
 fn hole_picture(
-    arguments: &Arguments,
-    views: &[View],
+    style: &Style,
     mut holes: TopView,
     path: ToolPath,
     simulation: &Simulation,
     machine: &Machine,
     (stock, strokes): (Option<Stock>, Option<StrokeLimits>),
 ) -> Result<Picture, UsageError> {
+    let views = style.views.as_slice();
     match views {
         [View::Development] => {
             let missing = "--view development unrolls a cylinder: give its job with --reference";
@@ -275,7 +298,7 @@ fn hole_picture(
         _ => {}
     }
     let is_asked =
-        arguments.color_by.is_some() || arguments.projection.is_some() || !matches!(views, [] | [View::Top]);
+        style.color_by.is_some() || style.projection.is_some() || !matches!(views, [] | [View::Top]);
     // A run that stops is drawn without a path too: its alarm is in the title block.
     let is_empty = !tool_path::is_drawable(&path, &holes);
     if is_empty && simulation.run.stop_finding().is_none() {
@@ -293,11 +316,11 @@ fn hole_picture(
     let arrangement = Arrangement {
         top,
         views: if standard.is_empty() { vec![StandardView::Top] } else { standard },
-        projection: match arguments.projection {
+        projection: match style.projection {
             Some(ProjectionAngle::First) => Projection::First,
             Some(ProjectionAngle::Third) | None => Projection::Third,
         },
-        color_by: match arguments.color_by {
+        color_by: match style.color_by {
             Some(ColorMeaning::Tool) => ColorBy::Tool,
             Some(ColorMeaning::Feed) => ColorBy::Feed,
             Some(ColorMeaning::Program) => ColorBy::Program,

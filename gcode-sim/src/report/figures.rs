@@ -1,5 +1,7 @@
 //! Numbers as tables show them: rounded, signed, counted.
 
+use gcode_lang::diag::{Diagnostic, Severity};
+
 /// Rounds to `places` decimals; never returns "-0.000".
 pub fn rounded(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
@@ -31,6 +33,17 @@ pub fn with_sign(value: f64) -> String {
 /// Formats `1 hole`, `5 holes`.
 pub fn count<N: std::fmt::Display + PartialEq + From<u8>>(number: N, what: &str) -> String {
     format!("{number} {what}{}", if number == N::from(1) { "" } else { "s" })
+}
+
+/// Counts errors and warnings, `2 errors, 1 warning`; `None` without any.
+pub(crate) fn finding_counts<'a>(findings: impl Iterator<Item = &'a Diagnostic> + Clone) -> Option<String> {
+    let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning")];
+    let numbers = kinds.map(|(severity, name)| {
+        (findings.clone().filter(|finding| finding.severity == severity).count(), name)
+    });
+    let words: Vec<String> =
+        numbers.iter().filter(|(number, _)| 0 < *number).map(|(number, name)| count(*number, name)).collect();
+    (!words.is_empty()).then(|| words.join(", "))
 }
 
 /// Formats with up to six decimals: `6`, `5.9`, `66.132`.

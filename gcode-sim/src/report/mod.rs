@@ -18,6 +18,7 @@ pub(crate) mod readings;
 pub(crate) mod run;
 pub(crate) mod sarif;
 pub(crate) mod settings;
+pub mod sheet;
 pub(crate) mod test_report;
 pub(crate) mod tool_path;
 pub mod top;

@@ -1,7 +1,6 @@
-//! The end of the sheet: unchecked aspects, and lines for signatures.
+//! The end of the sheet: unchecked aspects.
 use maud::{Markup, html};
 
-use super::table;
 use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
 
@@ -25,17 +24,6 @@ pub(super) fn unknown(sheet: &Sheet<'_>) -> Markup {
                 @for what in NEVER { li { (what) } }
                 @for what in own { li { (what) } }
             }
-        }
-    }
-}
-
-pub(super) fn sign() -> Markup {
-    let rows =
-        ["prepared", "checked", "approved"].map(|role| vec![html! { (role) }, html! {}, html! {}, html! {}]);
-    html! {
-        div.together {
-            h2 { "Signatures" }
-            div.sign.fill { (table(&["", "name", "signature", "date"], rows)) }
         }
     }
 }

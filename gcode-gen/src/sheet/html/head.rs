@@ -1,11 +1,11 @@
 //! The head of the sheet: part, machine, programs, and the verdict of the simulation.
-use gcode_sim::report::encode::sha256;
 use gcode_sim::report::figures::rounded;
+use gcode_sim::report::sheet::layout::{BASIS, digest};
 use maud::{Markup, html};
 
 use super::{blank, cell, kind, mains, table};
 use crate::check::PackageVerdict;
-use crate::sheet::{BASIS, Sheet};
+use crate::sheet::Sheet;
 
 pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
     let words = sheet.job.sheet();
@@ -67,7 +67,7 @@ pub(super) fn programs(sheet: &Sheet<'_>) -> Markup {
         .package
         .files()
         .into_iter()
-        .map(|(name, text)| vec![cell(&name), cell(title(text)), digest(text)]);
+        .map(|(name, text)| vec![cell(&name), cell(title(text)), digest(text.as_bytes())]);
     let first = sheet.package.files().into_iter().map(|(name, _)| name).next().unwrap_or_default();
     html! {
         h2 { "Programs" }
@@ -78,13 +78,6 @@ pub(super) fn programs(sheet: &Sheet<'_>) -> Markup {
             code { "sha256sum " (first) } ". An edited file is not the simulated one."
         }
     }
-}
-
-/// Writes the digest in two halves, with a break opportunity between them.
-fn digest(text: &str) -> Markup {
-    let digits = sha256(text.as_bytes());
-    let (one, other) = digits.split_at(digits.len() / 2);
-    html! { span.mono.digest { (one) wbr; (other) } }
 }
 
 /// Returns a program's first comment, or the purpose of the machine file.

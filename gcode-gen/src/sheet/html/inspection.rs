@@ -2,12 +2,13 @@
 use gcode_inspect::verify::{HoleVerdict, Verdict};
 use gcode_sim::report::encode::base64;
 use gcode_sim::report::figures::{rounded, signed, signed_to};
+use gcode_sim::report::sheet::layout::BASIS;
 use maud::{Markup, html};
 
 use super::{cell, table};
 use crate::check::PackageVerdict;
+use crate::sheet::Sheet;
 use crate::sheet::measure::{LISTED, characteristics};
-use crate::sheet::{BASIS, Sheet};
 
 /// Builds the form after AS9102, form 3: requirements are filled in, results are the inspector's.
 pub(super) fn form(sheet: &Sheet<'_>) -> Markup {

@@ -1,5 +1,4 @@
-//! The sheet as HTML: self-contained, for paper (A4) and for screens. The macro escapes every text from
-//! outside.
+//! The sheet as HTML, section by section.
 mod alignment;
 mod drawing;
 mod end;
@@ -12,9 +11,10 @@ mod time;
 mod zero;
 
 use gcode_part::job::Job;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use gcode_sim::report::sheet::layout::{self, blank, cell, table};
+use maud::{Markup, html};
 
-use super::{BASIS, Sheet};
+use super::Sheet;
 use crate::package::stem;
 
 pub(super) fn page(sheet: &Sheet<'_>) -> String {
@@ -22,35 +22,11 @@ pub(super) fn page(sheet: &Sheet<'_>) -> String {
     let words = sheet.job.sheet();
     let part = words.part.as_deref().unwrap_or("part not named");
     let drawing = [("drawing", &words.drawing), ("revision", &words.revision)];
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Set-up sheet: " (part) ", " (main) }
-                style { (PreEscaped(include_str!("style.css"))) }
-            }
-            body {
-                table.frame role="presentation" {
-                    thead { tr { td {
-                        div.running {
-                            b { (BASIS) }
-                            span {
-                                (part)
-                                @for (name, word) in drawing {
-                                    @if let Some(word) = word { ", " (name) " " (word) }
-                                }
-                                ", " (main)
-                            }
-                        }
-                    } } }
-                    tbody { tr { td { (sections(sheet)) } } }
-                }
-            }
-        }
-    };
-    page.into_string()
+    let running = std::iter::once(part.to_owned())
+        .chain(drawing.iter().filter_map(|(name, word)| Some(format!("{name} {}", word.as_ref()?))))
+        .chain([main.clone()]);
+    let running: Vec<String> = running.collect();
+    layout::page(&format!("Set-up sheet: {part}, {main}"), &running.join(", "), &sections(sheet))
 }
 
 fn sections(sheet: &Sheet<'_>) -> Markup {
@@ -73,50 +49,9 @@ fn sections(sheet: &Sheet<'_>) -> Markup {
         div.together {
             (time::time(sheet))
             (end::unknown(sheet))
-            (end::sign())
+            (layout::signatures())
         }
     }
-}
-
-/// Builds a table that a narrow screen shows row by row, each cell with its column's name; columns with a
-/// leading `#` hold figures.
-fn table(columns: &[&str], rows: impl IntoIterator<Item = Vec<Markup>>) -> Markup {
-    html! {
-        div.wide {
-            table {
-                thead { tr {
-                    @for name in columns {
-                        @match name.strip_prefix('#') {
-                            Some(name) => th.n { (name) },
-                            None => th { (name) },
-                        }
-                    }
-                } }
-                tbody {
-                    @for row in rows {
-                        tr {
-                            @for (cell, name) in row.iter().zip(columns) {
-                                @match name.strip_prefix('#') {
-                                    Some(name) => td.n data-name=(name) { (cell) },
-                                    None => td data-name=(name) { (cell) },
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Returns a cell of plain text.
-fn cell(text: impl AsRef<str>) -> Markup {
-    html! { (text.as_ref()) }
-}
-
-/// Returns blank space for handwriting.
-fn blank() -> Markup {
-    html! { span.blank {} }
 }
 
 /// Returns the main programs: `O8100`.

@@ -1,10 +1,11 @@
 //! Running time and, with rates, the cost, compared with other machines.
 use gcode_sim::report::figures::{rounded, short, signed_to};
+use gcode_sim::report::sheet::layout::BASIS;
 use maud::{Markup, html};
 
 use super::{cell, table};
+use crate::sheet::Sheet;
 use crate::sheet::cost::{Cost, MachineTime, costs, machine_time};
-use crate::sheet::{BASIS, Sheet};
 
 pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
     let times = sheet.record.times;

@@ -45,15 +45,7 @@ fn findings_of<'a>(side: &ReviewSide<'a>) -> Vec<&'a Diagnostic> {
 
 /// Returns the numbers of errors and warnings, `2 errors, 1 warning`; `None` without any.
 pub(super) fn worst_findings(side: &ReviewSide<'_>) -> Option<String> {
-    let all = findings_of(side);
-    let number = |severity| all.iter().filter(|finding| finding.severity == severity).count();
-    let counted = [(number(Severity::Error), "error"), (number(Severity::Warning), "warning")];
-    let named: Vec<String> = counted
-        .into_iter()
-        .filter(|(number, _)| 0 < *number)
-        .map(|(number, name)| figures::count(number, name))
-        .collect();
-    (!named.is_empty()).then(|| named.join(", "))
+    figures::finding_counts(findings_of(side).into_iter())
 }
 
 fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {

@@ -1,0 +1,335 @@
+//! The set-up sheet of any program: what the person at the machine needs to set up, start and watch it.
+pub mod layout;
+pub(crate) mod recorder;
+
+use std::collections::BTreeSet;
+
+use maud::{Markup, html};
+
+use super::encode::base64;
+use super::figures::{count, duration, finding_counts, rounded, short};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Conclusion};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{Backtrace, LengthCompensation};
+use gcode_part::{Assumption, Total};
+use gcode_session::{Request, Simulation};
+use layout::{BASIS, blank, cell, digest, table};
+use recorder::{OffsetObserver, SheetStop, ToolUse, UseRecorder};
+
+/// Largest number of stops and of findings that are listed.
+const MAX_LISTED: usize = 200;
+
+/// Aspects that no simulation here covers.
+const NEVER: &[&str] = &[
+    "the machine's own errors: positioning, run-out, accuracy of the zero and of the tools' lengths",
+    "chips, clamps, fixtures, the machine's head and travel, except limits that the settings state",
+    "acceleration and the time of operator stops and tool changes: run times are paths divided by feeds and rapid rates",
+];
+
+/// A simulated program with the data for its sheet.
+pub(crate) struct ProgramSheet<'a> {
+    pub request: &'a Request,
+    pub simulation: &'a Simulation,
+    pub uses: &'a UseRecorder,
+    pub offsets: &'a OffsetObserver,
+    /// Conclusion of the verdict, and what was not checked; `None` without a reference.
+    pub verdict: Option<(Conclusion<'a>, &'a [String])>,
+    pub findings: &'a [Diagnostic],
+    pub assumptions: &'a [Assumption],
+    /// Files besides the programs: kind, name, content.
+    pub files: &'a [(&'static str, String, Vec<u8>)],
+    /// Picture of the path, PNG; `None` if there is nothing to draw.
+    pub picture: Option<&'a [u8]>,
+}
+
+impl ProgramSheet<'_> {
+    /// Returns the sheet as one self-contained HTML file.
+    pub(crate) fn html(&self) -> String {
+        let name = self.name();
+        layout::page(&format!("Set-up sheet: {name}"), &name, &self.sections())
+    }
+
+    fn sections(&self) -> Markup {
+        html! {
+            (self.head())
+            (self.answer())
+            (self.programs())
+            (self.work_zeros())
+            (self.tools())
+            (self.stops())
+            (self.m_codes())
+            (self.picture_section())
+            (self.findings_section())
+            (self.not_checked())
+            (layout::signatures())
+        }
+    }
+
+    /// Returns the name of the main program with its comment: `O1234 (BRACKET)`.
+    fn name(&self) -> String {
+        let memory = self.simulation.run.control.memory();
+        let label = memory.get(memory.main()).label();
+        let comment = memory.sources().iter().next().and_then(|(_, source)| first_comment(source.lines()));
+        let comment = comment.unwrap_or_default();
+        if comment.is_empty() { label } else { format!("{label} ({comment})") }
+    }
+
+    fn head(&self) -> Markup {
+        let settings = &self.request.settings;
+        let [rapid, feed, dwell] = self.uses.times;
+        let time = rapid + feed + dwell;
+        html! {
+            h1 { "Set-up sheet" }
+            p { "Program " b { (self.name()) } }
+            div.wide { table.facts { tbody {
+                tr { th { "part" } td { (blank()) } th { "drawing, revision" } td { (blank()) } }
+                tr { th { "material" } td { (blank()) } th { "order" } td { (blank()) } }
+                tr {
+                    th { "machine" } td { (blank()) }
+                    th { "control" } td { (settings.dialect.name()) ", least increment " (settings.increment.name()) }
+                }
+                tr {
+                    th { "run time" }
+                    td { (duration(time)) ", feeds " (duration(feed)) ", rapids " (duration(rapid)) ", dwells " (duration(dwell)) }
+                    th { "tools, stops" }
+                    td { (count(self.tool_count(), "tool")) ", " (count(self.uses.stops.len(), "operator stop")) }
+                }
+            } } }
+            p.note { "Lengths in mm, angles in degrees, feeds in mm/min. Fill in empty lines by hand." }
+        }
+    }
+
+    fn tool_count(&self) -> usize {
+        self.uses.uses.iter().filter_map(|one| one.tool).collect::<BTreeSet<_>>().len()
+    }
+
+    fn answer(&self) -> Markup {
+        let total = Total::Holes(self.simulation.extracted.holes.len());
+        html! {
+            div.verdict {
+                @match &self.verdict {
+                    Some((conclusion, _)) => { b { (conclusion.answer.word()) ". " } (BASIS) ". " (conclusion.summary) "." }
+                    None => {
+                        @match self.simulation.run.stop_sentence() {
+                            Some(sentence) => { b { (Answer::Fail.word()) ". " } (BASIS) ". " (sentence) "." }
+                            None => { b { "Not compared with a drawing. " } (BASIS) "." }
+                        }
+                    }
+                }
+                @if let Some(counts) = finding_counts(self.findings.iter()) { " " b { (counts) } ": see the findings." }
+                @for assumption in self.assumptions { p { "Assumes " (assumption.sentence(total)) } }
+            }
+        }
+    }
+
+    fn programs(&self) -> Markup {
+        let memory = self.simulation.run.control.memory();
+        let of_memory = memory.sources().iter().map(|(source, text)| {
+            let programs = memory.programs().iter().filter(|program| program.span.source == source);
+            let labels: Vec<String> = programs.map(|program| program.label()).collect();
+            vec![cell(&text.name), cell(labels.join(", ")), digest(text.bytes.file_content())]
+        });
+        let others = self.files.iter().map(|(kind, name, bytes)| vec![cell(name), cell(kind), digest(bytes)]);
+        html! {
+            h2 { "Files" }
+            (table(&["file", "content", "SHA-256"], of_memory.chain(others)))
+            p.note {
+                "Compare the hash before the file goes to the control: " code { "certutil -hashfile FILE SHA256" }
+                " (Windows) or " code { "sha256sum FILE" } ". An edited file is not the simulated one."
+            }
+        }
+    }
+
+    fn work_zeros(&self) -> Markup {
+        let machine = &self.request.machine;
+        let rows = self.offsets.work_systems.iter().map(|system| {
+            let stated = machine.offsets.iter().find(|offset| offset.system == *system);
+            let axes = stated.map(|offset| offset.values.iter());
+            let values: Option<Vec<String>> = axes.map(|values| {
+                values
+                    .map(|(axis, value)| format!("{} {}", machine.axes.letter(*axis), short(*value)))
+                    .collect()
+            });
+            let value = match values {
+                Some(values) => cell(values.join(" ")),
+                None => blank(),
+            };
+            vec![cell(system.name()), value, blank()]
+        });
+        html! {
+            h2 { "Work zeros" }
+            (table(&["system", "offset in the machine file", "where the zero is on the part"], rows))
+        }
+    }
+
+    fn tools(&self) -> Markup {
+        let machine = &self.request.machine;
+        let holes = &self.simulation.extracted.holes;
+        let rows = self.uses.uses.iter().filter(|one| one.first_block.is_some()).map(|one| {
+            let made = holes.iter().filter(|hole| hole.passes().any(|pass| pass.tool == one.tool)).count();
+            let offsets = self.offsets.radius_offsets.iter().filter(|(tool, _)| Some(*tool) == one.tool);
+            let offsets: Vec<String> = offsets.map(|(_, number)| format!("D{number}")).collect();
+            vec![
+                cell(one.tool.map_or("in the spindle".to_owned(), |tool| format!("T{tool}"))),
+                kind(machine, one),
+                cell(lengths(one)),
+                cell(offsets.join(" ")),
+                cell(range(one.speed) + if one.is_reversed { " M04" } else { "" }),
+                cell(range(one.feed)),
+                cell(one.coolants.iter().map(|code| format!("M{code:02}")).collect::<Vec<_>>().join(" ")),
+                cell(if made == 0 { String::new() } else { made.to_string() }),
+                cell(rounded(one.seconds / 60.0, 1)),
+                cell(one.first_block.as_ref().map_or_else(String::new, |at| self.location(at))),
+            ]
+        });
+        let columns = ["tool", "kind, diameter", "H", "D", "#S", "#F", "coolant", "#holes", "#min", "from"];
+        html! {
+            h2 { "Tools, in the order of use" }
+            (table(&columns, rows))
+            p.note { "S and F are those of its cuts. A kind that no machine file states is left empty; check H and D against the offset page." }
+        }
+    }
+
+    /// Returns `O1234 line 12, called from O1 line 5`.
+    fn location(&self, at: &Backtrace) -> String {
+        let run = &self.simulation.run;
+        let calls = std::iter::successors(at.calls.as_deref(), |call| call.outer_calls.as_deref());
+        let spans = std::iter::once(at.block).chain(calls.map(|call| call.calling_block));
+        let places: Vec<String> = spans
+            .map(|span| run.locate(span))
+            .map(|(program, line)| format!("{program} line {line}"))
+            .collect();
+        places.join(", called from ")
+    }
+
+    fn stops(&self) -> Markup {
+        let stops = &self.uses.stops;
+        let row = |(index, stop): (usize, &SheetStop)| {
+            let values =
+                stop.variables.iter().map(|(number, value)| format!("#{number} = {}", short(*value)));
+            vec![
+                html! { (index + 1) },
+                html! {
+                    b { (stop.kind.name()) } " " span.mono { (stop.text) }
+                    @for value in values { " " b { (value) } }
+                    div.note { (self.location(&stop.backtrace)) }
+                },
+                cell(stop.tool.map_or_else(String::new, |tool| format!("T{tool}"))),
+                cell(rounded(stop.elapsed / 60.0, 1)),
+                html! { span.tick {} },
+            ]
+        };
+        html! {
+            h2 { "Operator stops" }
+            @if stops.is_empty() {
+                p { "No operator stop between start and end." }
+            } @else {
+                p { (count(stops.len(), "stop")) ", in this order. The minutes are the running time before the stop." }
+                (table(&["#stop", "the control shows", "tool", "#min", "done"], stops.iter().take(MAX_LISTED).enumerate().map(row)))
+                @if MAX_LISTED < stops.len() { p { "The first " (MAX_LISTED) " are listed." } }
+            }
+        }
+    }
+
+    fn m_codes(&self) -> Markup {
+        let run = &self.simulation.run;
+        let codes = run.control.builder_m_codes();
+        let rows = codes.iter().map(|(code, span)| {
+            let (program, line) = run.locate(*span);
+            vec![cell(format!("M{code:02}")), cell(format!("{program} line {line}")), blank()]
+        });
+        html! {
+            @if !codes.is_empty() {
+                h2 { "M codes of the machine builder" }
+                p { "Their effect is not simulated." }
+                (table(&["code", "first in", "what it does on this machine"], rows))
+            }
+        }
+    }
+
+    fn picture_section(&self) -> Markup {
+        html! {
+            @if let Some(png) = self.picture {
+                h2 { "Path" }
+                figure {
+                    img alt="Tool path and holes" src={ "data:image/png;base64," (base64(png)) };
+                    figcaption { (BASIS) "." }
+                }
+            }
+        }
+    }
+
+    fn findings_section(&self) -> Markup {
+        let shown: Vec<&Diagnostic> =
+            self.findings.iter().filter(|finding| Severity::Note < finding.severity).collect();
+        html! {
+            @if !shown.is_empty() {
+                h2 { "Findings" }
+                ul {
+                    @for finding in shown.iter().take(MAX_LISTED) {
+                        li {
+                            b { (finding.severity.name()) } " " code { (finding.code()) } " " (finding.message)
+                            @if let Some(at) = &finding.backtrace { div.note { (self.location(at)) } }
+                        }
+                    }
+                }
+                @if MAX_LISTED < shown.len() { p { "The first " (MAX_LISTED) " of " (shown.len()) " are listed." } }
+            }
+        }
+    }
+
+    fn not_checked(&self) -> Markup {
+        let own = self.verdict.as_ref().map_or(&[] as &[String], |(_, not_checked)| *not_checked);
+        html! {
+            div.together {
+                h2 { "Not checked" }
+                ul {
+                    @for what in NEVER { li { (what) } }
+                    @for what in own { li { (what) } }
+                    @if self.verdict.is_none() { li { "the drawing: no hole list was given with " code { "--reference" } } }
+                }
+            }
+        }
+    }
+}
+
+/// Returns the text of the first comment of a file.
+fn first_comment(mut lines: impl Iterator<Item = String>) -> Option<String> {
+    let line = lines.find(|line| line.contains('('))?;
+    let (_, rest) = line.split_once('(')?;
+    Some(rest.split(')').next()?.trim().to_owned())
+}
+
+/// Returns kind and diameter of a tool as the machine file states them, else a blank.
+fn kind(machine: &Machine, one: &ToolUse) -> Markup {
+    let known = machine.tools.iter().find(|tool| Some(tool.number) == one.tool);
+    let words = known.map(|tool| {
+        let kind = tool.kind.map(|kind| kind.name().replace('-', " "));
+        let size = tool.diameter.map(|diameter| format!("Φ{}", short(diameter)));
+        kind.into_iter().chain(size).collect::<Vec<_>>().join(" ")
+    });
+    match words.filter(|words| !words.is_empty()) {
+        Some(words) => cell(words),
+        None => blank(),
+    }
+}
+
+/// Returns `H1`, or `none` for cuts without a length offset.
+fn lengths(one: &ToolUse) -> String {
+    let names = one.length_offsets.iter().map(|offset| match offset {
+        LengthCompensation::Off => "none".to_owned(),
+        LengthCompensation::Plus(number) => format!("H{number}"),
+        LengthCompensation::Minus(number) => format!("H{number} (G44)"),
+    });
+    names.collect::<Vec<_>>().join(" ")
+}
+
+/// Returns `800` or `800 to 1200`; nothing without a cut.
+fn range(range: Option<[f64; 2]>) -> String {
+    match range {
+        None => String::new(),
+        Some([min, max]) if min == max => short(min),
+        Some([min, max]) => format!("{} to {}", short(min), short(max)),
+    }
+}

@@ -1,0 +1,167 @@
+//! Recorders of a run for the person at the machine: uses of tools in order, offsets, stops, and times.
+use std::collections::BTreeSet;
+
+use gcode_control::{Control, Observer};
+use gcode_lang::motion::{
+    Backtrace, Event, EventKind, EventSink, LengthCompensation, SpindleDirection, StopKind,
+};
+use gcode_lang::program::modes::{ModalGroup, WorkSystem};
+
+/// G40, as code × 10.
+const CUTTER_COMPENSATION_OFF: u32 = 400;
+
+/// From one tool change to the next.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct ToolUse {
+    /// Tool in the spindle; `None` before the first tool change.
+    pub tool: Option<u32>,
+    /// Length offsets that cut, as code and H.
+    pub length_offsets: BTreeSet<LengthCompensation>,
+    /// Least and largest spindle speed of its cuts, 1/min.
+    pub speed: Option<[f64; 2]>,
+    /// True if it cuts with M04.
+    pub is_reversed: bool,
+    /// Least and largest feed of its cuts, mm/min.
+    pub feed: Option<[f64; 2]>,
+    /// M codes that switch coolant on.
+    pub coolants: BTreeSet<u32>,
+    /// Duration without stops, s.
+    pub seconds: f64,
+    /// Block of its first move.
+    pub first_block: Option<Backtrace>,
+}
+
+/// An operator stop.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SheetStop {
+    pub kind: StopKind,
+    pub text: String,
+    /// Variables that the text names, with their values.
+    pub variables: Vec<(u32, f64)>,
+    /// Tool in the spindle.
+    pub tool: Option<u32>,
+    /// Running time before the stop, s.
+    pub elapsed: f64,
+    pub backtrace: Backtrace,
+}
+
+/// Recorder of the events of a run.
+#[derive(Debug, Default)]
+pub(crate) struct UseRecorder {
+    pub uses: Vec<ToolUse>,
+    pub stops: Vec<SheetStop>,
+    /// Times of rapids, feeds and dwells, s.
+    pub times: [f64; 3],
+    length: LengthCompensation,
+    speed: f64,
+    direction: SpindleDirection,
+    coolant: Option<u32>,
+}
+
+impl UseRecorder {
+    fn current(&mut self) -> &mut ToolUse {
+        if self.uses.is_empty() {
+            self.uses.push(ToolUse::default());
+        }
+        let last = self.uses.len() - 1;
+        &mut self.uses[last]
+    }
+
+    fn record_cut(&mut self, rate: f64) {
+        let (length, speed, direction, coolant) = (self.length, self.speed, self.direction, self.coolant);
+        let now = self.current();
+        now.length_offsets.insert(length);
+        widen(&mut now.feed, rate);
+        if direction != SpindleDirection::Off {
+            widen(&mut now.speed, speed);
+        }
+        now.is_reversed |= direction == SpindleDirection::Counterclockwise;
+        now.coolants.extend(coolant);
+    }
+}
+
+fn widen(range: &mut Option<[f64; 2]>, value: f64) {
+    let [min, max] = range.get_or_insert([value, value]);
+    *min = min.min(value);
+    *max = max.max(value);
+}
+
+impl EventSink for UseRecorder {
+    fn event(&mut self, event: &Event<'_>) {
+        let seconds = event.seconds.0;
+        let kind = match &event.kind {
+            EventKind::Rapid { .. } => Some(0),
+            EventKind::Feed { rate, .. } | EventKind::Arc { rate, .. } | EventKind::Skip { rate, .. } => {
+                self.record_cut(rate.0);
+                Some(1)
+            }
+            EventKind::Dwell { .. } => Some(2),
+            EventKind::ToolChange { number } => {
+                self.uses.push(ToolUse { tool: Some(*number), ..ToolUse::default() });
+                None
+            }
+            EventKind::ToolLength { compensation, .. } => {
+                self.length = *compensation;
+                None
+            }
+            EventKind::Spindle { direction, speed, .. } => {
+                (self.direction, self.speed) = (*direction, speed.0);
+                None
+            }
+            EventKind::Coolant { is_on, code } => {
+                self.coolant = is_on.then_some(*code);
+                None
+            }
+            EventKind::Stop { kind, text, variables } => {
+                self.stops.push(SheetStop {
+                    kind: *kind,
+                    text: text.clone(),
+                    variables: variables.clone(),
+                    tool: self.uses.last().and_then(|last| last.tool),
+                    elapsed: self.times.iter().sum(),
+                    backtrace: event.backtrace(),
+                });
+                None
+            }
+            EventKind::Start { .. }
+            | EventKind::PositionUnknown { .. }
+            | EventKind::ToolSelected { .. }
+            | EventKind::Auxiliary { .. } => None,
+        };
+        if let Some(kind) = kind {
+            self.times[kind] += seconds;
+            let now = self.current();
+            now.seconds += seconds;
+            now.first_block.get_or_insert_with(|| event.backtrace());
+        }
+    }
+}
+
+/// Observer of the offsets that are in force when a block has moved something.
+#[derive(Debug, Default)]
+pub(crate) struct OffsetObserver {
+    /// Work coordinate systems, in the order of their first use.
+    pub work_systems: Vec<WorkSystem>,
+    /// Cutter radius offsets, as tool and D.
+    pub radius_offsets: BTreeSet<(u32, u32)>,
+    moves: u64,
+}
+
+impl Observer for OffsetObserver {
+    fn before_block(&mut self, control: &mut Control) {
+        self.moves = control.moves();
+    }
+
+    fn after_block(&mut self, control: &Control) {
+        if control.moves() == self.moves {
+            return;
+        }
+        let state = control.state();
+        if !self.work_systems.contains(&state.modal.work) {
+            self.work_systems.push(state.modal.work);
+        }
+        if state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF {
+            self.radius_offsets.insert((state.tool, state.modal_words.d));
+        }
+    }
+}
