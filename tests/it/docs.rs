@@ -87,3 +87,22 @@ fn the_pages_in_docs_show_real_sessions() {
         files_below(&workspace().join(folder), "md").iter().for_each(|page| check(page));
     }
 }
+
+/// The book's index has every page once, and nothing else.
+#[test]
+fn the_summary_of_the_book_has_every_page_once() {
+    let docs = workspace().join("docs");
+    let summary = std::fs::read_to_string(docs.join("SUMMARY.md")).unwrap();
+    let mut listed: Vec<String> = summary
+        .lines()
+        .filter_map(|line| line.rsplit_once("](")?.1.strip_suffix(')').map(str::to_owned))
+        .collect();
+    let mut pages: Vec<String> = files_below(&docs, "md")
+        .iter()
+        .map(|file| file.strip_prefix(&docs).unwrap().display().to_string().replace('\\', "/"))
+        .filter(|page| page != "SUMMARY.md")
+        .collect();
+    listed.sort();
+    pages.sort();
+    assert_eq!(listed, pages);
+}
