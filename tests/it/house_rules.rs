@@ -102,7 +102,7 @@ fn every_dependency_is_used() {
 fn the_language_side_depends_on_no_geometry_and_no_output() {
     let barred =
         ["clap", "gcode-draw", "gcode-inspect", "gcode-part", "image", "maud", "nalgebra", "tiny-skia"];
-    for name in ["gcode-lang", "gcode-control", "gcode-lint"] {
+    for name in ["gcode-lang", "gcode-control", "gcode-lint", "gcode-ide"] {
         let found: Vec<_> = dependencies(name).into_iter().filter(|d| barred.contains(&&**d)).collect();
         assert!(found.is_empty(), "{name} depends on {}", found.join(", "));
     }

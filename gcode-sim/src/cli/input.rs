@@ -9,6 +9,7 @@ use encoding_rs::{UTF_16BE, UTF_16LE};
 
 use super::UsageError;
 use gcode_lang::source::Bytes;
+pub use gcode_session::files::folder_of;
 
 /// Largest input, bytes; no control holds a larger program.
 const LARGEST: u64 = 1 << 30;
@@ -120,11 +121,6 @@ fn to_utf8(bytes: Vec<u8>) -> Bytes {
     };
     let text = encoding.decode_with_bom_removal(&bytes).0.into_owned();
     Bytes::converted(text, bytes)
-}
-
-/// Returns the folder that a file is in; that of a bare name is `.`.
-pub fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Returns the entries of a folder, sorted by name.

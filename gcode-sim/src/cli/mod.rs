@@ -6,6 +6,7 @@ pub mod common;
 mod compare;
 mod conditions;
 mod diff;
+mod disk_files;
 mod explain;
 pub mod format;
 mod holes;

@@ -1,7 +1,7 @@
 //! Warns of an unused machine file: `--machine` is easily forgotten, and another machine makes other holes.
 use super::conditions::ProgramArguments;
 use super::output;
-use super::project::MACHINE_FILE;
+use gcode_session::files::MACHINE_FILE;
 use gcode_lang::control::{Dialect, Increment};
 use gcode_session::Request;
 

@@ -9,20 +9,30 @@ use gcode_lang::syntax::ast::{Folder, ProgramName};
 
 use super::literal;
 
+/// Call of a block.
 #[derive(Debug)]
-pub(crate) struct CallSite {
+pub struct CallSite {
+    /// Block of the call in its program.
     pub block: OpIndex,
+    /// Kind of the call; `None` for a code that calls a program.
+    pub kind: Option<CallCode>,
     /// True for a call with its own locals; M98 shares the caller's.
     pub has_own_locals: bool,
     /// True for G66, whose macro is called after later moves.
     pub is_modal: bool,
+    /// Called program.
     pub target: CalledProgramName,
+    /// Word P of the called program.
+    pub target_span: Option<Span>,
     /// Folder of the calling program.
     pub folder: Option<Folder>,
     /// Sequence number in Q of M98, where the subprogram starts.
     pub start: Option<u32>,
+    /// Word of the sequence number.
+    pub start_span: Option<Span>,
     /// Locals that the arguments set.
     pub arguments: Vec<Argument>,
+    /// Code of the call.
     pub span: Span,
 }
 
@@ -41,8 +51,13 @@ pub enum CalledProgramName {
 
 /// Argument of a macro call.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Argument {
+pub struct Argument {
+    /// Letter of the argument.
+    pub letter: u8,
+    /// Local that the argument sets.
     pub local: usize,
+    /// Span of the word.
+    pub span: Span,
     /// True for a number, which cannot be vacant.
     pub is_number: bool,
 }
@@ -63,7 +78,8 @@ pub(super) fn call_sites(program: &Program, settings: &Settings) -> Vec<CallSite
     found
 }
 
-fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
+/// Returns the call of a block of words, also by a code that calls a program; `None` for a return.
+pub fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
     let Some(call) = words.call() else { return code_call_site(block, words, settings) };
     let subprogram = matches!(call.kind, CallCode::Subprogram | CallCode::File | CallCode::Local);
     if matches!(call.kind, CallCode::Return | CallCode::Cancel) {
@@ -81,13 +97,20 @@ fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallS
             Some(number) => CalledProgramName::Number(number),
         },
     };
+    let target_span = match &call.target {
+        CallTarget::Number(word) => Some(word.span),
+        CallTarget::Name(_) | CallTarget::None => None,
+    };
     Some(CallSite {
         block,
+        kind: Some(call.kind),
         has_own_locals: !subprogram,
         is_modal: matches!(call.kind, CallCode::AfterMoves | CallCode::EveryBlock),
         target,
+        target_span,
         folder: None,
         start: call.start.as_ref().and_then(literal::word_count),
+        start_span: call.start.as_ref().map(|word| word.span),
         arguments: arguments(&call.arguments, call.kind == CallCode::EveryBlock, settings),
         span: call.span,
     })
@@ -125,8 +148,23 @@ fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<
             CodeCallKind::Macro | CodeCallKind::Modal | CodeCallKind::Subprogram => called.program,
         };
         let target = CalledProgramName::Number(program);
-        let (folder, start, span) = (None, None, word.span);
-        Some(CallSite { block, has_own_locals, is_modal, target, folder, start, arguments, span })
+        let target_span = match called.kind {
+            CodeCallKind::MacroInP => words.list.iter().find(|word| word.letter == b'P').map(|word| word.span),
+            CodeCallKind::Macro | CodeCallKind::Modal | CodeCallKind::Subprogram => None,
+        };
+        Some(CallSite {
+            block,
+            kind: None,
+            has_own_locals,
+            is_modal,
+            target,
+            target_span,
+            folder: None,
+            start: None,
+            start_span: None,
+            arguments,
+            span: word.span,
+        })
     })
 }
 
@@ -134,7 +172,8 @@ fn arguments(words: &[LoweredWord], is_every_block: bool, settings: &Settings) -
     let mut letters = ArgumentLocals::new(settings.reads_ijk_plainly, is_every_block);
     let arguments = words.iter().filter_map(|word| {
         let local = letters.next(word.letter).ok().flatten()?;
-        Some(Argument { local, is_number: literal::word_number(word).is_some() })
+        let is_number = literal::word_number(word).is_some();
+        Some(Argument { letter: word.letter, local, span: word.span, is_number })
     });
     arguments.collect()
 }

@@ -3,8 +3,9 @@ use gcode_lang::syntax::ast::{Block, Condition, Expr, Item, PrintPart, Statement
 
 use super::literal;
 
+/// Use that a block makes of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ValueUse {
+pub enum ValueUse {
     /// Left side of an assignment: only the number of the variable is read.
     Target,
     /// Compared with `#0`, a test for vacancy.
@@ -20,9 +21,10 @@ pub(crate) enum ValueUse {
 }
 
 /// Outermost expressions with their uses, in the order written.
-pub(crate) type UsedExpressions<'a> = Vec<(&'a Expr, ValueUse)>;
+pub type UsedExpressions<'a> = Vec<(&'a Expr, ValueUse)>;
 
-pub(super) fn block_expressions(block: &Block) -> UsedExpressions<'_> {
+/// Returns the outermost expressions of a block with their uses.
+pub fn block_expressions(block: &Block) -> UsedExpressions<'_> {
     let mut found = Vec::new();
     let has_call = block.items.iter().any(is_macro_call);
     for item in &block.items {

@@ -41,7 +41,9 @@ mod variables;
 
 use std::collections::BTreeSet;
 
-pub use calls::{CalledProgramName, called_programs};
+pub use calls::{Argument, CallSite, CalledProgramName, call_site, called_programs};
+pub use expressions::{UsedExpressions, ValueUse, block_expressions};
+pub use literal::{constant, variable};
 pub use main_programs::{main_programs, programs_called_by_others};
 
 use context::CheckContext;

@@ -32,7 +32,7 @@ pub(super) fn without_point(word: &LoweredWord) -> Option<Decimal> {
 }
 
 /// Returns the value of an expression of literals, limited to sums and products.
-pub(super) fn constant(expr: &Expr) -> Option<f64> {
+pub fn constant(expr: &Expr) -> Option<f64> {
     match &expr.kind {
         ExprKind::Literal(number) => Some(number.value()),
         ExprKind::Negate(inner) => constant(inner).map(|v| -v),
@@ -58,7 +58,7 @@ pub(super) fn arithmetic(op: BinaryOp, left: f64, right: f64) -> Option<f64> {
 }
 
 /// Returns the number of a variable, `#5` or `#[100+1]`.
-pub(super) fn variable(expr: &Expr) -> Option<u32> {
+pub fn variable(expr: &Expr) -> Option<u32> {
     match &expr.kind {
         ExprKind::Variable(index) => constant(index).and_then(to_whole),
         ExprKind::Named(name) => named(name),

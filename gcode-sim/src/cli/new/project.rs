@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::{ExitStatus, OutputFile, UsageError};
 use crate::cli::input;
-use crate::cli::project::MACHINE_FILE;
+use gcode_session::files::MACHINE_FILE;
 
 /// Name of a file with settings of the control.
 const CONTROL_FILE: &str = "control.toml";

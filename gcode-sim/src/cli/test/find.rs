@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use super::case::{ACCEPTED, Case};
 use super::main_program::{self, MainProgram};
-use crate::cli::{UsageError, input, library};
+use crate::cli::{UsageError, input};
+use gcode_session::files::begins_program;
 
 /// Folder of a case's called programs; a folder below it is a case only if it has an accepted result.
 const LIBRARY: &str = "lib";
@@ -129,7 +130,7 @@ fn is_program(path: &Path) -> bool {
     const ENDINGS: [&str; 7] = ["nc", "tap", "eia", "min", "cnc", "ncd", "ngc"];
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_ascii_lowercase();
     match ending.as_str() {
-        "txt" | "" => input::program(path).is_ok_and(|text| library::begins_program(&text)),
+        "txt" | "" => input::program(path).is_ok_and(|text| begins_program(&text)),
         ending => ENDINGS.contains(&ending),
     }
 }

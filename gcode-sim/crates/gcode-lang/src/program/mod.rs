@@ -41,6 +41,11 @@ use crate::alarm::LocatedAlarm;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{self, Folder, PrintKind, ProgramName};
 
+/// Lowers one block outside a program; the loop of a WHILE, DO or END is an alarm.
+pub fn lower_tree(block: &ast::Block) -> Op {
+    lowering::Lowering::default().lower_block(block, None)
+}
+
 /// Index of an operation in its program.
 pub type OpIndex = usize;
 

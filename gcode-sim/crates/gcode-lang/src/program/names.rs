@@ -52,6 +52,11 @@ const NAMES: &[NameRow] = &[
 /// Names of the tool offset memories A and B; the simulated control has memory C.
 pub(super) const OTHER_MEMORIES: [&str; 3] = ["_OFS", "_OFSG", "_OFSW"];
 
+/// Iterates over all names except those of the additional work coordinate systems.
+pub fn all() -> impl Iterator<Item = &'static NameRow> {
+    NAMES.iter()
+}
+
 /// Returns the variables that a name stands for.
 pub fn find(name: &str) -> Option<NameRow> {
     let system =

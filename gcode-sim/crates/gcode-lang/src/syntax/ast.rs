@@ -36,6 +36,15 @@ pub struct Block {
     pub comments: Vec<Comment>,
 }
 
+impl Block {
+    /// Returns true for a comment or for text that is not meant for a control: no readable word or statement.
+    pub fn is_unreadable(&self) -> bool {
+        self.items.iter().all(|item| matches!(item, Item::Unreadable(_)))
+            && self.number.is_none()
+            && self.skip.is_none()
+    }
+}
+
 /// Component of a block.
 ///
 /// Most components are words, so larger ones are boxed. A control accepts either words or one statement;

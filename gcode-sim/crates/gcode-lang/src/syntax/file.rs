@@ -3,7 +3,7 @@
 //! Most lines of a long file are one block of words, which the outline recognises without reading them. The
 //! other lines are read, so an outline has the same programs and blocks as the tree.
 use super::ast::{Block, Folder, Program, ProgramName};
-use super::file_items::{FileItem, FileItems, is_unreadable_block};
+use super::file_items::{FileItem, FileItems};
 use super::numbers::NumberWords;
 use crate::source::{SourceId, Span};
 
@@ -32,7 +32,7 @@ pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
             FileItem::Section => programs.begin_section(),
             FileItem::Program { name, span } => programs.begin(name, span),
             FileItem::Block(block) => {
-                let (span, is_unreadable) = (block.span, is_unreadable_block(&block));
+                let (span, is_unreadable) = (block.span, block.is_unreadable());
                 programs.program_for_block(span, is_unreadable).blocks.push(block);
             }
         }
@@ -156,7 +156,7 @@ pub(crate) fn outline<C: Default, B>(
                 programs.begin(name, span);
             }
             Some(FileItem::Block(block)) => {
-                let is_unreadable = is_unreadable_block(&block);
+                let is_unreadable = block.is_unreadable();
                 is_program_known |= !is_unreadable;
                 if !programs.is_open {
                     programs.folder = items.folder();
@@ -183,7 +183,7 @@ pub(crate) fn outline<C: Default, B>(
 }
 
 /// Reads the block at the line start `start`, taken from an outline, of a text without its trailer.
-pub(crate) fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
+pub fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
     FileItems::starting_at(source, bytes, start as usize).find_map(|item| match item {
         FileItem::Block(block) => Some(block),
         _ => None,

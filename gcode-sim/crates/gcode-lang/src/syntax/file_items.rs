@@ -130,7 +130,7 @@ impl<'a> FileItems<'a> {
             let mut block = Block::default();
             let left =
                 read_block(LineInput { source: SourceId(0), end: text.len() as u32 }, text, &mut block);
-            !left.is_empty() || !is_unreadable_block(&block) && !block.items.iter().any(is_unreadable)
+            !left.is_empty() || !block.is_unreadable() && !block.items.iter().any(is_unreadable)
         });
         self.code_end = *at + code.len();
         self.blanked = Some(*at);
@@ -205,6 +205,11 @@ impl<'a> FileItems<'a> {
         self.next_line_start = self.bytes.len() - text.len();
     }
 
+    /// Returns the offset of the next unread byte.
+    pub(super) fn position(&self) -> u32 {
+        self.position as u32
+    }
+
     /// Returns true if nothing of the current line has been read.
     pub(super) fn begins_line(&self) -> bool {
         self.position == self.line_start
@@ -249,7 +254,7 @@ pub(crate) fn without_trailer(bytes: &[u8]) -> &[u8] {
 }
 
 /// Returns the length of the byte order marks; an editor that does not recognise one adds another.
-fn byte_order_marks(bytes: &[u8]) -> usize {
+pub(super) fn byte_order_marks(bytes: &[u8]) -> usize {
     3 * bytes.chunks(3).take_while(|mark| mark == b"\xef\xbb\xbf").count()
 }
 
@@ -287,12 +292,7 @@ fn is_unreadable(item: &Item) -> bool {
 }
 
 fn has_nothing_readable(piece: &FileItem) -> bool {
-    matches!(piece, FileItem::Block(block) if is_unreadable_block(block))
-}
-
-/// Returns true for a comment or for text that is not meant for a control: no readable word or statement.
-pub(super) fn is_unreadable_block(block: &Block) -> bool {
-    block.items.iter().all(is_unreadable) && block.number.is_none() && block.skip.is_none()
+    matches!(piece, FileItem::Block(block) if block.is_unreadable())
 }
 
 /// Reads `O0001`, `:0007`, `<NAME>` or `O9123<NAME>`; in the last the name is only a title.

@@ -1,0 +1,177 @@
+//! Files of a project with their indexes, and the programs that calls find in them.
+use std::collections::BTreeMap;
+
+use gcode_lang::control::Settings;
+use gcode_lang::source::Bytes;
+use gcode_lang::syntax::ast::{Block, ProgramName};
+use gcode_lang::syntax::block_at;
+use gcode_lint::CalledProgramName;
+
+use crate::entry::EntryKind;
+use crate::file_index::{Call, FileIndex, ProgramOutline};
+use crate::text::{FileId, SOURCE, TextEdit, TextRange, line_range};
+
+/// Files that an editor knows, read for one control.
+#[derive(Clone, Debug, Default)]
+pub struct Project {
+    settings: Settings,
+    files: BTreeMap<FileId, ProjectFile>,
+}
+
+#[derive(Clone, Debug)]
+struct ProjectFile {
+    name: String,
+    index: FileIndex,
+}
+
+/// Program of a file of the project.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ProgramKey {
+    /// File.
+    pub file: FileId,
+    /// Index of the program in the file.
+    pub program: usize,
+}
+
+impl Project {
+    /// Creates a project without files.
+    pub fn new(settings: Settings) -> Self {
+        Self { settings, files: BTreeMap::new() }
+    }
+
+    /// Returns the settings of the control.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Changes the control; all files are read again.
+    pub fn set_settings(&mut self, settings: Settings) {
+        self.settings = settings;
+        for file in self.files.values_mut() {
+            file.index = FileIndex::new(file.index.text().clone(), &self.settings);
+        }
+    }
+
+    /// Adds a file, or replaces its text. Of the name only the last part counts: `O9810.nc` may omit its O word.
+    pub fn set_file(&mut self, file: FileId, name: impl Into<String>, text: impl Into<Bytes>) {
+        let index = FileIndex::new(text, &self.settings);
+        self.files.insert(file, ProjectFile { name: name.into(), index });
+    }
+
+    /// Applies one edit to a file; only the lines about it are read again.
+    pub fn edit_file(&mut self, file: FileId, edit: &TextEdit) {
+        if let Some(found) = self.files.get_mut(&file) {
+            found.index = found.index.edited(edit, &self.settings);
+        }
+    }
+
+    /// Removes a file.
+    pub fn remove_file(&mut self, file: FileId) {
+        self.files.remove(&file);
+    }
+
+    /// Returns the index of a file.
+    pub fn file(&self, file: FileId) -> Option<&FileIndex> {
+        self.files.get(&file).map(|found| &found.index)
+    }
+
+    /// Returns the name of a file.
+    pub fn file_name(&self, file: FileId) -> Option<&str> {
+        self.files.get(&file).map(|found| found.name.as_str())
+    }
+
+    /// Iterates over the files.
+    pub fn files(&self) -> impl Iterator<Item = (FileId, &FileIndex)> {
+        self.files.iter().map(|(id, file)| (*id, &file.index))
+    }
+
+    /// Iterates over all programs, by file.
+    pub fn programs(&self) -> impl Iterator<Item = (ProgramKey, &ProgramOutline)> {
+        self.files().flat_map(|(file, index)| {
+            let programs = index.programs().iter().enumerate();
+            programs.map(move |(program, outline)| (ProgramKey { file, program }, outline))
+        })
+    }
+
+    /// Returns a program.
+    pub fn program(&self, key: ProgramKey) -> Option<&ProgramOutline> {
+        self.file(key.file)?.programs().get(key.program)
+    }
+
+    /// Returns the program that contains an offset.
+    pub fn program_at(&self, file: FileId, offset: u32) -> Option<ProgramKey> {
+        let program = self.file(file)?.program_at(offset)?;
+        Some(ProgramKey { file, program })
+    }
+
+    /// Returns the name by which calls find a program: its own, or that of its file if it has none.
+    pub(crate) fn name_of(&self, key: ProgramKey) -> Option<ProgramName> {
+        let outline = self.program(key)?;
+        if outline.name != ProgramName::Unnamed {
+            return Some(outline.name.clone());
+        }
+        let is_only = self.file(key.file)?.programs().len() == 1;
+        let name = self.file_name(key.file).filter(|_| is_only)?;
+        let last = name.rsplit(['/', '\\']).next()?;
+        let stem = last.split('.').next()?.to_ascii_uppercase();
+        Some(ProgramName::of(stem)).filter(|name| matches!(name, ProgramName::Number(_)))
+    }
+
+    /// Returns the label of a program, `O8101`.
+    pub fn label(&self, key: ProgramKey) -> String {
+        let name = self.name_of(key).or_else(|| self.program(key).map(|program| program.name.clone()));
+        name.map_or_else(String::new, |name| name.label())
+    }
+
+    /// Returns all programs of a name that a call from a program may find, the first it finds first.
+    pub(crate) fn programs_named(&self, name: &ProgramName, from: FileId) -> Vec<ProgramKey> {
+        let keys = self.programs().map(|(key, _)| key);
+        let mut found: Vec<_> = keys.filter(|key| self.name_of(*key).as_ref() == Some(name)).collect();
+        found.sort_by_key(|key| (key.file != from, *key));
+        found
+    }
+
+    /// Returns the program that a call finds.
+    pub(crate) fn called_program(&self, from: FileId, target: &CalledProgramName) -> Option<ProgramKey> {
+        self.programs_named(&program_name(target)?, from).first().copied()
+    }
+
+    /// Iterates over the calls of a program.
+    pub(crate) fn calls_of(&self, key: ProgramKey) -> impl Iterator<Item = Call<'_>> {
+        let index = self.file(key.file).into_iter();
+        let entries = index.flat_map(move |index| index.program_entries(key.program));
+        entries.filter(|entry| entry.kind == EntryKind::Call).filter_map(|entry| entry.call())
+    }
+
+    /// Iterates over the calls of all programs.
+    pub(crate) fn all_calls(&self) -> impl Iterator<Item = (ProgramKey, Call<'_>)> {
+        self.programs().flat_map(|(key, _)| self.calls_of(key).map(move |call| (key, call)))
+    }
+
+    /// Iterates over the calls that go to a program.
+    pub(crate) fn calls_to(&self, key: ProgramKey) -> impl Iterator<Item = (ProgramKey, Call<'_>)> {
+        self.all_calls().filter(move |(from, call)| {
+            self.called_program(from.file, &call.record.target) == Some(key)
+        })
+    }
+
+    /// Returns the tree of the line of an offset, if it is a block.
+    pub(crate) fn block(&self, file: FileId, offset: u32) -> Option<Block> {
+        let text = self.file(file)?.text();
+        let line = line_range(text, offset);
+        let block = block_at(SOURCE, &text[..line.end as usize], line.start)?;
+        TextRange::from(block.span).overlaps(line).then_some(block)
+    }
+}
+
+/// Returns the name that a call states.
+pub(crate) fn program_name(target: &CalledProgramName) -> Option<ProgramName> {
+    match target {
+        CalledProgramName::Number(number) => Some(ProgramName::Number(*number)),
+        CalledProgramName::Name(name) => {
+            let last = name.rsplit('/').next().unwrap_or(name);
+            Some(ProgramName::of(last.to_owned()))
+        }
+        CalledProgramName::Computed | CalledProgramName::Missing => None,
+    }
+}

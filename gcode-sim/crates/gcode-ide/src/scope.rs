@@ -1,0 +1,76 @@
+//! Scope of variables: the macro level of a local, the project for a common.
+use gcode_lang::control::Settings;
+
+use crate::project::{ProgramKey, Project};
+
+/// Scope of a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VariableScope {
+    /// #0, always vacant.
+    Null,
+    /// #1 to #33 of a macro level.
+    Local,
+    /// Common to all programs.
+    Common,
+    /// System variable, or a number that no control has.
+    System,
+}
+
+impl VariableScope {
+    /// Returns the scope of a number on a control.
+    pub fn of(number: u32, settings: &Settings) -> Self {
+        match number {
+            0 => Self::Null,
+            1..=33 => Self::Local,
+            100..=199 | 500..=999 => Self::Common,
+            10_100..=10_199 | 10_500..=10_999 if settings.aliases_commons => Self::Common,
+            _ if settings.extra_commons.iter().any(|(from, to)| (*from..=*to).contains(&number)) => Self::Common,
+            _ => Self::System,
+        }
+    }
+
+    /// Returns the name in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Null => "null variable",
+            Self::Local => "local variable",
+            Self::Common => "common variable",
+            Self::System => "system variable",
+        }
+    }
+}
+
+/// Returns the number under which a common is stored: #10100 of a Haas is #100.
+pub(crate) fn canonical(number: u32, settings: &Settings) -> u32 {
+    match number {
+        10_100..=10_199 | 10_500..=10_999 if settings.aliases_commons => number - 10_000,
+        _ => number,
+    }
+}
+
+impl Project {
+    /// Returns the programs that share the locals of a program: those that it calls by M98 or that call it so, and on.
+    pub(crate) fn programs_of_level(&self, key: ProgramKey) -> Vec<ProgramKey> {
+        let links: Vec<_> = self
+            .all_calls()
+            .filter(|(_, call)| !call.record.has_own_locals)
+            .filter_map(|(from, call)| Some((from, self.called_program(from.file, &call.record.target)?)))
+            .collect();
+        let mut level = vec![key];
+        let mut next = 0;
+        while let Some(current) = level.get(next).copied() {
+            for (from, to) in &links {
+                let other = match current {
+                    _ if current == *from => to,
+                    _ if current == *to => from,
+                    _ => continue,
+                };
+                if !level.contains(other) {
+                    level.push(*other);
+                }
+            }
+            next += 1;
+        }
+        level
+    }
+}

@@ -1,0 +1,135 @@
+//! Runs of programs for an editor, with a limit: values of variables, deviations of holes.
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use gcode_control::{Limits, Outcome, Progress};
+use gcode_ide::{FileId, Project};
+use gcode_inspect::verify::Tolerances;
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::program::Library;
+use gcode_lang::source::Bytes;
+use gcode_part::{NominalPart, Reference};
+use gcode_session::{Request, Trace};
+
+use crate::failure::Failure;
+use crate::overlay::Overlay;
+use crate::program_setup::ProgramSetup;
+use crate::run_facts::{HoleDeviation, RunFacts};
+use crate::snapshot::Snapshot;
+
+/// Largest number of blocks that are executed for an editor.
+const MAX_BLOCKS: u64 = 300_000;
+
+/// Largest text that is run while it is edited, bytes.
+const MAX_TEXT: usize = 4 << 20;
+
+/// Returns the facts of the run of a file's program, or of the one that calls it.
+///
+/// # Errors
+/// An edit has made the run useless.
+pub(crate) fn facts(snapshot: &Snapshot, file: FileId) -> Result<Arc<RunFacts>, Failure> {
+    snapshot.runs.facts(file, |progress| run(snapshot, file, progress)).ok_or_else(Failure::outdated)
+}
+
+fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts {
+    let main = main_of(&snapshot.project, file);
+    let Some(text) = snapshot.project.file(main).map(|index| index.text().clone()) else {
+        return RunFacts::cut_off("the file is not open");
+    };
+    if MAX_TEXT < text.len() {
+        return RunFacts::cut_off("the file is too long to be run while it is edited");
+    }
+    let setup = snapshot.setup(main);
+    let request = request(&setup, text, progress);
+    let mut library = setup.library(&snapshot.files);
+    let mut trace = Trace::default();
+    let nominal = reference(&setup, &snapshot.files, &request, &mut library);
+    let metal = nominal.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
+    let simulated =
+        gcode_session::simulate_observed(&request, &mut library, metal, &mut (), &mut trace);
+    let simulation = match simulated {
+        Ok(simulation) => simulation,
+        Err(error) => return RunFacts::cut_off(error.to_string()),
+    };
+    let run = &simulation.run;
+    let memory = run.control.memory();
+    let path = snapshot.path(file);
+    let source = memory.sources().iter().find(|(_, source)| Path::new(&source.name) == path);
+    let source = source.map(|(id, _)| id);
+    let blocks = trace.blocks().filter(|executed| Some(executed.block.source) == source);
+    let holes = match &nominal {
+        Some(reference) if main == file => {
+            let verdict = simulation.verify(reference, Tolerances::of(reference, None), &request);
+            let tolerance = verdict.tolerance;
+            let is_own = |label: &str| {
+                let programs = snapshot.project.programs();
+                programs.filter(|(key, _)| key.file == file).any(|(key, _)| snapshot.project.label(key) == label)
+            };
+            let mut holes: BTreeMap<u32, HoleDeviation> = BTreeMap::new();
+            for hole in &verdict.holes {
+                let chain = std::iter::once(&hole.from).chain(&hole.calls);
+                let Some(origin) = chain.filter(|origin| is_own(&origin.program)).last() else { continue };
+                let deviation = HoleDeviation { phi: hole.position_deviation, tolerance, count: 0 };
+                let known = holes.entry(origin.line).or_insert(deviation);
+                known.phi = known.phi.max(deviation.phi);
+                known.count += 1;
+            }
+            holes
+        }
+        _ => BTreeMap::new(),
+    };
+    RunFacts {
+        blocks: blocks.cloned().collect(),
+        commons: run.control.variables().filter(|(number, _)| 33 < *number).collect(),
+        holes,
+        stop: run.stop_finding().map(|finding| sentence(&finding)),
+        is_cut_off: matches!(run.outcome, Outcome::Limit),
+        main: memory.get(memory.main()).label(),
+    }
+}
+
+/// Returns the message of a finding with its code in front, if it is an alarm's.
+fn sentence(finding: &Diagnostic) -> String {
+    format!("{}: {}", finding.code(), finding.message)
+}
+
+/// Returns the request of a run with the limits of an editor. The first M99 of the main program ends it.
+pub(crate) fn request(setup: &ProgramSetup, text: Bytes, progress: &Arc<Progress>) -> Request {
+    let mut request = setup.request(text);
+    request.limits = Limits { blocks: MAX_BLOCKS };
+    request.settings.main_program_cycles.get_or_insert(1);
+    request.progress = Some(Arc::clone(progress));
+    request
+}
+
+/// Returns the reference of a program that makes holes, if it has a usable one.
+fn reference(
+    setup: &ProgramSetup,
+    files: &Overlay,
+    request: &Request,
+    library: &mut impl Library,
+) -> Option<Reference> {
+    let text = files.host().reference(setup.paths.reference.as_deref()?).ok()?;
+    let mut reference = NominalPart::parse(&text).ok()?.into_holes()?;
+    gcode_session::complete_depths(request, library, &mut reference).ok()?;
+    Some(reference)
+}
+
+/// Returns the file with the main program that leads to a file: itself, if it ends a run or nothing calls it.
+pub(crate) fn main_of(project: &Project, file: FileId) -> FileId {
+    let mut seen = vec![file];
+    let mut next = 0;
+    while let Some(current) = seen.get(next).copied() {
+        let keys = project.programs().map(|(key, _)| key).filter(|key| key.file == current);
+        let callers: Vec<_> = keys.flat_map(|key| project.incoming_calls(key)).map(|group| group.item.key.file).collect();
+        let callers: Vec<_> = callers.into_iter().filter(|caller| *caller != current).collect();
+        if callers.is_empty() {
+            return current;
+        }
+        let unseen: Vec<_> = callers.into_iter().filter(|caller| !seen.contains(caller)).collect();
+        seen.extend(unseen);
+        next += 1;
+    }
+    file
+}

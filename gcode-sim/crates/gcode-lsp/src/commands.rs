@@ -1,0 +1,218 @@
+//! Commands of the lenses above a program: run, verify, show, debug; and renumber.
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use gcode_control::Progress;
+use gcode_ide::{FileId, ProgramKey};
+use gcode_lang::syntax::ast::ProgramPath;
+use gcode_session::Request;
+use lsp_types::{
+    CodeLens, CodeLensParams, Command, ExecuteCommandParams, MessageType, TextDocumentIdentifier, Uri, WorkspaceEdit,
+};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use crate::code_actions::NUMBERING;
+use crate::document_uri;
+use crate::edits::{renumber_edits, workspace_edit};
+use crate::failure::Failure;
+use crate::program_setup::ProgramSetup;
+use crate::snapshot::Snapshot;
+
+const RUN: &str = "gcode-sim.run";
+const VERIFY: &str = "gcode-sim.verify";
+const SHOW: &str = "gcode-sim.show";
+const DEBUG: &str = "gcode-sim.debug";
+const RENUMBER: &str = "gcode-sim.renumber";
+
+/// All commands, as the server announces them.
+pub(crate) const ALL: [&str; 5] = [RUN, VERIFY, SHOW, DEBUG, RENUMBER];
+
+/// Argument of each command: a program of a document.
+#[derive(Debug, Serialize, Deserialize)]
+struct Target {
+    uri: Uri,
+    /// `O1234`; the main program of the document without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    program: Option<String>,
+}
+
+/// Result of a command, and what the client is told beside it.
+#[derive(Debug)]
+pub(crate) struct CommandResult {
+    pub value: Value,
+    pub message: Option<(MessageType, String)>,
+    /// Page to open.
+    pub shown: Option<Uri>,
+    pub applied: Option<(String, WorkspaceEdit)>,
+}
+
+impl CommandResult {
+    fn new(value: Value) -> Self {
+        Self { value, message: None, shown: None, applied: None }
+    }
+}
+
+/// Returns the lenses of a file: above each program its commands, `verify` if there is a reference.
+pub(crate) fn code_lenses(snapshot: &Snapshot, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>, Failure> {
+    let file = snapshot.file(&params.text_document)?;
+    let text = snapshot.text_of(file)?;
+    let setup = snapshot.setup(file);
+    let mut lenses = Vec::new();
+    for (key, outline) in snapshot.project.programs().filter(|(key, _)| key.file == file) {
+        let range = text.range(outline.name_range.start, outline.name_range.end);
+        let is_named = !outline.name_range.is_empty();
+        let label = snapshot.project.label(key);
+        let target = Target { uri: params.text_document.uri.clone(), program: is_named.then_some(label) };
+        let commands = [("Run", RUN), ("Verify", VERIFY), ("Show", SHOW), ("Debug", DEBUG)];
+        let has_reference = setup.paths.reference.is_some();
+        for (title, command) in commands.into_iter().filter(|(_, name)| *name != VERIFY || has_reference) {
+            let arguments = Some(vec![json!(target)]);
+            let command = Command { title: title.to_owned(), command: command.to_owned(), arguments };
+            lenses.push(CodeLens { range, command: Some(command), data: None });
+        }
+    }
+    Ok(Some(lenses))
+}
+
+/// Executes a command.
+pub(crate) fn execute(
+    snapshot: &Snapshot,
+    params: ExecuteCommandParams,
+    progress: &Arc<Progress>,
+) -> Result<CommandResult, Failure> {
+    let name = params.command.as_str();
+    if !ALL.contains(&name) {
+        return Err(Failure::params(format!("unknown command {name}; there are {}", ALL.join(", "))));
+    }
+    let target = target(&params)?;
+    let file = snapshot.file(&TextDocumentIdentifier { uri: target.uri.clone() })?;
+    let setup = snapshot.setup(file);
+    let mut request = request(snapshot, &setup, file, &target)?;
+    request.progress = Some(Arc::clone(progress));
+    match name {
+        RUN => run(snapshot, &setup, &request),
+        VERIFY => verify(snapshot, &setup, &request),
+        SHOW => show(snapshot, &setup, &request),
+        DEBUG => Ok(CommandResult::new(launch(&setup, &target))),
+        _ => renumber(snapshot, file, &target, progress),
+    }
+}
+
+/// Reads the argument: a URI, or an object with `uri` and `program`.
+fn target(params: &ExecuteCommandParams) -> Result<Target, Failure> {
+    let usage = || format!("{}: give {{\"uri\": …, \"program\": \"O1234\"}} or a URI", params.command);
+    let argument = params.arguments.first().ok_or_else(|| Failure::params(usage()))?;
+    let target = match argument {
+        Value::String(_) => Uri::deserialize(argument).map(|uri| {
+            let program = params.arguments.get(1).and_then(Value::as_str).map(str::to_owned);
+            Target { uri, program }
+        }),
+        _ => Target::deserialize(argument),
+    };
+    target.map_err(|error| Failure::params(format!("{}: {error}", usage())))
+}
+
+fn request(
+    snapshot: &Snapshot,
+    setup: &ProgramSetup,
+    file: FileId,
+    target: &Target,
+) -> Result<Request, Failure> {
+    if let Some(fault) = setup.faults.first() {
+        return Err(Failure::refused(fault.clone()));
+    }
+    let text = snapshot.text_of(file)?.bytes().clone();
+    let mut request = setup.request(text);
+    if let Some(name) = &target.program {
+        let path = ProgramPath::parse(name);
+        request.main = Some(path.ok_or_else(|| Failure::params(format!("'{name}' is not a program: O1234")))?);
+    }
+    Ok(request)
+}
+
+fn run(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<CommandResult, Failure> {
+    let mut library = setup.library(&snapshot.files);
+    let report = snapshot.files.host().run_report(request, &mut library).map_err(Failure::refused)?;
+    let (kind, text) = match report.get("alarm").filter(|alarm| !alarm.is_null()) {
+        Some(alarm) => {
+            let part = |key: &str| alarm.get(key).map(plain).unwrap_or_default();
+            let place = format!("{} in line {} of {}", part("code"), part("line"), part("program"));
+            (MessageType::ERROR, format!("alarm {place}: {}", part("message")))
+        }
+        None => {
+            let part = |key: &str| report.get(key).map(plain).unwrap_or_default();
+            let counts = format!("{} blocks, {} moves, {} s", part("blocks"), part("moves"), part("seconds"));
+            match part("outcome").as_str() {
+                "limit" => (MessageType::WARNING, format!("a limit ended the run: {counts}")),
+                outcome => (MessageType::INFO, format!("{outcome}: {counts}")),
+            }
+        }
+    };
+    Ok(CommandResult { message: Some((kind, text)), ..CommandResult::new(report) })
+}
+
+/// Returns a value of a report as text.
+fn plain(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+fn verify(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<CommandResult, Failure> {
+    let no_reference = "no reference: name the program in [references] of gcode.toml, or put job.toml beside it";
+    let reference = setup.paths.reference.as_deref().ok_or_else(|| Failure::refused(no_reference))?;
+    let mut library = setup.library(&snapshot.files);
+    let report = snapshot.files.host().verdict_report(request, &mut library, reference);
+    let report = report.map_err(Failure::refused)?;
+    let part = |key: &str| report.get(key).map(plain).unwrap_or_default();
+    let is_pass = part("verdict") == "pass";
+    let kind = if is_pass { MessageType::INFO } else { MessageType::ERROR };
+    let worst = report.get("worst").and_then(Value::as_f64).map(|worst| format!(", worst Φ{worst:.4}"));
+    let text = format!("{}{} of Φ{}", part("verdict"), worst.unwrap_or_default(), part("tolerance"));
+    Ok(CommandResult { message: Some((kind, text)), ..CommandResult::new(report) })
+}
+
+fn show(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<CommandResult, Failure> {
+    let mut library = setup.library(&snapshot.files);
+    let reference = setup.paths.reference.as_deref();
+    let page: PathBuf =
+        snapshot.files.host().write_page(request, &mut library, reference).map_err(Failure::refused)?;
+    let uri = document_uri::of_path(&page);
+    let value = json!({ "path": page, "uri": uri });
+    let message = (!snapshot.client.has_show_document)
+        .then(|| (MessageType::INFO, format!("page: {}", page.display())));
+    Ok(CommandResult { shown: uri, message, ..CommandResult::new(value) })
+}
+
+/// Returns a launch configuration for `gcode-sim dap`.
+fn launch(setup: &ProgramSetup, target: &Target) -> Value {
+    let mut launch = json!({
+        "type": "gcode-sim",
+        "request": "launch",
+        "name": target.program.as_ref().map_or_else(|| "Debug".to_owned(), |program| format!("Debug {program}")),
+        "program": setup.path,
+        "library": setup.paths.libraries,
+        "stopOnEntry": true,
+    });
+    let paths = [("machine", &setup.paths.machine), ("reference", &setup.paths.reference)];
+    for (key, path) in paths.into_iter().filter_map(|(key, path)| Some((key, path.as_ref()?))) {
+        launch[key] = json!(path);
+    }
+    launch
+}
+
+fn renumber(
+    snapshot: &Snapshot,
+    file: FileId,
+    target: &Target,
+    progress: &Arc<Progress>,
+) -> Result<CommandResult, Failure> {
+    let mut programs = snapshot.project.programs().map(|(key, _)| key).filter(|key| key.file == file);
+    let is_target = |key: &ProgramKey| {
+        target.program.as_ref().is_none_or(|name| *name == snapshot.project.label(*key))
+    };
+    let program = programs.find(is_target).ok_or_else(|| Failure::params("the document has no such program"))?;
+    let edits = renumber_edits(snapshot, program, NUMBERING, progress).map_err(Failure::refused)?;
+    let edit = workspace_edit(snapshot, edits)?;
+    let applied = snapshot.client.has_apply_edit.then(|| ("Renumber".to_owned(), edit.clone()));
+    Ok(CommandResult { applied, ..CommandResult::new(json!(edit)) })
+}

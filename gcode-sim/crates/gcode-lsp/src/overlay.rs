@@ -1,0 +1,127 @@
+//! Files as the editor sees them: open documents cover those on the disk, and files that were read are kept until they change.
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use gcode_lang::program::Library;
+use gcode_lang::source::{Bytes, SourceId};
+use gcode_lang::syntax::ast::ProgramName;
+use gcode_lang::syntax::{FileItem, FileItems};
+use gcode_session::files::{FileAccess, FolderLibrary};
+
+use crate::host::Host;
+
+/// Files of the host under the open documents.
+#[derive(Clone)]
+pub(crate) struct Overlay {
+    host: Arc<dyn Host>,
+    /// Open documents by their paths.
+    open: Arc<BTreeMap<PathBuf, Bytes>>,
+    /// Files read from the host.
+    cache: Arc<Mutex<BTreeMap<PathBuf, CachedFile>>>,
+}
+
+struct CachedFile {
+    stamp: u64,
+    content: Result<Bytes, String>,
+    programs: Option<Arc<[ProgramName]>>,
+}
+
+impl Overlay {
+    pub(crate) fn new(host: Arc<dyn Host>) -> Self {
+        Self { host, open: Arc::default(), cache: Arc::default() }
+    }
+
+    pub(crate) fn host(&self) -> &dyn Host {
+        &*self.host
+    }
+
+    /// Covers a file by an open text.
+    pub(crate) fn open(&mut self, path: PathBuf, text: Bytes) {
+        Arc::make_mut(&mut self.open).insert(path, text);
+    }
+
+    /// Uncovers a file.
+    pub(crate) fn close(&mut self, path: &Path) {
+        Arc::make_mut(&mut self.open).remove(path);
+    }
+
+    /// Returns true if an open document covers a file.
+    pub(crate) fn is_open(&self, path: &Path) -> bool {
+        self.open.contains_key(path)
+    }
+
+    /// Returns the programs that are found from a file's own folder and in `folders`.
+    pub(crate) fn library(&self, folders: Vec<PathBuf>) -> impl Library + use<> {
+        FolderLibrary::of_folders(self.clone(), folders)
+    }
+
+    fn cache(&self) -> MutexGuard<'_, BTreeMap<PathBuf, CachedFile>> {
+        self.cache.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Returns what `value` takes of the current content of a file.
+    fn cached<T>(&self, path: &Path, value: impl FnOnce(&mut CachedFile) -> T) -> T {
+        let stamp = self.host.stamp(path).unwrap_or_default();
+        let mut cache = self.cache();
+        if let Some(file) = cache.get_mut(path).filter(|file| file.stamp == stamp) {
+            return value(file);
+        }
+        let mut file = CachedFile { stamp, content: self.host.program(path), programs: None };
+        let result = value(&mut file);
+        cache.insert(path.to_owned(), file);
+        result
+    }
+}
+
+impl FileAccess for Overlay {
+    fn program(&self, path: &Path) -> Result<Bytes, String> {
+        match self.open.get(path) {
+            Some(text) => Ok(text.clone()),
+            None => self.cached(path, |file| file.content.clone()),
+        }
+    }
+
+    fn text(&self, path: &Path) -> Result<String, String> {
+        match self.open.get(path) {
+            Some(text) => Ok(String::from_utf8_lossy(text).into_owned()),
+            None => self.host.text(path),
+        }
+    }
+
+    fn files(&self, folder: &Path) -> Result<Vec<PathBuf>, String> {
+        let mut files = self.host.files(folder)?;
+        let unsaved = self.open.keys().filter(|path| path.parent() == Some(folder));
+        files.extend(unsaved.cloned());
+        files.sort();
+        files.dedup();
+        Ok(files)
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        self.open.contains_key(path) || self.host.is_file(path)
+    }
+
+    fn canonical(&self, folder: &Path) -> Option<PathBuf> {
+        self.host.canonical(folder)
+    }
+
+    fn programs(&self, path: &Path) -> Result<Arc<[ProgramName]>, String> {
+        if let Some(text) = self.open.get(path) {
+            return Ok(programs_in(text));
+        }
+        self.cached(path, |file| {
+            let content = file.content.as_ref().map_err(Clone::clone)?;
+            Ok(Arc::clone(file.programs.get_or_insert_with(|| programs_in(content))))
+        })
+    }
+}
+
+fn programs_in(text: &[u8]) -> Arc<[ProgramName]> {
+    let items = FileItems::new(SourceId::default(), text);
+    let names = items.filter_map(|item| match item {
+        FileItem::Program { name, .. } => Some(name),
+        _ => None,
+    });
+    names.collect()
+}

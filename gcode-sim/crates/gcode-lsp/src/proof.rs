@@ -1,0 +1,254 @@
+//! Proof that an edit changes nothing: the programs run before and after, and everything that they do is compared.
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use gcode_control::{Limits, OperatorStop, Outcome, Progress};
+use gcode_ide::{FileEdit, FileId, TextEdit, apply_edits};
+use gcode_lang::alarm::AlarmCode;
+use gcode_lang::motion::{Event, EventKind, EventSink};
+use gcode_lang::source::{Bytes, Span};
+use gcode_lang::syntax::ast::{ProgramName, ProgramPath};
+use gcode_session::{Request, Run};
+
+use crate::background_run::main_of;
+use crate::snapshot::Snapshot;
+
+/// Largest number of blocks of a proof.
+const MAX_BLOCKS: u64 = 5_000_000;
+
+/// Number of events that go from one run to the other at once.
+const BATCH: usize = 1024;
+
+/// Number of batches on their way.
+const BATCHES: usize = 8;
+
+/// What an edit may change: values of variables that it renames.
+pub(crate) type RenamedVariables = BTreeSet<u32>;
+
+/// Runs the programs that an edit concerns, with and without it.
+///
+/// # Errors
+/// The reason why the edit is not proved to change nothing.
+pub(crate) fn prove(
+    snapshot: &Snapshot,
+    edits: &[FileEdit],
+    renamed: &RenamedVariables,
+    progress: &Arc<Progress>,
+) -> Result<(), String> {
+    let texts = edited_texts(snapshot, edits);
+    let mut edited = snapshot.clone();
+    for (file, text) in &texts {
+        let path = edited.path(*file);
+        edited.files.open(path, text.clone());
+    }
+    let mains: BTreeSet<FileId> = texts.keys().map(|file| main_of(&snapshot.project, *file)).collect();
+    for main in mains {
+        let Some(old) = snapshot.project.file(main).map(|index| index.text().clone()) else { continue };
+        let new = texts.get(&main).unwrap_or(&old);
+        for program in main_programs(snapshot, main) {
+            let request = |state: &Snapshot, text: &Bytes| {
+                let mut request = state.setup(main).request(text.clone());
+                request.main = program.clone();
+                request.limits = Limits { blocks: MAX_BLOCKS };
+                request.settings.main_program_cycles.get_or_insert(1);
+                request.progress = Some(Arc::clone(progress));
+                request
+            };
+            let old = Side { snapshot, file: main, request: request(snapshot, &old) };
+            let new = Side { snapshot: &edited, file: main, request: request(&edited, new) };
+            compare(&old, &new, renamed)?;
+        }
+    }
+    Ok(())
+}
+
+/// Returns the texts of the edited files.
+pub(crate) fn edited_texts(snapshot: &Snapshot, edits: &[FileEdit]) -> BTreeMap<FileId, Bytes> {
+    let mut by_file: BTreeMap<FileId, Vec<TextEdit>> = BTreeMap::new();
+    for FileEdit { file, edit } in edits {
+        by_file.entry(*file).or_default().push(edit.clone());
+    }
+    let text = |(file, mut edits): (FileId, Vec<TextEdit>)| {
+        edits.sort();
+        let text = snapshot.project.file(file)?.text();
+        Some((file, apply_edits(text, &edits).into()))
+    };
+    by_file.into_iter().filter_map(text).collect()
+}
+
+/// Returns the main programs of a file: those that no program of the file calls, all if there is none.
+fn main_programs(snapshot: &Snapshot, file: FileId) -> Vec<Option<ProgramPath>> {
+    let project = &snapshot.project;
+    let own: Vec<_> = project.programs().filter(|(key, _)| key.file == file).collect();
+    let is_called = |key| project.incoming_calls(key).iter().any(|group| group.item.key != key);
+    let mains: Vec<_> = own.iter().filter(|(key, _)| !is_called(*key)).collect();
+    if own.len() < 2 || mains.is_empty() {
+        return vec![None];
+    }
+    let path = |(_, outline): &&(_, &gcode_ide::ProgramOutline)| {
+        let is_named = outline.name != ProgramName::Unnamed;
+        is_named.then(|| ProgramPath { folder: outline.folder.clone(), name: outline.name.clone() })
+    };
+    mains.iter().map(path).collect()
+}
+
+/// One side of a comparison.
+struct Side<'a> {
+    snapshot: &'a Snapshot,
+    file: FileId,
+    request: Request,
+}
+
+impl Side<'_> {
+    fn run(&self, sink: &mut impl EventSink) -> Result<Run, String> {
+        let mut library = self.snapshot.setup(self.file).library(&self.snapshot.files);
+        let run = gcode_session::run(&self.request, &mut library, sink).map_err(|error| error.to_string())?;
+        match (&run.outcome, run.control.is_cancelled()) {
+            (Outcome::Limit, true) => Err("the run takes too long: it was ended before its end".to_owned()),
+            (Outcome::Limit, false) => {
+                let why = run.stop_finding().map(|finding| finding.message).unwrap_or_default();
+                Err(format!("the run does not end: {why}"))
+            }
+            _ => Ok(run),
+        }
+    }
+}
+
+/// Event without its place.
+type Action = (EventKind, u64);
+
+/// Compares two runs event by event, while both go on.
+fn compare(old: &Side<'_>, new: &Side<'_>, renamed: &RenamedVariables) -> Result<(), String> {
+    let (sender, receiver) = sync_channel(BATCHES);
+    let (old_run, new_run, first) = std::thread::scope(|scope| {
+        let old_run = scope.spawn(move || {
+            let mut recorder = ActionSender { sender: Some(sender), batch: Vec::new() };
+            let run = old.run(&mut recorder);
+            recorder.flush();
+            run
+        });
+        let comparer = RefCell::new(ActionComparer { receiver, batch: Vec::new().into_iter(), first: None });
+        let new_run = new.run(&mut SharedComparer(&comparer));
+        let mut comparer = comparer.into_inner();
+        let is_longer = comparer.first.is_none() && new_run.is_ok() && comparer.next().is_some();
+        let first = comparer.first.take();
+        // A sender that waits goes on.
+        drop(comparer);
+        let old_run = old_run.join().unwrap_or_else(|_| Err("the run failed".to_owned()));
+        (old_run, new_run, if is_longer { Some(None) } else { first.map(Some) })
+    });
+    let (old_run, new_run) = (old_run?, new_run?);
+    let line = |span: Span| new_run.locate(span);
+    match first {
+        Some(Some(span)) => {
+            let (program, line) = line(span);
+            return Err(format!("the machine would do something else from line {line} of {program} on"));
+        }
+        Some(None) => return Err("the machine would do less".to_owned()),
+        None => {}
+    }
+    let ends = [&old_run, &new_run].map(EndState::new);
+    let [old, new] = ends.map(|mut end| {
+        end.variables.retain(|(number, _)| !renamed.contains(number));
+        end
+    });
+    if old.alarm != new.alarm {
+        return Err("the run would end otherwise".to_owned());
+    }
+    if old.variables != new.variables {
+        let changed = old.variables.iter().chain(&new.variables);
+        let changed = changed.filter(|entry| old.variables.contains(entry) != new.variables.contains(entry));
+        let number = changed.map(|(number, _)| *number).min().unwrap_or_default();
+        return Err(format!("#{number} would have another value at the end"));
+    }
+    let is_same = old.output == new.output && old.stops == new.stops;
+    if is_same { Ok(()) } else { Err("the output of the program would change".to_owned()) }
+}
+
+/// End of a run, as far as it does not name places.
+struct EndState<'a> {
+    alarm: Option<AlarmCode>,
+    variables: Vec<(u32, u64)>,
+    output: &'a [Vec<u8>],
+    stops: &'a [OperatorStop],
+}
+
+impl<'a> EndState<'a> {
+    fn new(run: &'a Run) -> Self {
+        let alarm = match &run.outcome {
+            Outcome::Alarm(stopped) => Some(stopped.alarm.row().code),
+            Outcome::End | Outcome::Limit => None,
+        };
+        let variables = run.control.variables().map(|(number, value)| (number, value.to_bits())).collect();
+        Self { alarm, variables, output: run.control.output(), stops: run.control.stops() }
+    }
+}
+
+/// Sends the events of the old run.
+struct ActionSender {
+    /// `None` once nothing receives them.
+    sender: Option<SyncSender<Vec<Action>>>,
+    batch: Vec<Action>,
+}
+
+impl ActionSender {
+    fn flush(&mut self) {
+        let batch = std::mem::take(&mut self.batch);
+        if let Some(sender) = &self.sender
+            && sender.send(batch).is_err()
+        {
+            self.sender = None;
+        }
+    }
+}
+
+impl EventSink for ActionSender {
+    fn event(&mut self, event: &Event<'_>) {
+        self.batch.push((event.kind.clone(), event.seconds.0.to_bits()));
+        if self.batch.len() == BATCH {
+            self.flush();
+        }
+    }
+}
+
+/// Compares the events of the new run with those of the old one.
+struct ActionComparer {
+    receiver: Receiver<Vec<Action>>,
+    batch: std::vec::IntoIter<Action>,
+    /// Block of the first event that differs.
+    first: Option<Span>,
+}
+
+impl ActionComparer {
+    fn next(&mut self) -> Option<Action> {
+        loop {
+            if let Some(action) = self.batch.next() {
+                return Some(action);
+            }
+            self.batch = self.receiver.recv().ok()?.into_iter();
+        }
+    }
+}
+
+struct SharedComparer<'a>(&'a RefCell<ActionComparer>);
+
+impl EventSink for SharedComparer<'_> {
+    fn event(&mut self, event: &Event<'_>) {
+        let mut comparer = self.0.borrow_mut();
+        if comparer.first.is_some() {
+            return;
+        }
+        let old = comparer.next();
+        if old.is_none_or(|(kind, seconds)| kind != *event.kind || seconds != event.seconds.0.to_bits()) {
+            comparer.first = Some(event.block);
+        }
+    }
+}
+
+/// Ends the runs of a proof.
+pub(crate) fn cancel(progress: &Progress) {
+    progress.cancel.store(true, Ordering::Relaxed);
+}
