@@ -259,6 +259,10 @@ impl Control {
         &self.executor.registers.data.settings
     }
 
+    pub(super) fn set_outcome(&mut self, outcome: Option<Outcome>) {
+        self.outcome = outcome;
+    }
+
     /// Returns the end of the run; `None` while it continues.
     pub fn outcome(&self) -> Option<&Outcome> {
         self.outcome.as_ref()

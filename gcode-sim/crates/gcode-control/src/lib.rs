@@ -101,18 +101,23 @@ mod control;
 mod axis_word_use;
 mod block;
 mod call_execution;
+mod checkpoint;
+mod inspection;
 mod next_block;
+mod next_reads;
 mod residual_state;
 pub mod static_plan;
 mod unknown_position;
 
 pub mod slice;
 
+pub use self::checkpoint::Checkpoint;
 pub use self::control::{Control, Observer};
+pub use self::inspection::{Evaluation, StackedProgram};
 pub use self::next_block::{BlockCommands, UnsimulatedCodes, modal_code};
 pub use self::notes::Note;
 pub use self::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress, UnsetWorkOffset};
 pub use self::residual_state::{ResidualKind, ResidualValue, additional_system_name, mode_name};
 pub use self::state::{Modal, ModalWords, State};
 pub use self::statements::printable;
-pub use self::variables::{Value, Vars};
+pub use self::variables::{Locals, Value, Vars};

@@ -13,7 +13,7 @@ use gcode_lang::program::{OpIndex, ProgramId};
 use gcode_lang::source::Span;
 
 /// Values that differ between almost any two jumps of a run that ends.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Fingerprint {
     program: ProgramId,
     next: OpIndex,
@@ -25,7 +25,7 @@ struct Fingerprint {
 }
 
 /// Everything that can decide what the program does next; the record of the run can't.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct ControlSnapshot {
     registers: Registers,
     flow: ProgramFlow,
@@ -42,7 +42,7 @@ pub(super) struct BackJump {
     pub(super) from: Span,
 }
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct LoopDetector {
     fingerprint: Option<Fingerprint>,
     snapshot: Option<Box<ControlSnapshot>>,

@@ -106,7 +106,7 @@ impl Control {
     }
 
     /// Collects facts of the next operation; none if it is skipped or isn't lowered.
-    fn inspect_next<T: Default>(&self, collect: impl FnOnce(&Registers, &Op, &mut T)) -> T {
+    pub(super) fn inspect_next<T: Default>(&self, collect: impl FnOnce(&Registers, &Op, &mut T)) -> T {
         let mut facts = T::default();
         if let Some(op) = self.next_op().filter(|op| !self.executor.registers.is_skipped(op)) {
             self.executor.registers.without_side_effects(|registers| collect(registers, op, &mut facts));

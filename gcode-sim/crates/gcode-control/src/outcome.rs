@@ -182,6 +182,20 @@ pub(super) struct RunLog {
 }
 
 impl RunLog {
+    /// Returns a copy without stops and printed lines.
+    pub(super) fn without_lists(&self) -> Self {
+        let Self { stops: _, printed: _, builder_m_codes, notes, work_selected, unset_systems, .. } = self;
+        Self {
+            stops: Vec::new(),
+            printed: Vec::new(),
+            builder_m_codes: builder_m_codes.clone(),
+            notes: notes.clone(),
+            work_selected: work_selected.clone(),
+            unset_systems: unset_systems.clone(),
+            ..*self
+        }
+    }
+
     /// Records a note with its first block.
     pub(super) fn note(&mut self, note: Note, block: Span) {
         self.notes.entry(note).or_insert(block);

@@ -1,6 +1,7 @@
 //! Local and common variables, and the operands that wait in an expression. Vacant is neither 0 nor a number.
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{STACK, Slot};
@@ -143,7 +144,8 @@ pub(super) enum VariableClass {
 pub struct Vars {
     /// Locals of the current level and commons, by number; other slots are never written.
     direct_values: Box<[StoredValue; SLOTS]>,
-    extra_values: Vec<StoredValue>,
+    /// Shared by the checkpoints of a run until one of them is written.
+    extra_values: Arc<Vec<StoredValue>>,
     /// Locals of the callers' levels, the main program's first.
     outer_locals: Vec<Locals>,
     /// Numbers of further commons, in the order of their indices.
@@ -161,7 +163,7 @@ impl Vars {
         let count = extra_ranges.iter().map(|(from, to)| (to - from + 1) as usize).sum();
         Self {
             direct_values: Box::new([StoredValue::VACANT; SLOTS]),
-            extra_values: vec![StoredValue::VACANT; count],
+            extra_values: Arc::new(vec![StoredValue::VACANT; count]),
             outer_locals: Vec::new(),
             extra_ranges: extra_ranges.to_vec(),
             aliases_commons,
@@ -225,7 +227,7 @@ impl Vars {
     }
 
     /// Returns the numbers of the commons behind [`DIRECT_COUNT`], in the order of their indices.
-    fn extra_numbers(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(super) fn extra_numbers(&self) -> impl Iterator<Item = u32> + '_ {
         self.extra_ranges.iter().flat_map(|(from, to)| *from..=*to)
     }
 
@@ -255,7 +257,7 @@ impl Vars {
     pub(super) fn set(&mut self, index: usize, value: Value) {
         match index.checked_sub(DIRECT_COUNT) {
             None => self.direct_values[index] = value.into(),
-            Some(index) => self.extra_values[index] = value.into(),
+            Some(index) => Arc::make_mut(&mut self.extra_values)[index] = value.into(),
         }
     }
 
@@ -332,6 +334,18 @@ impl Vars {
         found.or_else(|| self.outer_bits().ne(other.outer_bits()).then_some(0))
     }
 
+    /// Returns the locals of a level below the current one.
+    pub(super) fn outer_level(&self, level: usize) -> Option<&Locals> {
+        self.outer_locals.get(level)
+    }
+
+    /// Sets a local of a level below the current one; false if there is no such level.
+    pub(super) fn set_outer_local(&mut self, level: usize, local: usize, value: Value) -> bool {
+        let Some(locals) = self.outer_locals.get_mut(level) else { return false };
+        locals.set(local, value, 0);
+        true
+    }
+
     fn outer_bits(&self) -> impl Iterator<Item = (u64, bool)> + '_ {
         self.outer_locals.iter().flat_map(|level| level.0.map(StoredValue::bits))
     }
@@ -345,7 +359,7 @@ impl Vars {
         let direct = (LOCALS..DIRECT_COUNT).map(|index| (index as u32, self.get(index)));
         let extra = self
             .extra_numbers()
-            .zip(&self.extra_values)
+            .zip(self.extra_values.iter())
             .map(|(number, stored)| (number, Value::from(*stored)));
         locals.chain(direct).chain(extra).filter_map(|(number, value)| Some((number, value.as_number()?)))
     }

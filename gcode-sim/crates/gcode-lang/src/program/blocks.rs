@@ -91,6 +91,15 @@ impl Blocks {
         self.ops.get(index & self.index_mask).filter(|op| op.ordinal as usize == index + 1)
     }
 
+    /// Takes the operation of a lowered block, which is then no longer lowered.
+    pub(super) fn take(&mut self, index: OpIndex) -> Option<OpKind> {
+        let slot = self.ops.get_mut(index & self.index_mask)?;
+        Some(match std::mem::take(slot).body {
+            OpBody::Plain(kind) => kind,
+            OpBody::Guarded(guarded) => guarded.kind,
+        })
+    }
+
     /// Returns all operations.
     ///
     /// Requires a preceding [`Blocks::lower_all`]; the slice is empty otherwise.

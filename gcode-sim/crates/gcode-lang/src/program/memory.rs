@@ -1,7 +1,7 @@
 //! Program memory of a control: the texts, and their programs by number and name.
 use std::collections::BTreeMap;
 
-use super::{Op, OpIndex, Program, outline};
+use super::{Op, OpIndex, OpKind, Program, outline};
 use crate::source::{Bytes, SourceId, Sources, Span};
 use crate::syntax::ast::{Folder, ProgramName, ProgramPath};
 
@@ -159,6 +159,11 @@ impl Memory {
     /// Lowers one block of a program; `None` after the last block.
     pub fn lower_block(&mut self, id: ProgramId, index: OpIndex) -> Option<&Op> {
         self.get_mut(id)?.lower_block(index).map(|(_, op)| op)
+    }
+
+    /// Lowers one block of a program and returns its operation without its guards.
+    pub(super) fn take_op(&mut self, id: ProgramId, index: OpIndex) -> Option<OpKind> {
+        self.get_mut(id)?.take_op(index)
     }
 
     /// Lowers all blocks of a program, as [`Program::ops`] requires.

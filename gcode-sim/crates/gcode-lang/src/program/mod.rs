@@ -10,6 +10,7 @@ mod bytecode;
 pub mod code_facts;
 pub mod cycles;
 mod dialect_syntax;
+mod expression;
 mod g_code_row;
 mod g_code_table;
 pub mod g_codes;
@@ -30,6 +31,7 @@ pub use bytecode::{
     UncommonOp,
 };
 pub use dialect_syntax::DialectSyntax;
+pub use expression::{Expression, parse_target};
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallCode, CallOp, CallTarget, LoweredWord, WordOperand, Words};
 
@@ -347,6 +349,13 @@ impl Program {
         }
         let program = &*self;
         program.blocks.op(index).map(|op| (program, op))
+    }
+
+    /// Lowers one block and takes its operation, without its guards.
+    fn take_op(&mut self, index: OpIndex) -> Option<OpKind> {
+        let Self { blocks, loops, .. } = self;
+        blocks.lower(index, loops)?;
+        blocks.take(index)
     }
 
     /// Returns an operation lowered by [`Program::lower_block`]; `None` if it is not, or no longer, lowered.
