@@ -57,7 +57,7 @@ impl Record {
         let mut all: Vec<Leg> = Vec::new();
         for next in self.path(machine, usize::MAX, usize::MAX) {
             match all.last_mut() {
-                Some(leg) if leg.kind == next.kind && leg.feed == next.feed && leg.moves < joined => {
+                Some(leg) if leg.kind == next.kind && is_same_feed(leg, &next) && leg.moves < joined => {
                     leg.steps = *leg.steps.start()..=*next.steps.end();
                     leg.moves += next.moves;
                     leg.is_of_hole |= next.is_of_hole;
@@ -121,6 +121,14 @@ impl Record {
         };
         let axes = self.first_commands.iter().flatten().filter(|first| first.what == CommandKind::Axis);
         axes.filter(|axis| !is_stated(&axis.name)).map(|axis| axis.moves + 1).max().unwrap_or(0)
+    }
+}
+
+/// Returns true if two moves have the same feed, to the rounding of a rate computed from a path and a time.
+fn is_same_feed(one: &Leg, other: &Leg) -> bool {
+    match (one.feed, other.feed) {
+        (Some(one), Some(other)) => (one - other).abs() <= 1e-9 * one.abs(),
+        (one, other) => one == other,
     }
 }
 
