@@ -1,6 +1,7 @@
 //! Entries of one block: its sequence number, jumps, calls, loops and variables.
 use gcode_lang::control::Dialect;
-use gcode_lang::program::{CallCode, CallTarget, OpKind, Words, lower_tree};
+use gcode_lang::program::{CallCode, CallTarget, LoweredWord, OpKind, WordOperand, Words, lower_tree};
+use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Block, Decimal, Expr, ExprKind, Item, Statement, Unreadable, Word, WordValue};
 use gcode_lint::{CalledProgramName, ValueUse, block_expressions, call_site, constant, variable};
 
@@ -142,7 +143,10 @@ fn record_words(builder: &mut ChunkBuilder<'_>, block: &Block) {
         }
     }
     if has_call {
-        match lower_tree(block).kind() {
+        // Words before unreadable text still say what is called.
+        let is_readable = |item: &&Item| !matches!(item, Item::Unreadable(_));
+        let items = block.items.iter().filter(is_readable).cloned().collect();
+        match lower_tree(&Block { items, ..block.clone() }).kind() {
             OpKind::Words(words) => record_call(builder, words, block),
             OpKind::If { then, .. } => {
                 if let OpKind::Words(words) = &**then {
@@ -235,27 +239,34 @@ fn record_call(builder: &mut ChunkBuilder<'_>, words: &Words, block: &Block) {
         has_own_locals: site.has_own_locals,
         is_modal: site.is_modal,
         arguments: arguments.collect(),
-        target_range: site.target_span.map(|span| builder.relative(span.into())),
+        target_range: site.target_span.or_else(|| name_span(block)).map(|span| builder.relative(span.into())),
         target: site.target,
         block: builder.relative(block.span.into()),
     };
     push_call(builder, record, site.span.into());
 }
 
+/// Returns the span of a word with the name of a program.
+fn name_span(block: &Block) -> Option<Span> {
+    block.items.iter().find_map(|item| match item {
+        Item::Word(Word { value: WordValue::Name(_), span, .. }) => Some(*span),
+        _ => None,
+    })
+}
+
 /// Returns the number of a word.
-fn literal(word: &gcode_lang::program::LoweredWord) -> Option<f64> {
-    use gcode_lang::program::WordOperand::{Code, G, Literal, Number, Variable};
+fn literal(word: &LoweredWord) -> Option<f64> {
     match word.value {
-        Literal(number) => Some(number.value()),
-        Number(number) => Some(number),
-        G(..) | Variable { .. } | Code(_) => None,
+        WordOperand::Literal(number) => Some(number.value()),
+        WordOperand::Number(number) => Some(number),
+        WordOperand::G(..) | WordOperand::Variable { .. } | WordOperand::Code(_) => None,
     }
 }
 
 /// Records where parameter input begins and ends.
 fn record_data_input(builder: &mut ChunkBuilder<'_>, words: &Words, block: TextRange) {
     let has_g = |code: u32| {
-        words.list.iter().any(|word| matches!(word.value, gcode_lang::program::WordOperand::G(c, _) if c == code))
+        words.list.iter().any(|word| matches!(word.value, WordOperand::G(c, _) if c == code))
     };
     if has_g(110) {
         builder.push(EntryKind::ParametersEnd, block, 0);

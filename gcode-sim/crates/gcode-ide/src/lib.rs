@@ -37,6 +37,8 @@ mod head_comment;
 mod hover;
 mod links;
 mod navigation;
+#[cfg(test)]
+mod navigation_tests;
 mod project;
 mod quick_fix;
 mod rename;
@@ -46,6 +48,8 @@ mod semantic_tokens;
 mod signature;
 mod symbol;
 mod symbols;
+#[cfg(test)]
+mod testing;
 mod text;
 
 pub use call_hierarchy::{CallGroup, CallItem};

@@ -1,8 +1,8 @@
 //! Definition and references of the symbol at a place.
 use gcode_lang::syntax::ast::ProgramName;
-use gcode_lint::CalledProgramName;
 
 use crate::entry::EntryKind;
+use crate::file_index::PlacedEntry;
 use crate::head_comment::meanings;
 use crate::project::{ProgramKey, Project, program_name};
 use crate::scope::{VariableScope, canonical};
@@ -142,35 +142,39 @@ impl Project {
 
     /// Returns a sequence number of a program and the jumps to it.
     pub(crate) fn number_references(&self, key: ProgramKey, number: u32) -> Vec<Reference> {
+        let places = self.sequence_numbers(key).into_iter().filter(|(other, _)| *other == number);
+        places.map(|(_, reference)| reference).collect()
+    }
+
+    /// Returns the sequence numbers of a program, and the jumps to them from the whole project.
+    pub(crate) fn sequence_numbers(&self, key: ProgramKey) -> Vec<(u32, Reference)> {
         let mut found = Vec::new();
-        let mut push = |key: ProgramKey, range: TextRange, access: Access| {
-            found.push(Reference { location: Location { file: key.file, range }, access });
+        let mut push = |key: ProgramKey, entry: &PlacedEntry<'_>, access: Access| {
+            let location = Location { file: key.file, range: entry.range };
+            found.push((entry.value, Reference { location, access }));
         };
         let is_main = self.calls_to(key).next().is_none();
-        let Some(index) = self.file(key.file) else { return found };
         let mut is_parameter = false;
-        for entry in index.program_entries(key.program) {
+        for entry in self.file(key.file).iter().flat_map(|index| index.program_entries(key.program)) {
             match entry.kind {
                 EntryKind::ParametersBegin => is_parameter = true,
                 EntryKind::ParametersEnd => is_parameter = false,
-                _ if entry.value != number => {}
-                EntryKind::Number if !is_parameter => push(key, entry.range, Access::Declaration),
-                EntryKind::Goto | EntryKind::LocalCall => push(key, entry.range, Access::Read),
-                EntryKind::ReturnTo if is_main => push(key, entry.range, Access::Read),
+                EntryKind::Number if !is_parameter => push(key, &entry, Access::Declaration),
+                EntryKind::Goto | EntryKind::LocalCall => push(key, &entry, Access::Read),
+                EntryKind::ReturnTo if is_main => push(key, &entry, Access::Read),
                 _ => {}
             }
         }
         for (other, _) in self.programs() {
             let Some(index) = self.file(other.file) else { continue };
-            let entries = index.program_entries(other.program).filter(|entry| entry.value == number);
-            for entry in entries {
+            for entry in index.program_entries(other.program) {
                 let programs = match entry.kind {
-                    EntryKind::ReturnTo => self.return_programs(other),
+                    EntryKind::ReturnTo if other != key => self.return_programs(other),
                     EntryKind::StartAt => self.started_programs(other, entry.range),
                     _ => continue,
                 };
-                if programs.contains(&key) && (entry.kind == EntryKind::StartAt || other != key) {
-                    push(other, entry.range, Access::Read);
+                if programs.contains(&key) {
+                    push(other, &entry, Access::Read);
                 }
             }
         }
@@ -267,9 +271,4 @@ impl Project {
             })
             .collect()
     }
-}
-
-/// Returns true if a call states its program by number or name.
-pub(crate) fn is_stated(target: &CalledProgramName) -> bool {
-    program_name(target).is_some()
 }

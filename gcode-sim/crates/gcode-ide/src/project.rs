@@ -1,5 +1,5 @@
 //! Files of a project with their indexes, and the programs that calls find in them.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::control::Settings;
 use gcode_lang::source::Bytes;
@@ -16,6 +16,8 @@ use crate::text::{FileId, SOURCE, TextEdit, TextRange, line_range};
 pub struct Project {
     settings: Settings,
     files: BTreeMap<FileId, ProjectFile>,
+    /// Programs by the name that calls state.
+    names: BTreeMap<ProgramName, BTreeSet<ProgramKey>>,
 }
 
 #[derive(Clone, Debug)]
@@ -36,7 +38,7 @@ pub struct ProgramKey {
 impl Project {
     /// Creates a project without files.
     pub fn new(settings: Settings) -> Self {
-        Self { settings, files: BTreeMap::new() }
+        Self { settings, ..Self::default() }
     }
 
     /// Returns the settings of the control.
@@ -50,24 +52,60 @@ impl Project {
         for file in self.files.values_mut() {
             file.index = FileIndex::new(file.index.text().clone(), &self.settings);
         }
+        // Where programs begin does not depend on the control.
     }
 
     /// Adds a file, or replaces its text. Of the name only the last part counts: `O9810.nc` may omit its O word.
     pub fn set_file(&mut self, file: FileId, name: impl Into<String>, text: impl Into<Bytes>) {
         let index = FileIndex::new(text, &self.settings);
+        self.remove_file(file);
         self.files.insert(file, ProjectFile { name: name.into(), index });
+        self.add_names(file);
     }
 
     /// Applies one edit to a file; only the lines about it are read again.
     pub fn edit_file(&mut self, file: FileId, edit: &TextEdit) {
+        let Some(found) = self.files.get_mut(&file) else { return };
+        let edited = found.index.edited(edit, &self.settings);
+        let names = |index: &FileIndex| index.programs().iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+        let has_same_names = names(&edited) == names(&found.index);
+        if !has_same_names {
+            self.remove_names(file);
+        }
         if let Some(found) = self.files.get_mut(&file) {
-            found.index = found.index.edited(edit, &self.settings);
+            found.index = edited;
+        }
+        if !has_same_names {
+            self.add_names(file);
         }
     }
 
     /// Removes a file.
     pub fn remove_file(&mut self, file: FileId) {
+        self.remove_names(file);
         self.files.remove(&file);
+    }
+
+    fn add_names(&mut self, file: FileId) {
+        let count = self.file(file).map_or(0, |index| index.programs().len());
+        for key in (0..count).map(|program| ProgramKey { file, program }) {
+            if let Some(name) = self.name_of(key) {
+                self.names.entry(name).or_default().insert(key);
+            }
+        }
+    }
+
+    fn remove_names(&mut self, file: FileId) {
+        let count = self.file(file).map_or(0, |index| index.programs().len());
+        for key in (0..count).map(|program| ProgramKey { file, program }) {
+            let Some(name) = self.name_of(key) else { continue };
+            if let Some(keys) = self.names.get_mut(&name) {
+                keys.remove(&key);
+                if keys.is_empty() {
+                    self.names.remove(&name);
+                }
+            }
+        }
     }
 
     /// Returns the index of a file.
@@ -125,15 +163,15 @@ impl Project {
 
     /// Returns all programs of a name that a call from a program may find, the first it finds first.
     pub(crate) fn programs_named(&self, name: &ProgramName, from: FileId) -> Vec<ProgramKey> {
-        let keys = self.programs().map(|(key, _)| key);
-        let mut found: Vec<_> = keys.filter(|key| self.name_of(*key).as_ref() == Some(name)).collect();
+        let mut found: Vec<_> = self.names.get(name).into_iter().flatten().copied().collect();
         found.sort_by_key(|key| (key.file != from, *key));
         found
     }
 
     /// Returns the program that a call finds.
     pub(crate) fn called_program(&self, from: FileId, target: &CalledProgramName) -> Option<ProgramKey> {
-        self.programs_named(&program_name(target)?, from).first().copied()
+        let keys = self.names.get(&program_name(target)?)?;
+        keys.iter().min_by_key(|key| (key.file != from, **key)).copied()
     }
 
     /// Iterates over the calls of a program.

@@ -1,0 +1,138 @@
+//! Tests of definitions, references, symbols, folding, calls and links.
+use crate::folding::FoldingKind;
+use crate::navigation::Access;
+use crate::symbols::DocumentSymbol;
+use crate::testing::fixture;
+use crate::text::FileId;
+
+fn defined(text: &str) -> Vec<String> {
+    let fixture = fixture(text);
+    let found = fixture.project.definition(fixture.file, fixture.offset);
+    let targets = found.into_iter().flat_map(|found| found.targets);
+    targets.map(|target| fixture.place(target.file, target.selection)).collect()
+}
+
+fn referred(text: &str) -> Vec<String> {
+    let fixture = fixture(text);
+    let found = fixture.project.references(fixture.file, fixture.offset, true).into_iter();
+    let shown = found.map(|reference| {
+        let sign = match reference.access {
+            Access::Declaration => "!",
+            Access::Read => "",
+            Access::Write => "=",
+        };
+        format!("{}{sign}", fixture.place(reference.location.file, reference.location.range))
+    });
+    shown.collect()
+}
+
+#[test]
+fn a_jump_leads_to_its_block() {
+    assert_eq!(defined("O1\nN10\nGOTO $0100\nN100 M30\nO2\nN100\n"), ["4:N100"]);
+    assert_eq!(defined("O1\nN5\nN5\nGOTO $05\nN5 M30\n"), ["5:N5"], "the next one");
+    assert_eq!(defined("O1\nN5\nN5\nGOTO $05\nM30\n"), ["2:N5"], "otherwise the first");
+    assert_eq!(defined("O1\nGOTO $05\nM30\nO2\nN5\n"), [""; 0]);
+    assert_eq!(defined("O1\nGOTO $0#1\nM30\n"), [""; 0]);
+    assert_eq!(defined("O1\nM98 P2\nN7 M30\nO2\nM99 P$07\n"), ["3:N7"], "in the caller");
+    assert_eq!(defined("O1\nM98 P2 Q$05\nN5 M30\nO2\nN5 M99\n"), ["5:N5"], "in the called program");
+    assert_eq!(defined("O1\n..5 X\nGOTO $05\nX..5\nN5 M30\n"), ["5:N5"], "about broken lines");
+}
+
+#[test]
+fn a_call_leads_to_its_program() {
+    let library = "//- O9001.nc\n%\nO9001(DRILL)\nM99\n%\n";
+    assert_eq!(defined(&format!("//- O1.nc\nO1\nG65 P9$0001 A1.\nM30\n{library}")), ["1:2:O9001"]);
+    assert_eq!(defined(&format!("//- O1.nc\nO1\nG$065 P9001 A1.\nM30\n{library}")), ["1:2:O9001"]);
+    assert_eq!(defined("//- O1.nc\nO1\nM98 P$09001\nM30\n//- sub/o9001.NC\nX1.\nM99\n"), ["1:1:"], "by the name of its file");
+    assert_eq!(defined("O1\nM98 P<SU$0B>\nM30\n<SUB>\nM99\n"), ["4:<SUB>"]);
+}
+
+#[test]
+fn a_variable_leads_to_its_value() {
+    assert_eq!(defined("O1\nX#$01\n#1=5\n#1=6\nM30\n"), ["3:#1"]);
+    assert_eq!(defined("//- O1.nc\nO1\nX#$0500\nM30\n//- O2.nc\nO2\n#500=1\nM30\n"), ["1:2:#500"]);
+    assert_eq!(defined("O9(T)\n(A #1 RADIUS)\nX#$01\nM99\n"), ["2:(A #1 RADIUS)"]);
+    assert_eq!(defined("O1\nG65 P9 R$05.\nM30\nO9\n(R #18 RADIUS)\nX#18\nM99\n"), ["5:(R #18 RADIUS)"]);
+    assert_eq!(defined("O1\nG65 P9 R$05.\nM30\nO9\nX#18\nM99\n"), ["5:#18"]);
+}
+
+#[test]
+fn references_are_told_apart_by_their_use() {
+    assert_eq!(
+        referred("O1\nG65 P9 A5.\n#1=2\nM30\nO9\n#2=#$01\nX#1 (#1)\nM99\n"),
+        ["2:A=", "6:#1", "7:#1"]
+    );
+    assert_eq!(
+        referred("//- O1.nc\nO1\n#5$000=1\nWHILE[#500 LT 2]DO1\n#500=#500+1\nEND1\n//- O2.nc\nO2\nDPRNT[#500[44]]\n"),
+        ["2:#500=", "3:#500", "4:#500=", "4:#500", "1:2:#500"]
+    );
+    assert_eq!(referred("O1\nN5\nIF[#1 EQ 1]GOTO 5\nGOTO $05\nO2\nGOTO 5\n"), ["2:N5!", "3:5", "4:5"]);
+    assert_eq!(referred("O1\nG65 P2\nM98 P2\nM30\n$0O2\nM99\n"), ["2:P2", "3:P2", "5:O2!"]);
+    assert_eq!(referred("O1\n#1=#$05021\nX[#_ABSMT[1]]\n"), ["2:#5021", "3:[#_ABSMT[1]]"]);
+}
+
+#[test]
+fn symbols_are_nested() {
+    let fixture = fixture("O1(TITLE)\nN10 G0\nWHILE[#1 LT 3]DO1\nN20 X#1\nEND1\nN30 M30\nO2\nDO2\n");
+    fn shown(symbols: &[DocumentSymbol]) -> String {
+        let each = symbols.iter().map(|s| format!("{}{}", s.name, shown(&s.children)));
+        let all = each.collect::<Vec<_>>().join(" ");
+        if all.is_empty() { all } else { format!("({all})") }
+    }
+    let symbols = fixture.project.document_symbols(FileId(0));
+    assert_eq!(shown(&symbols), "(O0001(N10 WHILE[#1 LT 3]DO1(N20) N30) O0002(DO2))");
+    assert_eq!((symbols[0].detail.as_str(), symbols[0].children[0].detail.as_str()), ("TITLE", "G0"));
+    fn check(symbols: &[DocumentSymbol], start: u32, end: u32) {
+        for symbol in symbols {
+            assert!(start <= symbol.range.start && symbol.range.end <= end, "{symbol:?}");
+            assert!(symbol.range.start <= symbol.selection.start && symbol.selection.end <= symbol.range.end);
+            check(&symbol.children, symbol.range.start, symbol.range.end);
+        }
+    }
+    check(&symbols, 0, u32::MAX);
+}
+
+#[test]
+fn symbols_of_the_project_are_found_by_name_and_title() {
+    let fixture = fixture("//- O1.nc\nO1(MAIN)\nN70\n//- O8101.nc\nO8101(ONE HOLE)\nM99\n");
+    let found = |query: &str| {
+        let symbols = fixture.project.workspace_symbols(query, 10).into_iter();
+        symbols.map(|symbol| symbol.name).collect::<Vec<_>>()
+    };
+    assert_eq!(found("hole"), ["O8101"]);
+    assert_eq!(found("o1"), ["O0001"], "its number");
+    assert_eq!(found("810"), ["O8101"]);
+    assert_eq!(found(""), ["O0001", "O8101"]);
+    assert_eq!(found("N7"), ["N70"]);
+}
+
+#[test]
+fn programs_loops_jumps_and_comments_fold() {
+    let text = "O1\n(A)\n(B)\nIF[#1 EQ 1]GOTO 5\nX1.\nN5 DO1\nX2.\nEND1\n(ONE)\nM30\n";
+    let fixture = fixture(text);
+    let found = fixture.project.folding_ranges(FileId(0)).into_iter();
+    let shown: Vec<_> = found.map(|folding| (folding.kind, fixture.text(FileId(0), folding.range))).collect();
+    assert_eq!(
+        shown,
+        [
+            (FoldingKind::Program, text.trim_end().to_owned()),
+            (FoldingKind::Comment, "(A)\n(B)".to_owned()),
+            (FoldingKind::If, "IF[#1 EQ 1]GOTO 5\nX1.".to_owned()),
+            (FoldingKind::Loop, "DO1\nX2.\nEND1".to_owned()),
+        ]
+    );
+}
+
+#[test]
+fn calls_and_links_go_both_ways() {
+    let fixture = fixture("//- O1.nc\nO1\nG65 P2\nM98 P2\nG65 P7\nM30\n//- O2.nc\nO$02(T)\nM98 P1\nM99\n");
+    let project = &fixture.project;
+    let item = project.call_item(fixture.file, fixture.offset).unwrap();
+    assert_eq!((item.name.as_str(), item.detail.as_str()), ("O0002", "T"));
+    let incoming = project.incoming_calls(item.key);
+    assert_eq!((incoming[0].item.name.as_str(), incoming[0].places.len()), ("O0001", 2));
+    let outgoing = project.outgoing_calls(item.key);
+    assert_eq!((outgoing[0].item.name.as_str(), fixture.text(FileId(1), outgoing[0].places[0])), ("O0001", "P1".into()));
+    let links = project.document_links(FileId(0));
+    assert_eq!(links.iter().map(|link| link.label.as_str()).collect::<Vec<_>>(), ["O0002", "O0002"]);
+}
