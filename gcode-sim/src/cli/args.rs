@@ -4,8 +4,7 @@ use clap::{Parser, Subcommand};
 
 use super::common::Colours;
 use super::{
-    budget, check, compare, diff, explain, holes, new, packaging, page_command, readings, reference, render,
-    run, schema, settings, sheet, test, verify,
+    budget, check, compare, diff, explain, holes, lsp, new, packaging, page_command, readings, reference, render, run, schema, settings, sheet, test, verify,
 };
 
 /// Executes Fanuc Custom Macro B programs as the control does, follows the tool on the part, and compares the holes
@@ -182,6 +181,15 @@ Examples:
   gcode-sim explain hole-position
   gcode-sim explain --list")]
     Explain(explain::Arguments),
+
+    /// Serve an editor: the Language Server Protocol 3.17 on standard input and output
+    #[command(after_help = "\
+Example:
+  gcode-sim lsp
+
+The editor starts it; docs/editors.md has the lines for Neovim, Helix and Emacs.
+Exit code 0 after shutdown and exit, 1 otherwise.")]
+    Lsp(lsp::Arguments),
 
     /// Write the JSON Schema (draft 2020-12) of a file or of a result to standard output
     #[command(after_help = "\

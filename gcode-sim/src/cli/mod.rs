@@ -9,9 +9,11 @@ mod diff;
 mod disk_files;
 mod explain;
 pub mod format;
+mod framing;
 mod holes;
 pub mod input;
 pub mod library;
+mod lsp;
 mod new;
 mod options;
 pub mod output;
@@ -145,6 +147,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::New(arguments) => new::run(&arguments),
         Command::Budget(arguments) => budget::run(&arguments),
         Command::Settings(arguments) => settings::run(&arguments),
+        Command::Lsp(arguments) => lsp::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(shell) => packaging::completions::<Arguments>(&shell),

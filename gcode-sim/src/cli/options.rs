@@ -7,6 +7,7 @@ use super::{UsageError, input, output, overwrite_guard, page, unused_machine};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_lang::motion::{Axes, AxisIndex};
+use gcode_lang::program::Library;
 use gcode_lang::syntax::ast::ProgramPath;
 use gcode_part::NominalPart;
 use gcode_part::ProbedPart;
@@ -160,7 +161,7 @@ pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
 pub(super) fn read_nominal(
     path: &Path,
     request: &Request,
-    folders: &mut Folders,
+    library: &mut impl Library,
 ) -> Result<NominalPart, UsageError> {
     let text = input::table(path)?;
     let mut nominal = NominalPart::parse(&text).map_err(|error| UsageError::in_toml(path, &error))?;
@@ -168,7 +169,7 @@ pub(super) fn read_nominal(
         if let Some(note) = &reference.note {
             output::print_message(&format!("note: {}: {note}\n", path.display()));
         }
-        gcode_session::complete_depths(request, folders, reference)?;
+        gcode_session::complete_depths(request, library, reference)?;
     }
     Ok(nominal)
 }

@@ -14,14 +14,12 @@ pub(crate) struct Client {
     pub has_related_information: bool,
     pub has_diagnostic_tags: bool,
     pub has_markdown_hover: bool,
-    pub has_markdown_completion: bool,
     pub has_markdown_signatures: bool,
     pub has_label_offsets: bool,
     pub has_show_document: bool,
     pub has_configuration: bool,
     pub can_register_watchers: bool,
     pub has_line_folding_only: bool,
-    pub has_hint_refresh: bool,
     pub has_apply_edit: bool,
 }
 
@@ -33,7 +31,6 @@ impl Client {
         let edit = workspace.and_then(|workspace| workspace.workspace_edit.as_ref());
         let actions = text.and_then(|text| text.code_action.as_ref());
         let diagnostics = text.and_then(|text| text.publish_diagnostics.as_ref());
-        let item = text.and_then(|text| text.completion.as_ref()?.completion_item.as_ref());
         let signature = text.and_then(|text| text.signature_help.as_ref()?.signature_information.as_ref());
         let has_markdown = |kinds: Option<&Vec<MarkupKind>>| kinds.is_some_and(|kinds| kinds.contains(&MarkupKind::Markdown));
         let symbols = text.and_then(|text| text.document_symbol.as_ref()?.hierarchical_document_symbol_support);
@@ -47,7 +44,6 @@ impl Client {
             has_related_information: is(diagnostics.and_then(|diagnostics| diagnostics.related_information)),
             has_diagnostic_tags: diagnostics.is_some_and(|diagnostics| diagnostics.tag_support.is_some()),
             has_markdown_hover: has_markdown(hover),
-            has_markdown_completion: has_markdown(item.and_then(|item| item.documentation_format.as_ref())),
             has_markdown_signatures: has_markdown(signature.and_then(|signature| signature.documentation_format.as_ref())),
             has_label_offsets: is(signature
                 .and_then(|signature| signature.parameter_information.as_ref()?.label_offset_support)),
@@ -57,7 +53,6 @@ impl Client {
             has_configuration: is(workspace.and_then(|workspace| workspace.configuration)),
             can_register_watchers: is(watchers.and_then(|watchers| watchers.dynamic_registration)),
             has_line_folding_only: is(text.and_then(|text| text.folding_range.as_ref()?.line_folding_only)),
-            has_hint_refresh: is(workspace.and_then(|workspace| workspace.inlay_hint.as_ref()?.refresh_support)),
             has_apply_edit: is(workspace.and_then(|workspace| workspace.apply_edit)),
         }
     }

@@ -26,8 +26,10 @@ const MAX_DIAGNOSTICS: usize = 5000;
 #[derive(Debug)]
 pub(crate) struct CheckedDocument {
     pub diagnostics: Vec<Diagnostic>,
-    /// Files on which the result rests, existing or not.
-    pub dependencies: BTreeSet<PathBuf>,
+    /// Files of the called programs.
+    pub called: BTreeSet<PathBuf>,
+    /// Files of the configuration, existing or not, and folders of called programs.
+    pub surroundings: BTreeSet<PathBuf>,
     /// Faults of the configuration.
     pub faults: Vec<String>,
     /// The document belongs to the project of a gcode.toml.
@@ -64,7 +66,8 @@ pub(crate) fn check(
     let called = sources.iter().skip(1).map(|(_, source)| PathBuf::from(&source.name));
     CheckedDocument {
         diagnostics,
-        dependencies: called.chain(setup.dependencies()).collect(),
+        called: called.collect(),
+        surroundings: setup.dependencies().chain(setup.folders()).collect(),
         faults: setup.faults.clone(),
         is_in_project: setup.project.folder().is_some(),
     }
@@ -86,7 +89,7 @@ impl FindingContext<'_> {
     fn diagnostic(&self, finding: &Finding) -> Diagnostic {
         let mut message = finding.message.clone();
         let notes = finding.notes.iter().map(|note| format!("note: {note}"));
-        let help = finding.help.iter().map(|help| format!("help: {help}"));
+        let help = finding.help.iter().map(|help| format!("{HELP}{help}"));
         for line in notes.chain(help) {
             message.push('\n');
             message.push_str(&line);
@@ -139,6 +142,14 @@ impl FindingContext<'_> {
 
 fn calling_blocks(calls: &CallChain) -> impl Iterator<Item = Span> {
     std::iter::successors(calls.as_deref(), |call| call.outer_calls.as_deref()).map(|call| call.calling_block)
+}
+
+/// Begins the line of a message that states the remedy.
+const HELP: &str = "help: ";
+
+/// Returns the remedy that the message of a diagnostic ends with.
+pub(crate) fn help_of(message: &str) -> Option<&str> {
+    message.lines().last().and_then(|line| line.strip_prefix(HELP))
 }
 
 /// Returns the tags of a rule: blocks that no path reaches are faded.

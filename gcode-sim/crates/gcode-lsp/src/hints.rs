@@ -1,6 +1,11 @@
 //! Inlay hints of a run: values of variables that a block has once and for all, deviations of holes at their calls.
+use std::sync::Arc;
+
+use gcode_control::Progress;
 use gcode_ide::TextRange;
 use gcode_lang::source::SourceId;
+use gcode_lang::syntax::ast::{Expr, ExprKind, Item, Statement};
+use gcode_lang::syntax::block_at;
 use gcode_session::{ExecutedBlock, VariableRole, VariableValues};
 use lsp_types::{InlayHint, InlayHintLabel, InlayHintParams, InlayHintTooltip};
 
@@ -16,6 +21,7 @@ const MAX_VALUES: usize = 4;
 pub(crate) fn inlay_hints(
     snapshot: &Snapshot,
     params: InlayHintParams,
+    _: &Arc<Progress>,
 ) -> Result<Option<Vec<InlayHint>>, Failure> {
     let file = snapshot.file(&params.text_document)?;
     let text = snapshot.text_of(file)?;
@@ -74,13 +80,24 @@ fn has_one_value(values: &VariableValues) -> bool {
     }
 }
 
-/// Returns true for a block whose assignment shows its value: `#1=2.5`.
+/// Returns true for a block of assignments that show their values: `#1=2.5`.
 fn assigns_literal(block: &[u8]) -> bool {
-    use gcode_lang::syntax::ast::{BlockBody, Expr};
-    let block = gcode_lang::syntax::block_at(SourceId::default(), block, 0);
-    let _ = block;
-    let _: Option<(BlockBody, Expr)> = None;
-    false
+    let Some(block) = block_at(SourceId::default(), block, 0) else { return false };
+    block.items.iter().all(|item| match item {
+        Item::Statement(statement) => match &statement.node {
+            Statement::Assign { value, .. } => is_literal(value),
+            _ => true,
+        },
+        _ => true,
+    })
+}
+
+fn is_literal(value: &Expr) -> bool {
+    match &value.kind {
+        ExprKind::Literal(_) => true,
+        ExprKind::Negate(value) | ExprKind::Plus(value) => is_literal(value),
+        _ => false,
+    }
 }
 
 fn deviation_text(deviation: &HoleDeviation) -> String {

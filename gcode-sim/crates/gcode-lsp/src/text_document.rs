@@ -104,11 +104,6 @@ impl TextDocument {
         (start.min(end), start.max(end))
     }
 
-    /// Returns the range of the whole text.
-    pub(crate) fn whole(&self) -> Range {
-        self.range(0, self.bytes.len() as u32)
-    }
-
     /// Returns a line without its end; the lines count from 0.
     pub(crate) fn line(&self, line: usize) -> &[u8] {
         let Some(start) = self.lines.get(line) else { return &[] };

@@ -1,4 +1,7 @@
 //! Answers with explanations: hover with values of the run, completion, signatures of macro calls.
+use std::sync::Arc;
+
+use gcode_control::Progress;
 use gcode_ide::{CompletionKind, FileId, Symbol, TextRange, VariableScope};
 use lsp_types::{
     CompletionItem, CompletionItemKind, CompletionList, CompletionParams, CompletionResponse, CompletionTextEdit,
@@ -11,14 +14,11 @@ use crate::failure::Failure;
 use crate::run_facts::{RunFacts, number_text, value_text};
 use crate::snapshot::Snapshot;
 
-/// Returns true if the answer to a hover needs a run: the place is a variable.
-pub(crate) fn needs_run(snapshot: &Snapshot, params: &HoverParams) -> bool {
-    let place = snapshot.place(&params.text_document_position_params).ok();
-    let symbol = place.and_then(|(file, offset)| snapshot.project.symbol_at(file, offset));
-    matches!(symbol, Some((Symbol::Variable { .. }, _)))
-}
-
-pub(crate) fn hover(snapshot: &Snapshot, params: HoverParams) -> Result<Option<Hover>, Failure> {
+pub(crate) fn hover(
+    snapshot: &Snapshot,
+    params: HoverParams,
+    _: &Arc<Progress>,
+) -> Result<Option<Hover>, Failure> {
     let (file, offset) = snapshot.place(&params.text_document_position_params)?;
     let Some(found) = snapshot.project.hover(file, offset) else { return Ok(None) };
     let text = snapshot.text_of(file)?;

@@ -1,0 +1,65 @@
+//! Checks in the background: the newest text of each document, the edited one first.
+use std::collections::BTreeMap;
+
+use crossbeam_channel::{Receiver, Sender, unbounded};
+use gcode_ide::FileId;
+use lsp_types::Uri;
+
+use crate::findings::{self, CheckedDocument};
+use crate::requests::guarded;
+use crate::snapshot::Snapshot;
+
+/// A document to check.
+pub(crate) struct CheckJob {
+    pub snapshot: Snapshot,
+    pub file: FileId,
+    /// The document itself has changed, not a program that it calls.
+    pub is_edited: bool,
+}
+
+/// Result of a check.
+pub(crate) struct CheckAnswer {
+    pub file: FileId,
+    pub uri: Uri,
+    /// Version of the checked document; `None` for a file of the disk.
+    pub version: Option<i32>,
+    pub checked: CheckedDocument,
+}
+
+/// Starts the thread that checks. It ends with the last sender of jobs.
+pub(crate) fn start(answers: impl Fn(CheckAnswer) + Send + 'static) -> Sender<CheckJob> {
+    let (sender, receiver) = unbounded();
+    std::thread::spawn(move || work(&receiver, answers));
+    sender
+}
+
+fn work(receiver: &Receiver<CheckJob>, answers: impl Fn(CheckAnswer)) {
+    let mut jobs: BTreeMap<FileId, CheckJob> = BTreeMap::new();
+    loop {
+        if jobs.is_empty() {
+            let Ok(job) = receiver.recv() else { return };
+            jobs.insert(job.file, job);
+        }
+        while let Ok(mut job) = receiver.try_recv() {
+            let waits_as_edited = jobs.get(&job.file).is_some_and(|waiting| waiting.is_edited);
+            job.is_edited |= waits_as_edited;
+            jobs.insert(job.file, job);
+        }
+        let edited = jobs.values().find(|job| job.is_edited).or_else(|| jobs.values().next());
+        let Some(file) = edited.map(|job| job.file) else { continue };
+        let answer = jobs.remove(&file).and_then(|job| check(&job));
+        answer.into_iter().for_each(&answers);
+    }
+}
+
+fn check(job: &CheckJob) -> Option<CheckAnswer> {
+    let CheckJob { snapshot, file, .. } = job;
+    let (text, uri) = (snapshot.text(*file)?, snapshot.uri(*file)?);
+    let check = || {
+        let setup = snapshot.setup(*file);
+        Ok(findings::check(uri, &text, &setup, &snapshot.files, &snapshot.client))
+    };
+    let checked = guarded("check", check).ok()?;
+    let version = snapshot.documents.get(file).map(|document| document.version);
+    Some(CheckAnswer { file: *file, uri: uri.clone(), version, checked })
+}

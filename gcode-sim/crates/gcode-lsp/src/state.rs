@@ -1,0 +1,339 @@
+//! State of the server: the snapshot that requests work on, the work in the background, and what the client was told.
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crossbeam_channel::Sender;
+use gcode_control::Progress;
+use gcode_ide::FileId;
+use gcode_lang::control::Settings;
+use lsp_server::{Message, Notification, Request, RequestId, Response};
+use lsp_types::notification::{Notification as _, PublishDiagnostics, ShowMessage};
+use lsp_types::{Diagnostic, MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri};
+
+use crate::checker::{self, CheckAnswer, CheckJob};
+use crate::commands::CommandResult;
+use crate::document_uri;
+use crate::failure::Failure;
+use crate::host::Host;
+use crate::overlay::Overlay;
+use crate::proof;
+use crate::runs::Runs;
+use crate::snapshot::Snapshot;
+use crate::workspace_scan;
+
+/// Largest size of a program beside an open one that is read with it, bytes.
+const MAX_NEIGHBOUR: usize = 16 << 20;
+
+/// Largest number of programs that are read with one that is opened.
+const MAX_NEIGHBOURS: usize = 500;
+
+/// Result of work in the background.
+pub(crate) enum BackgroundAnswer {
+    Checked(CheckAnswer),
+    Answered(Response),
+    Executed(RequestId, Result<CommandResult, Failure>),
+    /// Program files of the workspace; the last one is empty.
+    Scanned(Vec<PathBuf>),
+}
+
+/// State of the server.
+pub(crate) struct ServerState {
+    pub snapshot: Snapshot,
+    /// Requests in the background.
+    pub pending: BTreeMap<RequestId, Arc<Progress>>,
+    /// Requests that wait for the scan of the workspace.
+    pub waiting: Vec<Request>,
+    pub is_scanning: bool,
+    /// Requests to the client whose answer matters: configuration.
+    pub configuration_requests: BTreeSet<RequestId>,
+    pub background: Sender<BackgroundAnswer>,
+    out: Sender<Message>,
+    checks: Sender<CheckJob>,
+    next_request: i32,
+    /// Control of each document.
+    settings: BTreeMap<FileId, Settings>,
+    /// On what the diagnostics of each document rest.
+    checked: BTreeMap<FileId, CheckBasis>,
+    /// Faults of the configuration that were shown.
+    shown_faults: BTreeSet<String>,
+}
+
+/// On what a check rests.
+struct CheckBasis {
+    called: BTreeSet<PathBuf>,
+    surroundings: BTreeSet<PathBuf>,
+    is_in_project: bool,
+    /// Stamps of all these files.
+    stamps: BTreeMap<PathBuf, Option<u64>>,
+}
+
+impl ServerState {
+    pub(crate) fn new(
+        host: Arc<dyn Host>,
+        out: Sender<Message>,
+        background: Sender<BackgroundAnswer>,
+    ) -> Self {
+        let answers = background.clone();
+        let checks = checker::start(move |answer| _ = answers.send(BackgroundAnswer::Checked(answer)));
+        Self {
+            snapshot: Snapshot::new(Overlay::new(host)),
+            pending: BTreeMap::new(),
+            waiting: Vec::new(),
+            is_scanning: false,
+            configuration_requests: BTreeSet::new(),
+            background,
+            out,
+            checks,
+            next_request: 0,
+            settings: BTreeMap::new(),
+            checked: BTreeMap::new(),
+            shown_faults: BTreeSet::new(),
+        }
+    }
+
+    /// Sends a message. A client that is gone reads none, and the end of its messages ends the server.
+    pub(crate) fn send(&self, message: impl Into<Message>) {
+        _ = self.out.send(message.into());
+    }
+
+    pub(crate) fn notify<N: lsp_types::notification::Notification>(&self, params: N::Params) {
+        self.send(Notification::new(N::METHOD.to_owned(), params));
+    }
+
+    /// Sends a request to the client and returns its id.
+    pub(crate) fn ask<R: lsp_types::request::Request>(&mut self, params: R::Params) -> RequestId {
+        let id = RequestId::from(format!("gcode-sim {}", self.next_request));
+        self.next_request += 1;
+        self.send(Request::new(id.clone(), R::METHOD.to_owned(), params));
+        id
+    }
+
+    pub(crate) fn show_message(&self, typ: MessageType, message: String) {
+        self.send(Notification::new(ShowMessage::METHOD.to_owned(), ShowMessageParams { typ, message }));
+    }
+
+    /// Ends the runs of the texts before a change.
+    fn outdate_runs(&mut self) {
+        let old = std::mem::replace(&mut self.snapshot.runs, Arc::new(Runs::default()));
+        old.outdate();
+    }
+
+    /// Schedules the check of a document.
+    fn check(&self, file: FileId, is_edited: bool) {
+        _ = self.checks.send(CheckJob { snapshot: self.snapshot.clone(), file, is_edited });
+    }
+
+    /// Takes over an opened document.
+    pub(crate) fn open(&mut self, uri: Uri, version: i32, text: String) {
+        let file = self.snapshot.number(&uri);
+        self.take_settings(file);
+        self.use_settings(file);
+        let file = self.snapshot.open(uri, version, text);
+        self.read_neighbours(file);
+        self.changed(file, true);
+    }
+
+    /// Reads the programs of the folders in which the programs that a document calls are found.
+    fn read_neighbours(&mut self, file: FileId) {
+        use gcode_session::files::FileAccess;
+        if document_uri::path(&self.snapshot.documents[&file].uri).is_none() && self.snapshot.folders.is_empty() {
+            return;
+        }
+        let mut left = MAX_NEIGHBOURS;
+        for folder in self.snapshot.setup(file).folders() {
+            for path in self.snapshot.files.files(&folder).unwrap_or_default() {
+                let is_known = document_uri::of_path(&path).is_some_and(|uri| {
+                    self.snapshot.known(&uri).is_some_and(|file| self.snapshot.project.file(file).is_some())
+                });
+                if is_known || !workspace_scan::is_program(&path, &self.snapshot.files) {
+                    continue;
+                }
+                let is_small = self.snapshot.files.program(&path).is_ok_and(|text| text.len() < MAX_NEIGHBOUR);
+                if is_small && 0 < left {
+                    left -= 1;
+                    self.snapshot.read(&path);
+                }
+            }
+        }
+    }
+
+    /// Takes over the changes of a document.
+    pub(crate) fn change(
+        &mut self,
+        uri: &Uri,
+        version: i32,
+        changes: Vec<lsp_types::TextDocumentContentChangeEvent>,
+    ) {
+        let Some(file) = self.snapshot.known(uri).filter(|file| self.snapshot.documents.contains_key(file)) else {
+            return;
+        };
+        self.use_settings(file);
+        let names = |state: &Self| {
+            let programs = state.snapshot.project.file(file).map(|index| index.programs().to_vec());
+            programs.unwrap_or_default().into_iter().map(|program| program.name).collect::<Vec<_>>()
+        };
+        let before = names(self);
+        self.snapshot.change(file, version, changes);
+        let has_other_programs = before != names(self);
+        self.changed(file, has_other_programs);
+    }
+
+    /// Closes a document. Its diagnostics stay if it belongs to a project, those of the file on the disk.
+    pub(crate) fn close(&mut self, uri: &Uri) {
+        let Some(file) = self.snapshot.known(uri) else { return };
+        let is_in_project = self.checked.get(&file).is_some_and(|basis| basis.is_in_project);
+        if self.snapshot.close(uri).is_none() {
+            return;
+        }
+        if is_in_project && self.snapshot.project.file(file).is_some() {
+            self.changed(file, true);
+        } else {
+            self.checked.remove(&file);
+            Arc::make_mut(&mut self.snapshot.published).remove(&file);
+            self.publish(uri.clone(), None, Vec::new());
+            self.changed_beside(file, true);
+            self.outdate_runs();
+        }
+    }
+
+    /// Has everything computed anew that rests on a text.
+    fn changed(&mut self, file: FileId, has_other_programs: bool) {
+        self.outdate_runs();
+        self.check(file, true);
+        self.changed_beside(file, has_other_programs);
+    }
+
+    /// Checks the documents that call programs of a file, and with other programs those that might.
+    fn changed_beside(&self, file: FileId, has_other_programs: bool) {
+        let path = self.snapshot.path(file);
+        for (other, basis) in self.checked.iter().filter(|(other, _)| **other != file) {
+            let is_near = || path.parent().is_some_and(|folder| basis.surroundings.contains(folder));
+            if basis.called.contains(&path) || has_other_programs && is_near() {
+                self.check(*other, false);
+            }
+        }
+    }
+
+    /// Reads changed files of the disk and checks what rests on them.
+    pub(crate) fn changed_on_disk(&mut self, paths: &[PathBuf]) {
+        for path in paths {
+            if workspace_scan::is_program(path, &self.snapshot.files) || self.is_indexed(path) {
+                self.snapshot.read(path);
+            }
+        }
+        self.outdate_runs();
+        let files: Vec<_> = self.snapshot.documents.keys().chain(self.checked.keys()).copied().collect();
+        let files: BTreeSet<_> = files.into_iter().collect();
+        for file in files {
+            self.take_settings(file);
+            if self.snapshot.documents.contains_key(&file) || self.checked.contains_key(&file) {
+                self.check(file, false);
+            }
+        }
+    }
+
+    fn is_indexed(&self, path: &Path) -> bool {
+        document_uri::of_path(path).is_some_and(|uri| self.snapshot.known(&uri).is_some())
+    }
+
+    /// Looks for changes on the disk, also where the client reports none.
+    pub(crate) fn poll_disk(&mut self) {
+        let host = self.snapshot.files.host();
+        let stamps = self.checked.values().flat_map(|basis| &basis.stamps);
+        let changed = stamps.filter(|(path, stamp)| host.stamp(path) != **stamp).map(|(path, _)| path.clone());
+        let changed: BTreeSet<_> = changed.filter(|path| !self.snapshot.files.is_open(path)).collect();
+        if changed.is_empty() {
+            return;
+        }
+        for basis in self.checked.values_mut() {
+            basis.stamps.retain(|path, _| !changed.contains(path));
+        }
+        let in_folders = changed.iter().flat_map(|path| {
+            use gcode_session::files::FileAccess;
+            self.snapshot.files.files(path).unwrap_or_default()
+        });
+        let new = in_folders.filter(|path| !self.is_indexed(path)).collect::<Vec<_>>();
+        let all: Vec<_> = changed.into_iter().chain(new).collect();
+        self.changed_on_disk(&all);
+    }
+
+    /// Notes the control of a document.
+    fn take_settings(&mut self, file: FileId) {
+        let settings = self.snapshot.setup(file).settings;
+        self.settings.insert(file, settings);
+    }
+
+    /// Has the index read for the control of a document.
+    pub(crate) fn use_settings(&mut self, file: FileId) {
+        if let Some(settings) = self.settings.get(&file).filter(|settings| *settings != self.snapshot.project.settings()) {
+            Arc::make_mut(&mut self.snapshot.project).set_settings(settings.clone());
+        }
+    }
+
+    /// Has all documents checked with other settings of the editor.
+    pub(crate) fn settings_changed(&mut self) {
+        self.changed_on_disk(&[]);
+    }
+
+    /// Publishes the result of a check, unless the document has changed since.
+    pub(crate) fn publish_check(&mut self, answer: CheckAnswer) {
+        let CheckAnswer { file, uri, version, checked } = answer;
+        let open = self.snapshot.documents.get(&file).map(|document| document.version);
+        if open != version {
+            return;
+        }
+        for fault in checked.faults {
+            if self.shown_faults.insert(fault.clone()) {
+                self.show_message(MessageType::WARNING, fault);
+            }
+        }
+        let host = self.snapshot.files.host();
+        let files = checked.called.iter().chain(&checked.surroundings);
+        let stamps = files.map(|path| (path.clone(), host.stamp(path))).collect();
+        let (called, surroundings, is_in_project) = (checked.called, checked.surroundings, checked.is_in_project);
+        self.checked.insert(file, CheckBasis { called, surroundings, is_in_project, stamps });
+        let published = Arc::new(checked.diagnostics.clone());
+        Arc::make_mut(&mut self.snapshot.published).insert(file, published);
+        self.publish(uri, version, checked.diagnostics);
+    }
+
+    fn publish(&self, uri: Uri, version: Option<i32>, diagnostics: Vec<Diagnostic>) {
+        let params = PublishDiagnosticsParams { uri, diagnostics, version };
+        self.send(Notification::new(PublishDiagnostics::METHOD.to_owned(), params));
+    }
+
+    /// Starts to read the programs of the workspace's folders.
+    pub(crate) fn start_scan(&mut self) {
+        if self.snapshot.folders.is_empty() {
+            return;
+        }
+        self.is_scanning = true;
+        let (files, folders) = (self.snapshot.files.clone(), Arc::clone(&self.snapshot.folders));
+        let answers = self.background.clone();
+        std::thread::spawn(move || {
+            let mut batch = Vec::new();
+            workspace_scan::scan(&files, &folders, |path| {
+                batch.push(path);
+                if batch.len() == 16 {
+                    _ = answers.send(BackgroundAnswer::Scanned(std::mem::take(&mut batch)));
+                }
+            });
+            if !batch.is_empty() {
+                _ = answers.send(BackgroundAnswer::Scanned(batch));
+            }
+            _ = answers.send(BackgroundAnswer::Scanned(Vec::new()));
+        });
+    }
+
+    /// Ends a request in the background and answers it as cancelled.
+    pub(crate) fn cancel(&mut self, id: &RequestId) {
+        let waits = self.waiting.iter().any(|request| request.id == *id);
+        self.waiting.retain(|request| request.id != *id);
+        let progress = self.pending.remove(id);
+        progress.iter().for_each(|progress| proof::cancel(progress));
+        if waits || progress.is_some() {
+            self.send(Failure::cancelled().response(id.clone()));
+        }
+    }
+}
