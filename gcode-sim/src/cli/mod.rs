@@ -5,6 +5,7 @@ mod check;
 pub mod common;
 mod compare;
 mod conditions;
+mod dap;
 mod diff;
 mod explain;
 pub mod format;
@@ -143,6 +144,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Budget(arguments) => budget::run(&arguments),
         Command::Settings(arguments) => settings::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
+        Command::Dap => dap::run(),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(shell) => packaging::completions::<Arguments>(&shell),
         Command::Man(folder) => packaging::man::<Arguments>(&folder),
