@@ -173,6 +173,23 @@ Examples:
   gcode-sim settings --format json")]
     Settings(settings::Arguments),
 
+    /// Debug a program from an editor, forwards and backwards: the Debug Adapter Protocol over standard input and output
+    #[command(after_help = "\
+An editor starts this command and sends requests; docs/debugger.md has the configuration of VS Code, Neovim and Emacs.
+
+Keys of the launch request:
+  program      path of the program
+  mainProgram  O number of the main program in a file with several
+  machine      path of the machine file
+  library      folders of called programs
+  control      settings as `gcode-sim settings` lists them, {\"NAT\": 1}
+  variables    values before the start, {\"#500\": 12.5}
+  reference    hole list or job file, for stops at bad holes
+  stopOnEntry  stop in front of the first block
+
+gcode.toml and machine.toml count as for the other commands; the launch wins.")]
+    Dap,
+
     /// Explain an alarm or finding, with an example and a fix
     #[command(after_help = "\
 Examples:

@@ -5,6 +5,7 @@ mod check;
 pub mod common;
 mod compare;
 mod conditions;
+mod dap;
 mod diff;
 mod disk_files;
 mod explain;
@@ -149,6 +150,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Settings(arguments) => settings::run(&arguments),
         Command::Lsp(arguments) => lsp::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
+        Command::Dap => dap::run(),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(shell) => packaging::completions::<Arguments>(&shell),
         Command::Man(folder) => packaging::man::<Arguments>(&folder),

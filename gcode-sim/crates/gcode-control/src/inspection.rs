@@ -9,7 +9,7 @@ use super::variables::{Locals, Value, VariableClass, Vars};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{CallChain, Position};
 use gcode_lang::program::{
-    ArgumentLocals, AssignmentTarget, CallCode, Expression, OpKind, ProgramId, Slot, argument_letter,
+    ArgumentLocals, AssignmentTarget, CallCode, Expression, Op, OpKind, ProgramId, Slot, argument_letter,
 };
 use gcode_lang::source::Span;
 
@@ -56,6 +56,16 @@ impl Control {
         self.executor.flow.callers.len()
     }
 
+    /// Returns the program at work.
+    pub fn program_at_work(&self) -> ProgramId {
+        self.executor.flow.frame.program
+    }
+
+    /// Returns the sequence number of [`Control::next_block`].
+    pub fn next_number(&self) -> Option<u32> {
+        self.next_op()?.number
+    }
+
     /// Returns the program at work and its callers, innermost first. The next block has to be lowered by
     /// [`Control::next_block`].
     pub fn call_stack(&self) -> Vec<StackedProgram> {
@@ -86,9 +96,8 @@ impl Control {
     /// Returns true if [`Control::next_block`] has neither words nor a statement nor a sequence number: an empty line or a
     /// comment.
     pub fn is_next_empty(&self) -> bool {
-        let CallFrame { program, next, .. } = self.executor.flow.frame;
-        let op = self.memory.programs().get(program.0 as usize).and_then(|program| program.op(next));
-        op.is_some_and(|op| op.number.is_none() && matches!(op.kind(), OpKind::Empty))
+        let is_empty = |op: &Op| op.number.is_none() && matches!(op.kind(), OpKind::Empty);
+        self.next_op().is_some_and(is_empty)
     }
 
     /// Returns the letters of the arguments of a macro call, each with its local, as its block names them; those of argument

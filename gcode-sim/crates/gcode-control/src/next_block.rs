@@ -100,9 +100,9 @@ impl Control {
     }
 
     /// Returns the operation of [`Control::next_block`] if it is lowered.
-    fn next_op(&self) -> Option<&Op> {
+    pub(super) fn next_op(&self) -> Option<&Op> {
         let CallFrame { program, next, .. } = self.executor.flow.frame;
-        self.memory.get(program).op(next)
+        self.memory.programs().get(program.0 as usize)?.op(next)
     }
 
     /// Collects facts of the next operation; none if it is skipped or isn't lowered.

@@ -198,6 +198,11 @@ impl Sources {
         id
     }
 
+    /// Returns the number of texts.
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
     /// Iterates over all texts with their ids, in the order of addition.
     pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Arc<Source>)> {
         self.0.iter().enumerate().map(|(id, source)| (SourceId(id as u32), source))

@@ -149,6 +149,24 @@ pub fn run_observed<S: EventSink>(
     sink: &mut S,
     observer: &mut impl Observer,
 ) -> Result<Run, SessionError> {
+    let (mut control, main_note) = load(request)?;
+    if let Some(progress) = &request.progress {
+        control.set_progress(Arc::clone(progress));
+    }
+    let outcome = control.run_observed(request.limits, library, sink, observer);
+    Ok(Run { control, outcome, main_note })
+}
+
+/// Returns a control before its run, with the program in memory, set up as the request states.
+///
+/// # Errors
+/// [`SessionError`] if the run cannot begin.
+pub fn set_up(request: &Request) -> Result<Control, SessionError> {
+    load(request).map(|(control, _)| control)
+}
+
+/// Returns the control of a request before its run, and the note that the file has further main programs.
+fn load(request: &Request) -> Result<(Control, Option<Diagnostic>), SessionError> {
     let mut memory = Memory::default();
     memory.load(request.name.clone(), request.bytes.clone());
     if memory.programs().is_empty() {
@@ -164,12 +182,7 @@ pub fn run_observed<S: EventSink>(
     }
     let is_choice_open = request.main.is_none() && memory.programs().len() > 1;
     let main_note = is_choice_open.then(|| causes::choose_main(&mut memory, request)).flatten();
-    let mut control = set_up_control(request, memory)?;
-    if let Some(progress) = &request.progress {
-        control.set_progress(Arc::clone(progress));
-    }
-    let outcome = control.run_observed(request.limits, library, sink, observer);
-    Ok(Run { control, outcome, main_note })
+    Ok((set_up_control(request, memory)?, main_note))
 }
 
 /// Returns a control with these programs, set up as the request states.
@@ -353,8 +366,8 @@ pub fn simulate_observed<S: EventSink>(
     Ok(Simulation { run, extracted, metal })
 }
 
-/// Returns the extractor of a run's holes.
-fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
+/// Returns the extractor of a run's holes, to which the events of a run can be given.
+pub fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
     HoleExtractor::new(&request.machine)
         .with_metal(Metal { body: metal.body.or(request.part), ..metal })
         .with_straight_rapids(request.settings.rapids_are_straight)

@@ -9,6 +9,13 @@ macro_rules! groups {
             $(#[doc = concat!("Group ", $number, ": ", $what, ".")] $name = $number,)+
         }
 
+        impl ModalGroup {
+            /// Returns what the codes of the group decide: `plane of arcs and drilling`.
+            pub const fn subject(self) -> &'static str {
+                match self { $(Self::$name => $what),+ }
+            }
+        }
+
         /// All modal groups in ascending order.
         pub const GROUPS: &[ModalGroup] = &[$(ModalGroup::$name),+];
     };

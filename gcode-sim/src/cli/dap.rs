@@ -1,0 +1,168 @@
+//! `gcode-sim dap`: the Debug Adapter Protocol over standard input and output, and the files that a launch names.
+#![expect(clippy::disallowed_methods, reason = "the command line reads standard input and finds files")]
+
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+
+use gcode_dap::{Adapter, Framing, FramingError, Host, LaunchArguments, LaunchedProgram};
+use gcode_inspect::verify::Tolerances;
+use gcode_lang::source::Bytes;
+use gcode_part::NominalPart;
+use serde_json::Value;
+
+use super::conditions::{ProgramArguments, RunConditions};
+use super::{ExitStatus, UsageError, input, options};
+
+/// Blocks after which the search for bad holes ends.
+const MAX_BLOCKS: u64 = 10_000_000;
+
+/// Bytes read at a time.
+const CHUNK: usize = 64 * 1024;
+
+/// Message of the client, or bytes that are none.
+type Incoming = Result<Vec<u8>, FramingError>;
+
+pub(super) fn run() -> Result<ExitStatus, UsageError> {
+    let (sender, receiver) = channel();
+    std::thread::spawn(move || read_messages(&sender));
+    serve(&receiver)
+}
+
+/// Reads standard input to its end.
+fn read_messages(sender: &Sender<Incoming>) {
+    let mut framing = Framing::default();
+    let mut chunk = vec![0; CHUNK];
+    let mut stdin = std::io::stdin().lock();
+    loop {
+        match stdin.read(&mut chunk) {
+            Ok(0) => return,
+            Ok(length) => framing.push(&chunk[..length]),
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(_) => return,
+        }
+        while let Some(message) = framing.next_message() {
+            if sender.send(message).is_err() {
+                return;
+            }
+        }
+    }
+}
+
+/// Handles messages until the client disconnects or is gone; in between the run goes on.
+fn serve(receiver: &Receiver<Incoming>) -> Result<ExitStatus, UsageError> {
+    let mut adapter = Adapter::new(Files);
+    while !adapter.is_over() {
+        let message = if adapter.is_running() {
+            match receiver.try_recv() {
+                Ok(message) => Some(message),
+                Err(TryRecvError::Empty) => None,
+                Err(TryRecvError::Disconnected) => break,
+            }
+        } else {
+            match receiver.recv() {
+                Ok(message) => Some(message),
+                Err(_) => break,
+            }
+        };
+        match message {
+            Some(Ok(message)) => adapter.receive(&message),
+            Some(Err(FramingError(reason))) => adapter.refuse(&reason),
+            None => adapter.work(),
+        }
+        if !send(&adapter.take_messages())? {
+            break;
+        }
+    }
+    Ok(ExitStatus::Passed)
+}
+
+/// Writes messages; returns false if their reader is gone.
+fn send(messages: &[String]) -> Result<bool, UsageError> {
+    let text: String = messages.iter().map(|message| Framing::framed(message)).collect();
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(UsageError::new(format!("standard output cannot be written: {error}"))),
+    }
+}
+
+/// The files of this computer.
+struct Files;
+
+impl Host for Files {
+    fn launch(&mut self, arguments: &LaunchArguments) -> Result<LaunchedProgram, String> {
+        launch(arguments).map_err(|refusal| refusal.to_string())
+    }
+
+    fn program_text(&mut self, path: &str) -> Result<Bytes, String> {
+        input::program_text(Path::new(path)).map_err(|refusal| refusal.to_string())
+    }
+
+    fn absolute(&self, path: &str) -> String {
+        std::path::absolute(path).map_or_else(|_| path.to_owned(), |path| path.display().to_string())
+    }
+
+    fn canonical(&self) -> Rc<dyn Fn(&str) -> String> {
+        Rc::new(|path| {
+            let found = Path::new(path).canonicalize().or_else(|_| std::path::absolute(path));
+            found.map_or_else(|_| path.to_owned(), |path| path.display().to_string())
+        })
+    }
+}
+
+/// Reads everything that a launch names; what it leaves out comes from the project, as for the other commands.
+fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
+    if arguments.program == "-" {
+        return Err(UsageError::new(
+            "launch: 'program' is the path of a file; standard input is the protocol's",
+        ));
+    }
+    let pairs = |key: &str, values: &std::collections::BTreeMap<String, Value>| {
+        let pair = |(name, value): (&String, &Value)| Ok(format!("{name}={}", setting(key, name, value)?));
+        values.iter().map(pair).collect::<Result<Vec<_>, UsageError>>()
+    };
+    let conditions = RunConditions {
+        main_program: arguments.main_program.clone(),
+        libraries: arguments.library.iter().map(PathBuf::from).collect(),
+        machine: arguments.machine.as_ref().map(PathBuf::from),
+        control: pairs("control", &arguments.control)?,
+        set: pairs("variables", &arguments.variables)?,
+        max_blocks: MAX_BLOCKS,
+        ..RunConditions::default()
+    };
+    let program = ProgramArguments { program: PathBuf::from(&arguments.program), conditions };
+    let (program, project) = program.completed()?;
+    let (request, mut folders) = options::request(&program)?;
+    let given = arguments.reference.as_ref().map(PathBuf::from);
+    let is_given = given.is_some();
+    let nominal = match given.or_else(|| project.reference()) {
+        Some(path) => Some(options::read_nominal(&path, &request, &mut folders)?),
+        None => None,
+    };
+    let reference = match nominal {
+        Some(NominalPart::Holes(reference)) => {
+            let tolerances = Tolerances::of(&reference, None);
+            Some((reference, tolerances))
+        }
+        Some(NominalPart::Flutes(_)) if is_given => {
+            return Err(UsageError::new("launch: 'reference' is a burr; the debugger compares holes"));
+        }
+        Some(NominalPart::Flutes(_)) | None => None,
+    };
+    Ok(LaunchedProgram { request, library: Box::new(folders), reference })
+}
+
+/// Returns a value of the launch as the command line has it: `true` is 1.
+fn setting(key: &str, name: &str, value: &Value) -> Result<String, UsageError> {
+    match value {
+        Value::String(text) => Ok(text.clone()),
+        Value::Number(number) => Ok(number.to_string()),
+        Value::Bool(is_on) => Ok(u8::from(*is_on).to_string()),
+        Value::Null | Value::Array(_) | Value::Object(_) => {
+            Err(UsageError::new(format!("launch: '{key}', '{name}': write a number or a text")))
+        }
+    }
+}
