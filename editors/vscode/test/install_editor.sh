@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs code-server, the editor of the test, into a folder: `install_editor.sh FOLDER`. Needs npm, and a compiler for its modules.
 set -euo pipefail
+export npm_config_yes=true
 mkdir -p "$1"
 cd "$1"
 [ -f package.json ] || echo '{ "private": true }' >package.json
