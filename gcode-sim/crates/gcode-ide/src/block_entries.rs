@@ -57,9 +57,14 @@ fn record_statement(builder: &mut ChunkBuilder<'_>, statement: &Statement, range
 
 /// Records a jump, or that its sequence number is computed.
 fn push_jump(builder: &mut ChunkBuilder<'_>, kind: EntryKind, number: Option<u32>, range: TextRange) {
+    let computed = match kind {
+        EntryKind::ReturnTo => EntryKind::ComputedReturn,
+        EntryKind::StartAt => EntryKind::ComputedStart,
+        _ => EntryKind::ComputedGoto,
+    };
     match number {
         Some(number) => builder.push(kind, range, number),
-        None => builder.push(EntryKind::ComputedJump, range, 0),
+        None => builder.push(computed, range, 0),
     }
 }
 

@@ -64,7 +64,7 @@ pub use completion::{Completion, CompletionKind};
 pub use file_index::{FileIndex, ProgramOutline};
 pub use folding::{FoldingKind, FoldingRange};
 pub use hover::Hover;
-pub use links::DocumentLink;
+pub use links::{DocumentLink, PageLink};
 pub use navigation::{Access, Definition, NavigationTarget, Reference};
 pub use project::{ProgramKey, Project};
 pub use quick_fix::QuickFix;

@@ -80,7 +80,9 @@ impl Project {
                     let programs = self.started_programs(program, entry.range);
                     Symbol::SequenceNumber { number, programs }
                 }
-                EntryKind::ComputedJump => Symbol::ComputedJump,
+                EntryKind::ComputedGoto | EntryKind::ComputedReturn | EntryKind::ComputedStart => {
+                    Symbol::ComputedJump
+                }
                 EntryKind::Read | EntryKind::Write if number == NAMED => Symbol::ComputedVariable,
                 EntryKind::Read | EntryKind::Write => {
                     let scope = VariableScope::of(number, self.settings());

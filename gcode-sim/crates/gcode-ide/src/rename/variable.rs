@@ -1,5 +1,5 @@
 //! Rename of a local within its macro level, and of a common in the whole project.
-use gcode_lang::program::{ArgumentLocals, CallCode, argument_letter};
+use gcode_lang::program::{ArgumentLocals, argument_letter};
 use gcode_lang::syntax::ast::{Item, Statement};
 
 use super::{digits_in, file_edit};
@@ -261,13 +261,17 @@ impl Project {
             let locals = call.record.arguments.iter().map(|argument| argument.local);
             let passes = |local: u32| locals.clone().any(|other| other == local);
             let is_called = |key: &ProgramKey| keys.contains(key);
-            if !passes(number) && !passes(new)
+            let is_every_block = self.is_every_block(call.record.kind, call.record.is_modal);
+            if !passes(number) && !passes(new) && !is_every_block
                 || !self.called_program(from.file, &call.record.target).as_ref().is_some_and(is_called)
             {
                 continue;
             }
             let place = self.place(from, call.code);
             let refused = |reason: String| Refusal::new(reason).at(from.file, call.code);
+            if is_every_block {
+                return Err(refused(format!("{place} passes the words of all blocks after it as arguments")));
+            }
             if passes(new) {
                 return Err(refused(format!("#{new} is in use: it is an argument of {place}")));
             }
@@ -287,10 +291,7 @@ impl Project {
 
     /// Returns true if the arguments set the same locals with a new letter, but for the renamed one.
     fn has_renamed_locals(&self, call: &Call<'_>, (number, new): (u32, u32), letter: char) -> bool {
-        let is_every_block = call.record.kind == Some(CallCode::EveryBlock)
-            || call.record.is_modal
-                && call.record.kind.is_none()
-                && self.settings().code_calls.modal_is_every_block;
+        let is_every_block = self.is_every_block(call.record.kind, call.record.is_modal);
         let mut locals = ArgumentLocals::new(self.settings().reads_ijk_plainly, is_every_block);
         call.record.arguments.iter().all(|argument| {
             let is_renamed = argument.local == number;
