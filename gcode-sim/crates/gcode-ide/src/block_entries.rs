@@ -5,7 +5,7 @@ use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Block, Decimal, Expr, ExprKind, Item, Statement, Unreadable, Word, WordValue};
 use gcode_lint::{CalledProgramName, ValueUse, block_expressions, call_site, constant, variable};
 
-use crate::chunk::{ChunkBuilder, is_read_g, is_read_m};
+use crate::chunk_builder::{ChunkBuilder, is_read_g, is_read_m};
 use crate::entry::{ArgumentRecord, CallRecord, EntryKind};
 use crate::text::TextRange;
 

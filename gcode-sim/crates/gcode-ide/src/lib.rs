@@ -28,6 +28,7 @@
 mod block_entries;
 mod call_hierarchy;
 mod chunk;
+mod chunk_builder;
 mod code_text;
 mod completion;
 mod entry;

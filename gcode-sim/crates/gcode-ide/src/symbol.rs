@@ -83,7 +83,15 @@ impl Project {
                 EntryKind::ComputedGoto | EntryKind::ComputedReturn | EntryKind::ComputedStart => {
                     Symbol::ComputedJump
                 }
-                EntryKind::Read | EntryKind::Write if number == NAMED => Symbol::ComputedVariable,
+                EntryKind::Read | EntryKind::Write if number == NAMED => {
+                    match self.named_variable(file, entry.range) {
+                        Some(number) => {
+                            let scope = VariableScope::of(number, self.settings());
+                            Symbol::Variable { number, scope, program }
+                        }
+                        None => Symbol::ComputedVariable,
+                    }
+                }
                 EntryKind::Read | EntryKind::Write => {
                     let scope = VariableScope::of(number, self.settings());
                     Symbol::Variable { number, scope, program }

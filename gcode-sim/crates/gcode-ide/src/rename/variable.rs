@@ -1,6 +1,5 @@
 //! Rename of a local within its macro level, and of a common in the whole project.
 use gcode_lang::program::{ArgumentLocals, argument_letter};
-use gcode_lang::syntax::ast::{Item, Statement};
 
 use super::{digits_in, file_edit};
 use crate::block_entries::NAMED;
@@ -153,7 +152,7 @@ impl Project {
             for entry in index.program_entries(key.program) {
                 let is_named = match entry.kind {
                     EntryKind::SetNames => {
-                        let count = self.count_of_names(key, entry.range);
+                        let count = self.given_names(key.file, entry.range).len() as u32;
                         let first = entry.value;
                         numbers
                             .iter()
@@ -172,19 +171,6 @@ impl Project {
             }
         }
         Ok(())
-    }
-
-    fn count_of_names(&self, key: ProgramKey, range: TextRange) -> u32 {
-        let block = self.block(key.file, range.start);
-        let statements = block.iter().flat_map(|block| &block.items).filter_map(|item| match item {
-            Item::Statement(statement) => Some(&statement.node),
-            _ => None,
-        });
-        let mut counts = statements.filter_map(|statement| match statement {
-            Statement::SetNames { names, .. } => Some(names.len() as u32),
-            _ => None,
-        });
-        counts.next().unwrap_or(u32::MAX)
     }
 
     /// Refuses the commons that receive the number of an address that calls a program.
