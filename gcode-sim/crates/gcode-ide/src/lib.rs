@@ -28,6 +28,8 @@
 mod block_entries;
 mod call_hierarchy;
 mod chunk;
+mod chunk_builder;
+mod code_text;
 mod completion;
 mod entry;
 mod file_index;
@@ -35,11 +37,16 @@ mod folding;
 mod format;
 mod head_comment;
 mod hover;
+mod language_text;
+mod lexer;
 mod links;
+mod meaning;
 mod navigation;
 #[cfg(test)]
 mod navigation_tests;
 mod project;
+#[cfg(test)]
+mod property_tests;
 mod quick_fix;
 mod rename;
 mod renumber;
@@ -48,6 +55,7 @@ mod semantic_tokens;
 mod signature;
 mod symbol;
 mod symbols;
+mod system_text;
 #[cfg(test)]
 mod testing;
 mod text;
@@ -57,7 +65,7 @@ pub use completion::{Completion, CompletionKind};
 pub use file_index::{FileIndex, ProgramOutline};
 pub use folding::{FoldingKind, FoldingRange};
 pub use hover::Hover;
-pub use links::DocumentLink;
+pub use links::{DocumentLink, PageLink};
 pub use navigation::{Access, Definition, NavigationTarget, Reference};
 pub use project::{ProgramKey, Project};
 pub use quick_fix::QuickFix;

@@ -33,6 +33,8 @@ fn a_local_changes_with_the_letters_that_set_it() {
     assert!(refused(sets, "#4").contains("#4 is in use"));
     let second = "O1\nG65 P2 J1. R5.\nM30\nO2\nX#$018\nM99\n";
     assert!(refused(second, "#4").contains("would set other variables"), "I behind J is #7");
+    let every = "O1\nG66.1 P2\nR5.\nM30\nO2\n#$018=5\nX#18\nM99\n";
+    assert!(refused(every, "#19").contains("words of all blocks"), "{}", refused(every, "#19"));
     assert!(refused("O2\nX#$018\nM99\n", "#19").contains("argument R"), "unknown callers");
     assert_eq!(renamed("O2\n#$018=5\nX#18\nM99\n", "#19"), "O2\n#19=5\nX#19\nM99\n");
 }
@@ -49,10 +51,7 @@ fn a_subprogram_shares_the_locals_of_its_caller() {
 #[test]
 fn a_common_changes_in_all_files() {
     let text = "//- O1.nc\nO1\n#$0101=5\nG65 P2 A#101\nM30\n//- O2.nc\nO2\nX[#101+#1] Y#1010\nM99\n";
-    assert_eq!(
-        renamed(text, "#102"),
-        "O1\n#102=5\nG65 P2 A#102\nM30\nO2\nX[#102+#1] Y#1010\nM99\n"
-    );
+    assert_eq!(renamed(text, "#102"), "O1\n#102=5\nG65 P2 A#102\nM30\nO2\nX[#102+#1] Y#1010\nM99\n");
     assert!(refused(text, "#7").contains("#7 is a local variable"));
     assert!(refused(text, "#5001").contains("not such a variable"));
     assert!(refused(text, "#34").contains("not such a variable"));
@@ -108,6 +107,8 @@ fn a_sequence_number_changes_with_its_jumps() {
 fn a_sequence_number_that_cannot_be_followed_is_refused() {
     for (text, reason) in [
         ("O1\nN$010\nGOTO#1\n", "jumps to #1"),
+        ("O2\nN$010 M99\nO1\nM98 P2 Q#1\n", "jumps to #1"),
+        ("O1\nM98 P#1 Q#2\nN$010\n", "jumps to #2"),
         ("O1\nN$010\nM99 P#2\n", "jumps to #2"),
         ("O1\nN$010\nM98 P2\nM30\nO2\nM99 P#2\n", "jumps to #2"),
         ("O1\nN$010\nN20\n", "N20 is in use"),
@@ -123,6 +124,8 @@ fn a_sequence_number_that_cannot_be_followed_is_refused() {
     }
     assert!(refused("O1\nN$010\n", "N100000000").contains("out of range"));
     assert_eq!(renamed("O1\nN$010\nO2\nGOTO#1\n", "N20"), "O1\nN20\nO2\nGOTO#1\n", "another program");
+    let called = "O1\nN$010 M98 P2\nM30\nO2\nGOTO#1\nM99\n";
+    assert_eq!(renamed(called, "N20"), called.replace("N$010", "N20"), "in the called program alone");
 }
 
 #[test]
@@ -134,7 +137,10 @@ fn parameter_numbers_are_no_sequence_numbers() {
 #[test]
 fn a_program_changes_with_its_calls() {
     assert_eq!(
-        renamed("//- O1.nc\nO1\nG65 P8101 A1.\nM98 P58101\nM98 P8101 L2\nG66 P08101\nM30\n//- O8101.nc\nO$08101(T)\nM99\n", "O8102"),
+        renamed(
+            "//- O1.nc\nO1\nG65 P8101 A1.\nM98 P58101\nM98 P8101 L2\nG66 P08101\nM30\n//- O8101.nc\nO$08101(T)\nM99\n",
+            "O8102"
+        ),
         "O1\nG65 P8102 A1.\nM98 P58102\nM98 P8102 L2\nG66 P08102\nM30\nO8102(T)\nM99\n"
     );
     assert_eq!(renamed("O1\nG65 P2 X..5\nO$02\n", "7"), "O1\nG65 P7 X..5\nO0007\n", "before unreadable text");
