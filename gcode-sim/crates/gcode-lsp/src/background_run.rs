@@ -69,7 +69,7 @@ fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts 
             let mut holes: BTreeMap<u32, HoleDeviation> = BTreeMap::new();
             for hole in &verdict.holes {
                 let chain = std::iter::once(&hole.from).chain(&hole.calls);
-                let Some(origin) = chain.filter(|origin| is_own(&origin.program)).last() else { continue };
+                let Some(origin) = chain.filter(|origin| is_own(&origin.program)).next_back() else { continue };
                 let deviation = HoleDeviation { phi: hole.position_deviation, tolerance, count: 0 };
                 let known = holes.entry(origin.line).or_insert(deviation);
                 known.phi = known.phi.max(deviation.phi);

@@ -15,6 +15,7 @@ use crate::proof::{RenamedVariables, prove};
 use crate::snapshot::Snapshot;
 
 /// Returns edits of files as the client takes them: with the versions of its documents, if it can.
+#[expect(clippy::mutable_key_type, reason = "the protocol's type has URIs as keys")]
 pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Result<WorkspaceEdit, Failure> {
     let mut by_file: BTreeMap<FileId, Vec<TextEdit>> = BTreeMap::new();
     let mut last = None;
@@ -156,7 +157,8 @@ pub(crate) fn renumber_edits(
     (from, step): (u32, u32),
     progress: &Arc<Progress>,
 ) -> Result<Vec<FileEdit>, String> {
-    let edits = snapshot.project.renumber(program, from, step).map_err(|refusal| reason(snapshot, &refusal))?;
+    let edits = snapshot.project.renumber(program, None, from, step);
+    let edits = edits.map_err(|refusal| reason(snapshot, &refusal))?;
     let proved = prove(snapshot, &edits, &BTreeSet::new(), progress);
     proved.map_err(|why| format!("not renumbered: {why}"))?;
     Ok(edits)
