@@ -73,9 +73,10 @@ pub(crate) fn check(
     }
 }
 
-/// Returns the exact place of a finding.
+/// Returns the exact place of a finding; the block for one that lies between two characters, where an editor marks nothing.
 fn place(finding: &Finding) -> Option<Span> {
-    finding.span.or(finding.backtrace.as_ref().map(|backtrace| backtrace.block))
+    let block = finding.backtrace.as_ref().map(|backtrace| backtrace.block);
+    finding.span.filter(|span| span.start < span.end).or(block).or(finding.span)
 }
 
 struct FindingContext<'a> {
