@@ -1,11 +1,219 @@
-//! Format: one space between words, none at the ends of lines. No word changes.
+//! Format: one space between words, none at the ends of lines. No word, comment or statement changes.
+use gcode_lang::syntax::ast::{Block, CommentMark, Item, Program, ProgramName, WordValue};
+use gcode_lang::syntax::{block_at, print};
+
 use crate::project::Project;
-use crate::text::{FileId, TextEdit, TextRange};
+use crate::text::{FileId, SOURCE, TextEdit, TextRange, apply_edits, line_range};
 
 impl Project {
-    /// Returns the edits that format the lines of a range, or the whole file.
+    /// Returns the edits that format the lines of a range, or of the whole file.
+    ///
+    /// A line that would be read differently afterwards stays as it is, as does one that cannot be read.
     pub fn format(&self, file: FileId, range: Option<TextRange>) -> Vec<TextEdit> {
-        let _ = (file, range);
-        Vec::new()
+        let Some(index) = self.file(file) else { return Vec::new() };
+        let text = index.text();
+        let range = range.unwrap_or(TextRange::new(0, text.len() as u32));
+        let mut edits = Vec::new();
+        let mut at = line_range(text, range.start).start;
+        while at <= range.end && (at as usize) < text.len() {
+            let line = line_range(text, at);
+            let programs = index.programs();
+            let program = index.program_at(line.end).and_then(|program| programs.get(program));
+            // A leader, and text behind the last block, is none of a control.
+            if let Some(program) = program.filter(|program| line.start < program.range.end) {
+                let has_name = line.overlaps(program.name_range) && !program.name_range.is_empty();
+                if !has_name {
+                    edits.extend(line_edits(text, line));
+                }
+            }
+            at = next_line(text, line.end);
+        }
+        edits
+    }
+}
+
+/// Returns the start of the line behind a line end.
+fn next_line(text: &[u8], end: u32) -> u32 {
+    let rest = &text[end as usize..];
+    end + rest.iter().take_while(|byte| matches!(byte, b'\n' | b'\r')).count().max(1) as u32
+}
+
+/// Returns the edits of a line, if it is read the same afterwards.
+fn line_edits(text: &[u8], line: TextRange) -> Vec<TextEdit> {
+    let Some(block) = block_at(SOURCE, &text[..line.end as usize], line.start) else { return Vec::new() };
+    let is_own = line.start <= block.span.start && block.span.end <= line.end;
+    let edits = if is_own { block_edits(text, line, &block) } else { Vec::new() };
+    if edits.is_empty() {
+        return edits;
+    }
+    let own: Vec<_> = edits.iter().map(|edit| shifted(edit, line.start)).collect();
+    let changed = apply_edits(line.of(text), &own);
+    let read = block_at(SOURCE, &changed, 0);
+    let is_same = read.is_some_and(|read| printed(read) == printed(block));
+    if is_same { edits } else { Vec::new() }
+}
+
+/// Returns an edit of a line whose text begins at 0.
+fn shifted(edit: &TextEdit, start: u32) -> TextEdit {
+    let range = TextRange::new(edit.range.start - start, edit.range.end - start);
+    TextEdit { range, text: edit.text.clone() }
+}
+
+/// Returns a block as the printer spells it.
+fn printed(block: Block) -> Vec<u8> {
+    print(&Program { name: ProgramName::Unnamed, span: block.span, blocks: vec![block] })
+}
+
+fn block_edits(text: &[u8], line: TextRange, block: &Block) -> Vec<TextEdit> {
+    let is_unreadable = block.items.iter().any(|item| matches!(item, Item::Unreadable(_)));
+    let is_unclosed = block.comments.iter().any(|comment| comment.mark == CommentMark::Unclosed);
+    if is_unreadable || is_unclosed || block.items.is_empty() && block.comments.is_empty() && block.number.is_none() {
+        return Vec::new();
+    }
+    // Pieces in order, with true for one that no space follows.
+    let mut pieces: Vec<(TextRange, bool)> = Vec::new();
+    let is_close = |range: TextRange| range.of(text) == b"/";
+    pieces.extend(block.skip.iter().map(|skip| (skip.span.into(), is_close(skip.span.into()))));
+    pieces.extend(block.number.iter().map(|number| (number.span.into(), false)));
+    let mut edits = Vec::new();
+    for item in &block.items {
+        let range: TextRange = match item {
+            Item::Word(word) => {
+                let range = word.span.into();
+                if matches!(word.value, WordValue::Literal(_)) {
+                    edits.extend(closed_up(text, range));
+                }
+                range
+            }
+            Item::Statement(statement) => without_spaces_behind(text, statement.span.into()),
+            Item::Skip(skip) => skip.span.into(),
+            Item::Unreadable(unreadable) => unreadable.span.into(),
+        };
+        pieces.push((range, matches!(item, Item::Skip(_)) && is_close(range)));
+    }
+    pieces.extend(block.comments.iter().map(|comment| (without_spaces_behind(text, comment.span.into()), false)));
+    pieces.sort_unstable();
+    let mut last: Option<(TextRange, bool)> = None;
+    for piece in &pieces {
+        match last {
+            None => edits.extend(gap(text, TextRange::new(line.start, piece.0.start), "")),
+            // A comment lies inside a word or a statement.
+            Some((before, _)) if piece.0.start < before.end => continue,
+            Some((before, is_skip)) => {
+                let between = TextRange::new(before.end, piece.0.start);
+                let space = if is_skip { "" } else { " " };
+                edits.extend(gap(text, between, space));
+            }
+        }
+        last = Some(*piece);
+    }
+    if let Some((last, _)) = last {
+        edits.extend(gap(text, TextRange::new(last.end, line.end), ""));
+    }
+    edits.sort_unstable();
+    edits
+}
+
+/// Returns a range without the spaces at its end.
+fn without_spaces_behind(text: &[u8], range: TextRange) -> TextRange {
+    let spaces = range.of(text).iter().rev().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
+    TextRange::new(range.start, range.end - spaces as u32)
+}
+
+fn is_blank(bytes: &[u8]) -> bool {
+    bytes.iter().all(|byte| matches!(byte, b' ' | b'\t'))
+}
+
+/// Returns the edit of a gap that has nothing but spaces.
+fn gap(text: &[u8], range: TextRange, space: &str) -> Option<TextEdit> {
+    let bytes = range.of(text);
+    (is_blank(bytes) && bytes != space.as_bytes()).then(|| TextEdit { range, text: space.to_owned() })
+}
+
+/// Returns the edits that remove the spaces inside a word.
+fn closed_up(text: &[u8], range: TextRange) -> Vec<TextEdit> {
+    let bytes = range.of(text);
+    let is_space = |byte: &u8| matches!(byte, b' ' | b'\t');
+    if !bytes.iter().any(is_space) || bytes.contains(&b'(') {
+        return Vec::new();
+    }
+    let mut edits: Vec<TextEdit> = Vec::new();
+    for (at, _) in bytes.iter().enumerate().filter(|(_, byte)| is_space(byte)) {
+        let at = range.start + at as u32;
+        match edits.last_mut() {
+            Some(last) if last.range.end == at => last.range.end += 1,
+            _ => edits.push(TextEdit { range: TextRange::new(at, at + 1), text: String::new() }),
+        }
+    }
+    edits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_lang::control::Settings;
+    use gcode_lang::syntax::parse;
+    use proptest::prelude::*;
+
+    fn formatted(text: &[u8]) -> Vec<u8> {
+        let mut project = Project::new(Settings::default());
+        project.set_file(FileId(0), "A", text);
+        apply_edits(text, &project.format(FileId(0), None))
+    }
+
+    fn shown(text: &str) -> String {
+        String::from_utf8(formatted(text.as_bytes())).unwrap()
+    }
+
+    #[test]
+    fn words_are_separated_by_one_space() {
+        assert_eq!(shown("O1 (A)  \nN10G1X 1.Y-2.   F100(FEED)\t\n"), "O1 (A)  \nN10 G1 X1. Y-2. F100 (FEED)\n");
+        assert_eq!(shown("/N5G0X1.\n/ 2  N5\n"), "/N5 G0 X1.\n/ 2 N5\n");
+        assert_eq!(shown("  N5  G0\r\n\r\n X1.\r\n"), "N5 G0\r\n\r\nX1.\r\n");
+        assert_eq!(shown("G1X1.;\nG1X1.  // UP \n"), "G1 X1.;\nG1 X1. // UP\n");
+    }
+
+    #[test]
+    fn statements_and_comments_stay() {
+        for text in [
+            "DPRNT[A  #1[44]  B]\n",
+            "IF [ #1 EQ  0 ] GOTO  10\n",
+            "(A  B   C)\n",
+            "X..5   Y1.\n",
+            "G0(NOT CLOSED   X\n",
+            "%\nO1\nG0 X1.\n%\nTEXT   BEHIND\n",
+            "LEADER  X1.?\n%\nO1\n%\n",
+        ] {
+            assert_eq!(shown(text), text);
+        }
+        assert_eq!(shown("#1=2  (A)\n"), "#1=2 (A)\n");
+    }
+
+    #[test]
+    fn a_range_is_formatted_alone() {
+        let text = b"N1G0\nN2G0\nN3G0\n";
+        let mut project = Project::new(Settings::default());
+        project.set_file(FileId(0), "A", *text);
+        let edits = project.format(FileId(0), Some(TextRange::new(6, 7)));
+        assert_eq!(apply_edits(text, &edits), b"N1G0\nN2 G0\nN3G0\n");
+    }
+
+    /// Returns the programs as the printer spells them.
+    fn meaning(text: &[u8]) -> Vec<Vec<u8>> {
+        parse(SOURCE, text).iter().map(print).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn format_keeps_the_meaning_and_is_idempotent(
+            bytes in proptest::collection::vec(any::<u8>(), 0..200),
+            words in "([NGXYFPO/#]{0,1}[0-9. \\-]{0,4}|IF\\[#1 EQ 1\\]|GOTO ?5|\\(A  B\\)|\t|;| // |%|=|\n|\r\n|DPRNT\\[A #1\\[2\\]\\]){0,40}",
+        ) {
+            for text in [bytes, words.into_bytes()] {
+                let once = formatted(&text);
+                prop_assert_eq!(meaning(&once), meaning(&text));
+                prop_assert_eq!(formatted(&once), once);
+            }
+        }
     }
 }

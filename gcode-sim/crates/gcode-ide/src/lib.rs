@@ -28,6 +28,7 @@
 mod block_entries;
 mod call_hierarchy;
 mod chunk;
+mod code_text;
 mod completion;
 mod entry;
 mod file_index;
@@ -35,7 +36,10 @@ mod folding;
 mod format;
 mod head_comment;
 mod hover;
+mod language_text;
+mod lexer;
 mod links;
+mod meaning;
 mod navigation;
 #[cfg(test)]
 mod navigation_tests;
@@ -48,6 +52,7 @@ mod semantic_tokens;
 mod signature;
 mod symbol;
 mod symbols;
+mod system_text;
 #[cfg(test)]
 mod testing;
 mod text;
