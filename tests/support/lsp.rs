@@ -9,7 +9,8 @@
 //! - `disk O1.nc`: writes the lines behind `|` to the disk and says so; `disk O1.nc silently` says nothing.
 //! - `diagnostics O1.nc [VERSION]`: waits for them; then lines `2:0-2:4 error missing-n`, `~words` of the message behind.
 //! - `-> METHOD {…}` and `<- {…}` or `<- error -32602 ~words`: a request and its answer. `$O1.nc` is the URI of a file. In an
-//!   answer, objects may have further keys, and a text `~words` contains these words.
+//!   answer, objects may have further keys, lists that begin with `"..."` further items, and a text `~words` contains
+//!   these words.
 //! - `notify METHOD {…}`; `server METHOD ~words`: waits for a message of the server.
 //! - `eol crlf`: lines behind `|` end with CR LF from here on.
 use std::collections::VecDeque;
@@ -339,6 +340,14 @@ fn compare(expected: &Value, found: &Value) -> Result<(), String> {
                 compare(value, found).map_err(|path| format!(".{key}{path}"))?;
             }
             Ok(())
+        }
+        // Among others.
+        (Value::Array(expected), Value::Array(found)) if expected.first() == Some(&json!("...")) => {
+            let is_there = |item: &&Value| found.iter().any(|found| compare(item, found).is_ok());
+            match expected[1..].iter().find(|item| !is_there(item)) {
+                Some(missing) => Err(format!(" (without {missing})")),
+                None => Ok(()),
+            }
         }
         (Value::Array(expected), Value::Array(found)) => {
             if expected.len() != found.len() {
