@@ -53,11 +53,10 @@ impl CommandResult {
     }
 }
 
-/// Returns the lenses of a file: above each program its commands, `verify` if there is a reference.
+/// Returns the lenses of a file: above each program its commands.
 pub(crate) fn code_lenses(snapshot: &Snapshot, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>, Failure> {
     let file = snapshot.file(&params.text_document)?;
     let text = snapshot.text_of(file)?;
-    let setup = snapshot.setup(file);
     let mut lenses = Vec::new();
     for (key, outline) in snapshot.project.programs().filter(|(key, _)| key.file == file) {
         let range = text.range(outline.name_range.start, outline.name_range.end);
@@ -65,8 +64,7 @@ pub(crate) fn code_lenses(snapshot: &Snapshot, params: CodeLensParams) -> Result
         let label = snapshot.project.label(key);
         let target = Target { uri: params.text_document.uri.clone(), program: is_named.then_some(label) };
         let commands = [("Run", RUN), ("Verify", VERIFY), ("Show", SHOW), ("Debug", DEBUG)];
-        let has_reference = setup.paths.reference.is_some();
-        for (title, command) in commands.into_iter().filter(|(_, name)| *name != VERIFY || has_reference) {
+        for (title, command) in commands {
             let arguments = Some(vec![json!(target)]);
             let command = Command { title: title.to_owned(), command: command.to_owned(), arguments };
             lenses.push(CodeLens { range, command: Some(command), data: None });
@@ -158,8 +156,11 @@ fn plain(value: &Value) -> String {
 }
 
 fn verify(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<CommandResult, Failure> {
-    let no_reference = "no reference: name the program in [references] of gcode.toml, or put job.toml beside it";
-    let reference = setup.paths.reference.as_deref().ok_or_else(|| Failure::refused(no_reference))?;
+    let Some(reference) = &setup.paths.reference else {
+        let text = "no reference: name the program in [references] of gcode.toml, or put job.toml beside it";
+        let value = json!({ "verdict": null, "message": text });
+        return Ok(CommandResult { message: Some((MessageType::WARNING, text.to_owned())), ..CommandResult::new(value) });
+    };
     let mut library = setup.library(&snapshot.files);
     let report = snapshot.files.host().verdict_report(request, &mut library, reference);
     let report = report.map_err(Failure::refused)?;

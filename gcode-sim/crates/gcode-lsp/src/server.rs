@@ -187,7 +187,7 @@ impl Server {
                     self.answer(request);
                 }
             }
-            BackgroundAnswer::Scanned(paths) => paths.iter().for_each(|path| self.state.snapshot.read(path)),
+            BackgroundAnswer::Scanned(paths) => paths.iter().for_each(|path| self.state.read_within_budget(path)),
         }
     }
 

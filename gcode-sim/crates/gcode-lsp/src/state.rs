@@ -22,11 +22,8 @@ use crate::runs::Runs;
 use crate::snapshot::Snapshot;
 use crate::workspace_scan;
 
-/// Largest size of a program beside an open one that is read with it, bytes.
-const MAX_NEIGHBOUR: usize = 16 << 20;
-
-/// Largest number of programs that are read with one that is opened.
-const MAX_NEIGHBOURS: usize = 500;
+/// Largest size of the programs that are read with one that is opened, or of a workspace, bytes.
+const MAX_NEIGHBOURS: usize = 64 << 20;
 
 /// Result of work in the background.
 pub(crate) enum BackgroundAnswer {
@@ -57,6 +54,8 @@ pub(crate) struct ServerState {
     checked: BTreeMap<FileId, CheckBasis>,
     /// Faults of the configuration that were shown.
     shown_faults: BTreeSet<String>,
+    /// Length of all programs that were read and no document has opened.
+    read_bytes: usize,
 }
 
 /// On what a check rests.
@@ -89,6 +88,7 @@ impl ServerState {
             settings: BTreeMap::new(),
             checked: BTreeMap::new(),
             shown_faults: BTreeSet::new(),
+            read_bytes: 0,
         }
     }
 
@@ -121,6 +121,9 @@ impl ServerState {
 
     /// Schedules the check of a document.
     fn check(&self, file: FileId, is_edited: bool) {
+        if is_other_text(&self.snapshot.path(file)) {
+            return;
+        }
         _ = self.checks.send(CheckJob { snapshot: self.snapshot.clone(), file, is_edited });
     }
 
@@ -140,7 +143,6 @@ impl ServerState {
         if document_uri::path(&self.snapshot.documents[&file].uri).is_none() && self.snapshot.folders.is_empty() {
             return;
         }
-        let mut left = MAX_NEIGHBOURS;
         for folder in self.snapshot.setup(file).folders() {
             for path in self.snapshot.files.files(&folder).unwrap_or_default() {
                 let is_known = document_uri::of_path(&path).is_some_and(|uri| {
@@ -149,12 +151,18 @@ impl ServerState {
                 if is_known || !workspace_scan::is_program(&path, &self.snapshot.files) {
                     continue;
                 }
-                let is_small = self.snapshot.files.program(&path).is_ok_and(|text| text.len() < MAX_NEIGHBOUR);
-                if is_small && 0 < left {
-                    left -= 1;
-                    self.snapshot.read(&path);
-                }
+                self.read_within_budget(&path);
             }
+        }
+    }
+
+    /// Reads a program that no document has opened, as long as all of them are not too long.
+    pub(crate) fn read_within_budget(&mut self, path: &Path) {
+        use gcode_session::files::FileAccess;
+        let length = self.snapshot.files.program(path).map_or(0, |text| text.len());
+        if self.read_bytes + length <= MAX_NEIGHBOURS {
+            self.read_bytes += length;
+            self.snapshot.read(path);
         }
     }
 
@@ -199,6 +207,10 @@ impl ServerState {
 
     /// Has everything computed anew that rests on a text.
     fn changed(&mut self, file: FileId, has_other_programs: bool) {
+        let path = self.snapshot.path(file);
+        if is_other_text(&path) {
+            return self.changed_on_disk(&[path]);
+        }
         self.outdate_runs();
         self.check(file, true);
         self.changed_beside(file, has_other_programs);
@@ -336,4 +348,11 @@ impl ServerState {
             self.send(Failure::cancelled().response(id.clone()));
         }
     }
+}
+
+/// Returns true for a text that is no program: a configuration file, which counts as it is edited.
+fn is_other_text(path: &Path) -> bool {
+    const OTHERS: [&str; 4] = ["toml", "json", "csv", "md"];
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other))
 }
