@@ -127,7 +127,8 @@ fn code(word: &Word) -> Option<u32> {
 /// Records the codes of a block: calls, returns, ends, data input.
 fn record_words(builder: &mut ChunkBuilder<'_>, block: &Block) {
     let mut has_call = false;
-    let words = block.items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
+    let words =
+        block.items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
     for word in words.clone() {
         let (letter, code) = (word.address.letter, code(word));
         has_call |= builder.has_code_calls && builder.calls_program(letter, code.unwrap_or(u32::MAX));
@@ -227,12 +228,18 @@ fn record_call(builder: &mut ChunkBuilder<'_>, words: &Words, block: &Block) {
         let kind = if is_own { EntryKind::LocalCall } else { EntryKind::StartAt };
         push_jump(builder, kind, site.start, value_range(builder.text, span.into()));
     }
-    if site.kind == Some(CallCode::Local) || site.target == CalledProgramName::Missing && site.start_span.is_some() {
+    if site.kind == Some(CallCode::Local)
+        || site.target == CalledProgramName::Missing && site.start_span.is_some()
+    {
         return;
     }
     let arguments = site.arguments.iter().map(|argument| {
         let range = TextRange::new(argument.span.start, argument.span.start + 1);
-        ArgumentRecord { letter: argument.letter, local: argument.local as u32, range: builder.relative(range) }
+        ArgumentRecord {
+            letter: argument.letter,
+            local: argument.local as u32,
+            range: builder.relative(range),
+        }
     });
     let record = CallRecord {
         kind: site.kind,
@@ -265,9 +272,8 @@ fn literal(word: &LoweredWord) -> Option<f64> {
 
 /// Records where parameter input begins and ends.
 fn record_data_input(builder: &mut ChunkBuilder<'_>, words: &Words, block: TextRange) {
-    let has_g = |code: u32| {
-        words.list.iter().any(|word| matches!(word.value, WordOperand::G(c, _) if c == code))
-    };
+    let has_g =
+        |code: u32| words.list.iter().any(|word| matches!(word.value, WordOperand::G(c, _) if c == code));
     if has_g(110) {
         builder.push(EntryKind::ParametersEnd, block, 0);
     }

@@ -57,10 +57,10 @@ pub(crate) fn read(bytes: &[u8], range: TextRange, settings: &Settings) -> Chunk
             builder.chunk.programs.push(ProgramRecord { name, folder });
         }
         LineItem::Words(span) => {
-            if !builder.scan_words(span.into()) {
-                if let Some(block) = block_at(SOURCE, text, span.start) {
-                    builder.push_block(&block);
-                }
+            if !builder.scan_words(span.into())
+                && let Some(block) = block_at(SOURCE, text, span.start)
+            {
+                builder.push_block(&block);
             }
         }
         LineItem::Block(block) => builder.push_block(&block),

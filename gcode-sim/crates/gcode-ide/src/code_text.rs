@@ -15,7 +15,13 @@ pub(crate) fn g_text(code: u32, settings: &Settings) -> Option<String> {
     }
     let row = g_row(code, settings)?;
     let group = row.group().map_or_else(
-        || if matches!(row.effect, Effect::OneShot(_)) { ", acts in its block".into() } else { String::new() },
+        || {
+            if matches!(row.effect, Effect::OneShot(_)) {
+                ", acts in its block".into()
+            } else {
+                String::new()
+            }
+        },
         |group| format!(", modal group {group:02}"),
     );
     let simulated = if row.effect == Effect::NotSimulated { "; not simulated" } else { "" };
@@ -63,7 +69,13 @@ pub(crate) struct BlockKind {
 /// Returns the meaning of an address.
 pub(crate) fn address_text(letter: u8, block: BlockKind, settings: &Settings) -> Option<String> {
     let text = match letter {
-        b'X' | b'U' | b'P' if block.is_dwell => if letter == b'P' { "time, milliseconds" } else { "time, seconds" },
+        b'X' | b'U' | b'P' if block.is_dwell => {
+            if letter == b'P' {
+                "time, milliseconds"
+            } else {
+                "time, seconds"
+            }
+        }
         b'P' if block.is_subprogram_call || block.is_macro_call => "number of the called program",
         b'P' if block.is_return => "sequence number in the calling program where it continues",
         b'L' if block.is_subprogram_call || block.is_macro_call => "number of calls",

@@ -109,15 +109,20 @@ impl Project {
             }
             found.extend(words(&typed, false));
         }
-        found.retain(|completion| completion.filter.starts_with(typed.text.trim_start_matches(['P']))
-            || completion.filter.starts_with(&typed.text));
+        found.retain(|completion| {
+            completion.filter.starts_with(typed.text.trim_start_matches(['P']))
+                || completion.filter.starts_with(&typed.text)
+        });
         found
     }
 
     fn g_codes(&self, typed: &Typed) -> Vec<Completion> {
         let settings = self.settings();
-        let mut codes: BTreeSet<u32> =
-            g_codes::all().iter().filter(|row| row.dialects.contains(&settings.codes)).map(|row| row.code).collect();
+        let mut codes: BTreeSet<u32> = g_codes::all()
+            .iter()
+            .filter(|row| row.dialects.contains(&settings.codes))
+            .map(|row| row.code)
+            .collect();
         let called = (1..=9999).map(|code| code * 10);
         codes.extend(called.filter(|code| settings.code_calls.find_call(b'G', *code).is_some()));
         let codes = codes.into_iter().filter_map(|code| Some((code, g_text(code, settings)?)));
@@ -130,7 +135,9 @@ impl Project {
             M_CODES.iter().filter(|row| row.dialects.contains(&settings.codes)).map(|row| row.code).collect();
         codes.extend((1..=999).filter(|code| settings.code_calls.find_call(b'M', code * 10).is_some()));
         let codes = codes.into_iter().map(|code| (code, m_text(code, settings)));
-        codes.map(|(code, detail)| code_completion('M', code * 10, detail, CompletionKind::MCode, typed)).collect()
+        codes
+            .map(|(code, detail)| code_completion('M', code * 10, detail, CompletionKind::MCode, typed))
+            .collect()
     }
 
     /// Returns the sequence numbers of a program; the typed word has `letters` letters before its number.
@@ -207,8 +214,16 @@ impl Project {
             let named = names::all().map(|row| {
                 let suffix = row.suffix.map_or_else(String::new, |(from, _)| format!("[{from}]"));
                 let label = format!("#{}{suffix}", row.name);
-                let detail = format!("#{} {}", row.number, system_text(row.number, settings).unwrap_or_default());
-                Completion { filter: label.clone(), insert: label.clone(), label, detail, kind, replace: typed.range }
+                let detail =
+                    format!("#{} {}", row.number, system_text(row.number, settings).unwrap_or_default());
+                Completion {
+                    filter: label.clone(),
+                    insert: label.clone(),
+                    label,
+                    detail,
+                    kind,
+                    replace: typed.range,
+                }
             });
             return named.collect();
         }
@@ -227,12 +242,23 @@ impl Project {
                 };
             }
         }
-        let used = own.into_iter().chain(commons).filter(|number| format!("#{number}").starts_with(&typed.text));
-        let used = used.take(MAX_OFFERED).map(|number| (number, self.stated_meaning(number, key).unwrap_or_default()));
-        let system = common_system_variables().map(|number| (number, system_text(number, settings).unwrap_or_default()));
+        let used =
+            own.into_iter().chain(commons).filter(|number| format!("#{number}").starts_with(&typed.text));
+        let used = used
+            .take(MAX_OFFERED)
+            .map(|number| (number, self.stated_meaning(number, key).unwrap_or_default()));
+        let system = common_system_variables()
+            .map(|number| (number, system_text(number, settings).unwrap_or_default()));
         let all = used.chain(system).map(|(number, detail)| {
             let label = format!("#{number}");
-            Completion { filter: label.clone(), insert: label.clone(), label, detail, kind, replace: typed.range }
+            Completion {
+                filter: label.clone(),
+                insert: label.clone(),
+                label,
+                detail,
+                kind,
+                replace: typed.range,
+            }
         });
         all.collect()
     }
@@ -296,7 +322,9 @@ fn is_expression(text: &[u8], before: &[Lexeme]) -> bool {
 /// Returns the words of the language: functions and operators in an expression, otherwise the keywords.
 fn words(typed: &Typed, in_expression: bool) -> Vec<Completion> {
     let is_operator = |word: &str| crate::lexer::OPERATORS.contains(&word);
-    let fits = |row: &&crate::language_text::LanguageRow| (row.is_function || is_operator(row.word)) == in_expression;
+    let fits = |row: &&crate::language_text::LanguageRow| {
+        (row.is_function || is_operator(row.word)) == in_expression
+    };
     let offered = WORDS.iter().filter(fits).map(|row| Completion {
         label: row.word.to_owned(),
         detail: row.text.to_owned(),
@@ -309,7 +337,13 @@ fn words(typed: &Typed, in_expression: bool) -> Vec<Completion> {
 }
 
 /// Returns the completion of a code × 10; `G1` finds G01 and G10.
-fn code_completion(letter: char, code: u32, detail: String, kind: CompletionKind, typed: &Typed) -> Completion {
+fn code_completion(
+    letter: char,
+    code: u32,
+    detail: String,
+    kind: CompletionKind,
+    typed: &Typed,
+) -> Completion {
     let label = format!("{letter}{}", g_codes::spelled(code));
     let plain = format!("{letter}{}", f64::from(code) / 10.0);
     let filter = if label.starts_with(&typed.text) { label.clone() } else { plain };
@@ -355,7 +389,10 @@ mod tests {
         assert_eq!(offered(&calls.replace("G65 P$0", "M98 P$0")), ["1", "8101"]);
         let fixture = fixture(&calls.replace("P$0", "P81$0"));
         let found = fixture.project.completions(fixture.file, fixture.offset);
-        assert_eq!((found[0].detail.as_str(), fixture.text(FileId(0), found[0].replace)), ("HOLE", "81".into()));
+        assert_eq!(
+            (found[0].detail.as_str(), fixture.text(FileId(0), found[0].replace)),
+            ("HOLE", "81".into())
+        );
     }
 
     #[test]

@@ -52,7 +52,8 @@ pub(crate) struct PlacedEntry<'a> {
 impl<'a> PlacedEntry<'a> {
     /// Returns the call of an entry of this kind.
     pub(crate) fn call(&self) -> Option<Call<'a>> {
-        let record = (self.kind == EntryKind::Call).then(|| self.chunk.chunk.calls.get(self.value as usize))??;
+        let record =
+            (self.kind == EntryKind::Call).then(|| self.chunk.chunk.calls.get(self.value as usize))??;
         Some(Call { record, code: self.range, base: self.chunk.range.start })
     }
 }
@@ -97,7 +98,10 @@ impl FileIndex {
     #[must_use]
     pub fn edited(&self, edit: &TextEdit, settings: &Settings) -> Self {
         let length = self.text.len() as u32;
-        let range = TextRange::new(edit.range.start.min(length), edit.range.end.clamp(edit.range.start.min(length), length));
+        let range = TextRange::new(
+            edit.range.start.min(length),
+            edit.range.end.clamp(edit.range.start.min(length), length),
+        );
         let edit = TextEdit { range, text: edit.text.clone() };
         let text = Bytes::from(apply_edits(&self.text, std::slice::from_ref(&edit)));
         let first = self.chunks.partition_point(|placed| placed.range.end < range.start);
@@ -208,7 +212,8 @@ fn programs(text: &[u8], chunks: &[PlacedChunk]) -> Vec<ProgramOutline> {
                         last.range.end = start;
                     }
                     is_open = entry.kind == EntryKind::Program;
-                    if let Some(record) = placed.chunk.programs.get(entry.value as usize).filter(|_| is_open) {
+                    if let Some(record) = placed.chunk.programs.get(entry.value as usize).filter(|_| is_open)
+                    {
                         folder = record.folder.clone().or(folder);
                         let (name, folder) = (record.name.clone(), folder.clone());
                         found.push((ProgramOutline { name, folder, range, name_range: range }, true));
@@ -233,8 +238,11 @@ fn programs(text: &[u8], chunks: &[PlacedChunk]) -> Vec<ProgramOutline> {
         last.range.end = text.len() as u32;
     }
     let is_only = found.len() == 1;
-    let mut programs: Vec<_> =
-        found.into_iter().filter(|(_, is_readable)| is_only || *is_readable).map(|(program, _)| program).collect();
+    let mut programs: Vec<_> = found
+        .into_iter()
+        .filter(|(_, is_readable)| is_only || *is_readable)
+        .map(|(program, _)| program)
+        .collect();
     for program in &mut programs {
         let is_blank = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | 0 | 0x1a | 0x7f);
         let blank = program.range.of(text).iter().rev().take_while(|byte| is_blank(byte)).count();
@@ -272,15 +280,22 @@ mod tests {
         assert!(index.chunks.len() > 3, "several chunks");
         let (middle, end) = (text.len() as u32 / 2, text.len() as u32);
         let seam = index.chunks[1].range.start;
-        for (start, stop, new) in
-            [(0, 0, "O1\n"), (middle, middle + 3, ""), (seam, seam, "X"), (seam - 1, seam, ""), (end, end, "%"), (3, end - 4, "")]
-        {
+        for (start, stop, new) in [
+            (0, 0, "O1\n"),
+            (middle, middle + 3, ""),
+            (seam, seam, "X"),
+            (seam - 1, seam, ""),
+            (end, end, "%"),
+            (3, end - 4, ""),
+        ] {
             let edit = TextEdit { range: TextRange::new(start, stop), text: new.into() };
             let edited = index.edited(&edit, &settings);
             let fresh = FileIndex::new(edited.text().clone(), &settings);
             assert_eq!(edited.programs, fresh.programs, "{start} {stop}");
             let entries = |index: &FileIndex| {
-                let shown = index.all_entries().filter(|e| !matches!(e.kind, EntryKind::FirstBlock | EntryKind::FirstReadable));
+                let shown = index
+                    .all_entries()
+                    .filter(|e| !matches!(e.kind, EntryKind::FirstBlock | EntryKind::FirstReadable));
                 shown.map(|e| (e.range, e.kind, e.call().map(|c| c.target_range()))).collect::<Vec<_>>()
             };
             assert_eq!(entries(&edited), entries(&fresh), "{start} {stop}");

@@ -67,12 +67,15 @@ impl Project {
                         });
                     }
                     EntryKind::Comment => {
-                        let is_next = comment.is_some_and(|range| is_blank_between(text, range.end, entry.range.start));
+                        let is_next =
+                            comment.is_some_and(|range| is_blank_between(text, range.end, entry.range.start));
                         match (&mut comment, is_next) {
                             (Some(range), true) => range.end = entry.range.end,
                             (other, _) => {
                                 let begun = other.replace(entry.range);
-                                found.extend(begun.map(|range| FoldingRange { range, kind: FoldingKind::Comment }));
+                                found.extend(
+                                    begun.map(|range| FoldingRange { range, kind: FoldingKind::Comment }),
+                                );
                             }
                         }
                     }

@@ -67,7 +67,10 @@ fn printed(block: Block) -> Vec<u8> {
 fn block_edits(text: &[u8], line: TextRange, block: &Block) -> Vec<TextEdit> {
     let is_unreadable = block.items.iter().any(|item| matches!(item, Item::Unreadable(_)));
     let is_unclosed = block.comments.iter().any(|comment| comment.mark == CommentMark::Unclosed);
-    if is_unreadable || is_unclosed || block.items.is_empty() && block.comments.is_empty() && block.number.is_none() {
+    if is_unreadable
+        || is_unclosed
+        || block.items.is_empty() && block.comments.is_empty() && block.number.is_none()
+    {
         return Vec::new();
     }
     // Pieces in order, with true for one that no space follows.
@@ -91,7 +94,9 @@ fn block_edits(text: &[u8], line: TextRange, block: &Block) -> Vec<TextEdit> {
         };
         pieces.push((range, matches!(item, Item::Skip(_)) && is_close(range)));
     }
-    pieces.extend(block.comments.iter().map(|comment| (without_spaces_behind(text, comment.span.into()), false)));
+    pieces.extend(
+        block.comments.iter().map(|comment| (without_spaces_behind(text, comment.span.into()), false)),
+    );
     pieces.sort_unstable();
     let mut last: Option<(TextRange, bool)> = None;
     for piece in &pieces {
@@ -167,7 +172,10 @@ mod tests {
 
     #[test]
     fn words_are_separated_by_one_space() {
-        assert_eq!(shown("O1 (A)  \nN10G1X 1.Y-2.   F100(FEED)\t\n"), "O1 (A)  \nN10 G1 X1. Y-2. F100 (FEED)\n");
+        assert_eq!(
+            shown("O1 (A)  \nN10G1X 1.Y-2.   F100(FEED)\t\n"),
+            "O1 (A)  \nN10 G1 X1. Y-2. F100 (FEED)\n"
+        );
         assert_eq!(shown("/N5G0X1.\n/ 2  N5\n"), "/N5 G0 X1.\n/ 2 N5\n");
         assert_eq!(shown("  N5  G0\r\n\r\n X1.\r\n"), "N5 G0\r\n\r\nX1.\r\n");
         assert_eq!(shown("G1X1.;\nG1X1.  // UP \n"), "G1 X1.;\nG1 X1. // UP\n");

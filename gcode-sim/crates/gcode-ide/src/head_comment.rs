@@ -84,7 +84,11 @@ fn collect(comment: &str, range: TextRange, found: &mut Vec<VariableMeaning>) {
     }
     let words = rest.trim().trim_matches(|c| matches!(c, '=' | ',' | ':' | '-' | ' '));
     // `(RADIUS = #1)`, `(R = RADIUS #18)`: the meaning stands before.
-    let before = comment.split('#').next().unwrap_or_default().trim_matches(|c| matches!(c, '=' | ',' | ':' | '-' | ' '));
+    let before = comment
+        .split('#')
+        .next()
+        .unwrap_or_default()
+        .trim_matches(|c| matches!(c, '=' | ',' | ':' | '-' | ' '));
     let words = if words.is_empty() && is_first { before } else { words };
     flush(&mut pending, words, letter.filter(|_| is_first), range, found);
 }
@@ -117,12 +121,17 @@ mod tests {
     fn stated(text: &str) -> Vec<String> {
         let index = FileIndex::new(text.as_bytes(), &Settings::default());
         let shown = meanings(&index, 0).into_iter();
-        shown.map(|m| format!("#{}{} {}", m.number, m.letter.map(String::from).unwrap_or_default(), m.text)).collect()
+        shown
+            .map(|m| format!("#{}{} {}", m.number, m.letter.map(String::from).unwrap_or_default(), m.text))
+            .collect()
     }
 
     #[test]
     fn heads_state_their_variables() {
-        assert_eq!(stated("O1(T)\n(A #1  RADIUS)\n(B #2  ABOVE)\n(      THE PART)\nG0\n"), ["#1A RADIUS", "#2B ABOVE THE PART"]);
+        assert_eq!(
+            stated("O1(T)\n(A #1  RADIUS)\n(B #2  ABOVE)\n(      THE PART)\nG0\n"),
+            ["#1A RADIUS", "#2B ABOVE THE PART"]
+        );
         assert_eq!(stated("O1\n(#1 = X START)\n(#2: DEPTH)\n"), ["#1 X START", "#2 DEPTH"]);
         assert_eq!(stated("O1\n(A = #1 RADIUS)\n(RADIUS = #18)\n"), ["#1A RADIUS", "#18 RADIUS"]);
         assert_eq!(

@@ -51,9 +51,9 @@ impl Project {
     /// Returns the elements of a line.
     pub(crate) fn line_lexemes(&self, file: FileId, line: TextRange) -> Vec<Lexeme> {
         let Some(index) = self.file(file) else { return Vec::new() };
-        let comments = self.block(file, line.start).map(|block| {
-            block.comments.iter().map(|comment| comment.span.into()).collect::<Vec<_>>()
-        });
+        let comments = self
+            .block(file, line.start)
+            .map(|block| block.comments.iter().map(|comment| comment.span.into()).collect::<Vec<_>>());
         lexemes(index.text(), line, &comments.unwrap_or_default())
     }
 
@@ -63,8 +63,11 @@ impl Project {
                 Some(self.variable_text(*number, *scope, *program, file, offset))
             }
             Symbol::Argument { letter, local, called } => {
-                let Some(key) = called else { return Some(format!("**{letter}** sets #{local} of the called macro")) };
-                let meaning = self.stated_meaning(*local, *key).map_or_else(String::new, |text| format!(": {text}"));
+                let Some(key) = called else {
+                    return Some(format!("**{letter}** sets #{local} of the called macro"));
+                };
+                let meaning =
+                    self.stated_meaning(*local, *key).map_or_else(String::new, |text| format!(": {text}"));
                 Some(format!("**{letter}** sets #{local} of {}{meaning}", self.label(*key)))
             }
             Symbol::SequenceNumber { number, programs } => Some(self.number_text(*number, programs)),
@@ -75,12 +78,23 @@ impl Project {
         }
     }
 
-    fn variable_text(&self, number: u32, scope: VariableScope, key: ProgramKey, file: FileId, offset: u32) -> String {
+    fn variable_text(
+        &self,
+        number: u32,
+        scope: VariableScope,
+        key: ProgramKey,
+        file: FileId,
+        offset: u32,
+    ) -> String {
         let settings = self.settings();
         if scope == VariableScope::System {
             let name = system_name(number).map_or_else(String::new, |name| format!(" `[{name}]`"));
-            let meaning = system_text(number, settings).unwrap_or_else(|| "no variable of this control".into());
-            let mut text = format!("**#{number}**{name} {meaning}\n\nsystem variable, {}", access_text(number, settings));
+            let meaning =
+                system_text(number, settings).unwrap_or_else(|| "no variable of this control".into());
+            let mut text = format!(
+                "**#{number}**{name} {meaning}\n\nsystem variable, {}",
+                access_text(number, settings)
+            );
             if let Some(alarm) = self.alarm_text(number, file, offset) {
                 text.push_str(&format!("\n\n{alarm}"));
             }
@@ -94,7 +108,8 @@ impl Project {
             text.push_str(&format!(" {meaning}"));
             text.push_str(&program.map_or_else(String::new, |program| format!(" ({program})")));
         }
-        let letter = gcode_lang::program::argument_letter(number as usize).filter(|_| scope == VariableScope::Local);
+        let letter =
+            gcode_lang::program::argument_letter(number as usize).filter(|_| scope == VariableScope::Local);
         let place = match scope {
             VariableScope::Local => format!(" of {}", self.label(key)),
             _ => " of all programs".into(),
@@ -182,7 +197,8 @@ impl Project {
         match lexeme.kind {
             LexemeKind::Letter(letter) => {
                 let number = lexemes.get(at + 1).filter(|next| next.kind == LexemeKind::Number);
-                let range = TextRange::new(lexeme.range.start, number.map_or(lexeme.range.end, |n| n.range.end));
+                let range =
+                    TextRange::new(lexeme.range.start, number.map_or(lexeme.range.end, |n| n.range.end));
                 let code = code_of(&lossy(range.of(text)));
                 let markdown = match (letter, code) {
                     (b'G', Some((_, code))) => self.g_markdown(code),
@@ -257,7 +273,9 @@ fn code_of(word: &str) -> Option<(u8, u32)> {
 fn assigned_constant(item: &Item) -> Option<f64> {
     fn of(statement: &Statement) -> Option<f64> {
         match statement {
-            Statement::Assign { target, value } if matches!(variable(target), Some(3000 | 3006)) => constant(value),
+            Statement::Assign { target, value } if matches!(variable(target), Some(3000 | 3006)) => {
+                constant(value)
+            }
             Statement::IfThen { then, .. } => of(then),
             _ => None,
         }
@@ -303,7 +321,10 @@ mod tests {
         assert!(hovered("O1\n#1=[#_A$0BSMT[3]]\n").contains("machine coordinates, axis 3 (Z)"));
         assert!(hovered("O1\nIF[#1 LE 0]THEN #30$000=12(NO R)\n").ends_with("raises alarm **MC3012**: NO R"));
         assert!(hovered("O1\n#300$06=1(TURN)\n").ends_with("stops with the message **TURN**"));
-        assert_eq!(hovered("O1\nG65 P2 R$05.\nO2\n(R #18 RADIUS)\nX#18\n"), "**R** sets #18 of O0002: RADIUS");
+        assert_eq!(
+            hovered("O1\nG65 P2 R$05.\nO2\n(R #18 RADIUS)\nX#18\n"),
+            "**R** sets #18 of O0002: RADIUS"
+        );
     }
 
     #[test]

@@ -41,8 +41,8 @@ pub(crate) const KEYWORDS: [&str; 12] =
 
 /// Functions and the values that are written like one.
 pub(crate) const FUNCTIONS: [&str; 19] = [
-    "ROUND", "SQRT", "ASIN", "ACOS", "ATAN", "AXNUM", "SIN", "COS", "TAN", "ABS", "FIX", "FUP", "EXP", "POW", "BIN",
-    "BCD", "ADP", "PRM", "LN",
+    "ROUND", "SQRT", "ASIN", "ACOS", "ATAN", "AXNUM", "SIN", "COS", "TAN", "ABS", "FIX", "FUP", "EXP", "POW",
+    "BIN", "BCD", "ADP", "PRM", "LN",
 ];
 
 /// Operators that are written with letters.
@@ -151,7 +151,9 @@ impl Lexer<'_> {
 
     /// Returns the end of `<NAME>`.
     fn name_end(&self) -> Option<usize> {
-        let fits = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-' | b'.' | b'/' | b' ' | b'+');
+        let fits = |byte: u8| {
+            byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-' | b'.' | b'/' | b' ' | b'+')
+        };
         let end = self.run(self.at + 1, fits);
         (end > self.at + 1 && self.byte(end) == b'>').then_some(end + 1)
     }
@@ -165,7 +167,8 @@ impl Lexer<'_> {
             let keyword = KEYWORDS.iter().find(starts).map(|word| (word.len(), LexemeKind::Keyword(word)));
             let function = FUNCTIONS.iter().find(starts).map(|word| (word.len(), LexemeKind::Function));
             let operator = OPERATORS.iter().find(starts).map(|word| (word.len(), LexemeKind::Operator));
-            let longest = [keyword, function, operator].into_iter().flatten().max_by_key(|(length, _)| *length);
+            let longest =
+                [keyword, function, operator].into_iter().flatten().max_by_key(|(length, _)| *length);
             if let Some((length, kind)) = longest.or_else(|| abbreviated(&upper)) {
                 let is_print = matches!(kind, LexemeKind::Keyword("DPRNT" | "BPRNT"));
                 self.push_to(kind, self.at + length);
@@ -220,8 +223,10 @@ impl Lexer<'_> {
 /// Returns the keyword or function that two or more letters abbreviate.
 fn abbreviated(upper: &[u8]) -> Option<(usize, LexemeKind)> {
     let common = |word: &str| word.bytes().zip(upper).take_while(|(one, other)| one == *other).count();
-    let keyword = KEYWORDS.iter().find(|word| common(word) >= 2).map(|word| (common(word), LexemeKind::Keyword(word)));
-    let function = || FUNCTIONS.iter().find(|word| common(word) >= 2).map(|word| (common(word), LexemeKind::Function));
+    let keyword =
+        KEYWORDS.iter().find(|word| common(word) >= 2).map(|word| (common(word), LexemeKind::Keyword(word)));
+    let function =
+        || FUNCTIONS.iter().find(|word| common(word) >= 2).map(|word| (common(word), LexemeKind::Function));
     keyword.or_else(function)
 }
 
@@ -231,7 +236,11 @@ mod tests {
 
     fn split(text: &str) -> String {
         let found = lexemes(text.as_bytes(), TextRange::new(0, text.len() as u32), &[]);
-        found.iter().map(|l| &text[l.range.start as usize..l.range.end as usize]).collect::<Vec<_>>().join("|")
+        found
+            .iter()
+            .map(|l| &text[l.range.start as usize..l.range.end as usize])
+            .collect::<Vec<_>>()
+            .join("|")
     }
 
     #[test]

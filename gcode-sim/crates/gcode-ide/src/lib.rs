@@ -44,6 +44,8 @@ mod navigation;
 #[cfg(test)]
 mod navigation_tests;
 mod project;
+#[cfg(test)]
+mod property_tests;
 mod quick_fix;
 mod rename;
 mod renumber;

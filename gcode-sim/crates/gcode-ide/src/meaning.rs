@@ -56,7 +56,10 @@ impl Project {
         let mut line = TextRange::default();
         let mut pending: Option<usize> = None;
         for entry in index.program_entries(key.program) {
-            let Some(local) = usize::try_from(entry.value).ok().filter(|local| (1..34).contains(local)) else { continue };
+            let Some(local) = usize::try_from(entry.value).ok().filter(|local| (1..34).contains(local))
+            else {
+                continue;
+            };
             if entry.range.start >= line.end {
                 // The value of an assignment is read before its target is set.
                 if let Some(target) = pending.take() {
@@ -78,12 +81,17 @@ impl Project {
             is_stated || read[local]
         };
         let locals = (1..=26).filter_map(|local| Some((local, gcode_lang::program::argument_letter(local)?)));
-        let parameters = locals.filter(|(local, _)| is_parameter(*local)).map(|(local, letter)| MacroParameter {
-            letter,
-            local: local as u32,
-            text: stated.iter().find(|m| m.number as usize == local).map(|m| m.text.clone()).unwrap_or_default(),
-            is_optional: tested[local],
-        });
+        let parameters =
+            locals.filter(|(local, _)| is_parameter(*local)).map(|(local, letter)| MacroParameter {
+                letter,
+                local: local as u32,
+                text: stated
+                    .iter()
+                    .find(|m| m.number as usize == local)
+                    .map(|m| m.text.clone())
+                    .unwrap_or_default(),
+                is_optional: tested[local],
+            });
         let mut found: Vec<_> = parameters.collect();
         found.sort_by_key(|parameter| parameter.letter);
         found

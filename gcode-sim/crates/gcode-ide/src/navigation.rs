@@ -84,7 +84,9 @@ impl Project {
     /// Returns all places of a symbol.
     pub(crate) fn symbol_references(&self, symbol: &Symbol, file: FileId) -> Vec<Reference> {
         let mut found = match symbol {
-            Symbol::Variable { number, scope, program } => self.variable_references(*number, *scope, *program),
+            Symbol::Variable { number, scope, program } => {
+                self.variable_references(*number, *scope, *program)
+            }
             Symbol::Argument { local, called: Some(called), .. } => {
                 self.variable_references(*local, VariableScope::Local, *called)
             }
@@ -118,7 +120,10 @@ impl Project {
                     _ => continue,
                 };
                 if canonical(entry.value, self.settings()) == number {
-                    found.push(Reference { location: Location { file: key.file, range: entry.range }, access });
+                    found.push(Reference {
+                        location: Location { file: key.file, range: entry.range },
+                        access,
+                    });
                 }
             }
         }
@@ -129,7 +134,8 @@ impl Project {
                 if arguments.peek().is_none() {
                     continue;
                 }
-                if self.called_program(from.file, &call.record.target).is_some_and(|key| keys.contains(&key)) {
+                if self.called_program(from.file, &call.record.target).is_some_and(|key| keys.contains(&key))
+                {
                     found.extend(arguments.map(|argument| {
                         let location = Location { file: from.file, range: call.place(argument.range) };
                         Reference { location, access: Access::Write }
@@ -188,7 +194,8 @@ impl Project {
             let location = Location { file: key.file, range };
             Some(Reference { location, access: Access::Declaration })
         });
-        let calls = self.all_calls().filter(|(_, call)| program_name(&call.record.target).as_ref() == Some(name));
+        let calls =
+            self.all_calls().filter(|(_, call)| program_name(&call.record.target).as_ref() == Some(name));
         let calls = calls.map(|(key, call)| {
             let range = call.target_range().unwrap_or(call.code);
             Reference { location: Location { file: key.file, range }, access: Access::Read }
@@ -212,7 +219,8 @@ impl Project {
     }
 
     fn block_target(&self, Location { file, range: selection }: Location) -> NavigationTarget {
-        let line = self.file(file).map(|index| line_range(index.text(), selection.start)).unwrap_or(selection);
+        let line =
+            self.file(file).map(|index| line_range(index.text(), selection.start)).unwrap_or(selection);
         NavigationTarget { file, range: TextRange::new(selection.start, line.end), selection }
     }
 
@@ -231,7 +239,9 @@ impl Project {
         let references = self.variable_references(number, scope, program);
         let own = self.program(program).map(|outline| outline.range).unwrap_or_default();
         let is_own = |location: &Location| {
-            location.file == program.file && own.start <= location.range.start && location.range.end <= own.end
+            location.file == program.file
+                && own.start <= location.range.start
+                && location.range.end <= own.end
         };
         let writes = references.iter().filter(|reference| reference.access == Access::Write);
         let mut writes: Vec<_> = writes.map(|reference| reference.location).collect();

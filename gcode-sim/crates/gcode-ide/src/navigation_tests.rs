@@ -43,7 +43,11 @@ fn a_call_leads_to_its_program() {
     let library = "//- O9001.nc\n%\nO9001(DRILL)\nM99\n%\n";
     assert_eq!(defined(&format!("//- O1.nc\nO1\nG65 P9$0001 A1.\nM30\n{library}")), ["1:2:O9001"]);
     assert_eq!(defined(&format!("//- O1.nc\nO1\nG$065 P9001 A1.\nM30\n{library}")), ["1:2:O9001"]);
-    assert_eq!(defined("//- O1.nc\nO1\nM98 P$09001\nM30\n//- sub/o9001.NC\nX1.\nM99\n"), ["1:1:"], "by the name of its file");
+    assert_eq!(
+        defined("//- O1.nc\nO1\nM98 P$09001\nM30\n//- sub/o9001.NC\nX1.\nM99\n"),
+        ["1:1:"],
+        "by the name of its file"
+    );
     assert_eq!(defined("O1\nM98 P<SU$0B>\nM30\n<SUB>\nM99\n"), ["4:<SUB>"]);
 }
 
@@ -58,12 +62,11 @@ fn a_variable_leads_to_its_value() {
 
 #[test]
 fn references_are_told_apart_by_their_use() {
+    assert_eq!(referred("O1\nG65 P9 A5.\n#1=2\nM30\nO9\n#2=#$01\nX#1 (#1)\nM99\n"), ["2:A=", "6:#1", "7:#1"]);
     assert_eq!(
-        referred("O1\nG65 P9 A5.\n#1=2\nM30\nO9\n#2=#$01\nX#1 (#1)\nM99\n"),
-        ["2:A=", "6:#1", "7:#1"]
-    );
-    assert_eq!(
-        referred("//- O1.nc\nO1\n#5$000=1\nWHILE[#500 LT 2]DO1\n#500=#500+1\nEND1\n//- O2.nc\nO2\nDPRNT[#500[44]]\n"),
+        referred(
+            "//- O1.nc\nO1\n#5$000=1\nWHILE[#500 LT 2]DO1\n#500=#500+1\nEND1\n//- O2.nc\nO2\nDPRNT[#500[44]]\n"
+        ),
         ["2:#500=", "3:#500", "4:#500=", "4:#500", "1:2:#500"]
     );
     assert_eq!(referred("O1\nN5\nIF[#1 EQ 1]GOTO 5\nGOTO $05\nO2\nGOTO 5\n"), ["2:N5!", "3:5", "4:5"]);
@@ -132,7 +135,10 @@ fn calls_and_links_go_both_ways() {
     let incoming = project.incoming_calls(item.key);
     assert_eq!((incoming[0].item.name.as_str(), incoming[0].places.len()), ("O0001", 2));
     let outgoing = project.outgoing_calls(item.key);
-    assert_eq!((outgoing[0].item.name.as_str(), fixture.text(FileId(1), outgoing[0].places[0])), ("O0001", "P1".into()));
+    assert_eq!(
+        (outgoing[0].item.name.as_str(), fixture.text(FileId(1), outgoing[0].places[0])),
+        ("O0001", "P1".into())
+    );
     let links = project.document_links(FileId(0));
     assert_eq!(links.iter().map(|link| link.label.as_str()).collect::<Vec<_>>(), ["O0002", "O0002"]);
 }

@@ -188,9 +188,8 @@ impl Project {
 
     /// Iterates over the calls that go to a program.
     pub(crate) fn calls_to(&self, key: ProgramKey) -> impl Iterator<Item = (ProgramKey, Call<'_>)> {
-        self.all_calls().filter(move |(from, call)| {
-            self.called_program(from.file, &call.record.target) == Some(key)
-        })
+        self.all_calls()
+            .filter(move |(from, call)| self.called_program(from.file, &call.record.target) == Some(key))
     }
 
     /// Returns the tree of the line of an offset, if it is a block.

@@ -43,10 +43,22 @@ const FIXES: [Fix; 12] = [
 
 impl Project {
     /// Returns the fixes of a finding: its code, its exact part or its block, and its remedy.
-    pub fn quick_fixes(&self, file: FileId, code: &str, range: TextRange, help: Option<&str>) -> Vec<QuickFix> {
+    pub fn quick_fixes(
+        &self,
+        file: FileId,
+        code: &str,
+        range: TextRange,
+        help: Option<&str>,
+    ) -> Vec<QuickFix> {
         let Some(index) = self.file(file) else { return Vec::new() };
         let text = index.text();
-        let finding = Finding { text, code, range, line: line_range(text, range.start), help: help.unwrap_or_default() };
+        let finding = Finding {
+            text,
+            code,
+            range,
+            line: line_range(text, range.start),
+            help: help.unwrap_or_default(),
+        };
         let mut found: Vec<_> = FIXES.iter().filter_map(|fix| fix(&finding)).collect();
         found.extend(two_signs(&finding));
         found
@@ -185,8 +197,18 @@ fn foreign_character(finding: &Finding<'_>) -> Option<QuickFix> {
 /// `==` becomes `EQ`.
 fn relation_sign(finding: &Finding<'_>) -> Option<QuickFix> {
     const SIGNS: [(&str, &str); 12] = [
-        ("==", "EQ"), ("<>", "NE"), ("!=", "NE"), (">=", "GE"), ("=>", "GE"), ("<=", "LE"), ("=<", "LE"), ("&&", "AND"),
-        ("||", "OR"), ("=", "EQ"), (">", "GT"), ("<", "LT"),
+        ("==", "EQ"),
+        ("<>", "NE"),
+        ("!=", "NE"),
+        (">=", "GE"),
+        ("=>", "GE"),
+        ("<=", "LE"),
+        ("=<", "LE"),
+        ("&&", "AND"),
+        ("||", "OR"),
+        ("=", "EQ"),
+        (">", "GT"),
+        ("<", "LT"),
     ];
     if finding.code != "relation-symbol" && !finding.help.contains("write EQ, NE, LT") {
         return None;
@@ -227,7 +249,8 @@ fn closing_bracket(finding: &Finding<'_>) -> Option<QuickFix> {
     let is_open = comment.first() == Some(&b'(') && !comment.contains(&b')');
     let asks = matches!(finding.code, "open-comment" | "unclosed-comment");
     let end = finding.range.end;
-    (asks && is_open).then(|| fix("Close the comment at the end of the line", TextRange::new(end, end), ")"))?
+    (asks && is_open)
+        .then(|| fix("Close the comment at the end of the line", TextRange::new(end, end), ")"))?
 }
 
 /// `3.14` becomes `3.14159265`.
@@ -239,7 +262,9 @@ fn exact_pi(finding: &Finding<'_>) -> Option<QuickFix> {
 
 /// `Z--5` becomes `Z-5` or `Z-[-5]`.
 fn two_signs(finding: &Finding<'_>) -> Vec<QuickFix> {
-    let Some((one, other)) = finding.help.strip_prefix("write one sign: ").and_then(|help| help.split_once(", or ")) else {
+    let Some((one, other)) =
+        finding.help.strip_prefix("write one sign: ").and_then(|help| help.split_once(", or "))
+    else {
         return Vec::new();
     };
     let Some(digits) = one.get(2..) else { return Vec::new() };

@@ -29,7 +29,8 @@ impl Project {
         let places = self.sequence_numbers(key);
         let (declared, jumps): (Vec<_>, Vec<_>) =
             places.into_iter().partition(|(_, reference)| reference.access == Access::Declaration);
-        let is_in = |place: TextRange| range.is_none_or(|range| range.start <= place.start && place.end <= range.end);
+        let is_in =
+            |place: TextRange| range.is_none_or(|range| range.start <= place.start && place.end <= range.end);
         let (inside, outside): (Vec<_>, Vec<_>) = declared
             .into_iter()
             .partition(|(number, reference)| *number != 0 && is_in(reference.location.range));
@@ -38,9 +39,14 @@ impl Project {
         let mut repeated: BTreeSet<u32> = BTreeSet::new();
         let mut edits = Vec::new();
         for ((old, reference), index) in inside.iter().zip(0_u32..) {
-            let new = index.checked_mul(step).and_then(|add| from.checked_add(add)).filter(|new| *new <= MAX_NUMBER);
+            let new = index
+                .checked_mul(step)
+                .and_then(|add| from.checked_add(add))
+                .filter(|new| *new <= MAX_NUMBER);
             let Some(new) = new else {
-                return Err(Refusal::new(format!("the numbers would go beyond N{MAX_NUMBER}: take a smaller step")));
+                return Err(Refusal::new(format!(
+                    "the numbers would go beyond N{MAX_NUMBER}: take a smaller step"
+                )));
             };
             if kept.contains(&new) {
                 return Err(Refusal::new(format!("N{new} is in use outside the range")));
@@ -61,7 +67,9 @@ impl Project {
             match new_numbers.get(number) {
                 Some(new) => edits.push(FileEdit { file, edit: TextEdit { range, text: new.to_string() } }),
                 None if given.contains(number) && !kept.contains(number) => {
-                    return Err(refused(format!("a jump goes to N{number}, which is missing, and would find it")));
+                    return Err(refused(format!(
+                        "a jump goes to N{number}, which is missing, and would find it"
+                    )));
                 }
                 None => {}
             }

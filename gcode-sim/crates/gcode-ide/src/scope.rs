@@ -24,7 +24,9 @@ impl VariableScope {
             1..=33 => Self::Local,
             100..=199 | 500..=999 => Self::Common,
             10_100..=10_199 | 10_500..=10_999 if settings.aliases_commons => Self::Common,
-            _ if settings.extra_commons.iter().any(|(from, to)| (*from..=*to).contains(&number)) => Self::Common,
+            _ if settings.extra_commons.iter().any(|(from, to)| (*from..=*to).contains(&number)) => {
+                Self::Common
+            }
             _ => Self::System,
         }
     }

@@ -300,7 +300,9 @@ impl Tokens<'_> {
         let mut codes = BlockCodes { axes: TokenKind::Address, p: None, is_call: false };
         let mut own = None;
         for pair in lexemes.windows(2) {
-            let (LexemeKind::Letter(letter), LexemeKind::Number) = (pair[0].kind, pair[1].kind) else { continue };
+            let (LexemeKind::Letter(letter), LexemeKind::Number) = (pair[0].kind, pair[1].kind) else {
+                continue;
+            };
             let Some(code) = self.tenths(&pair[1]) else { continue };
             match (letter, code) {
                 (b'G', 650 | 660 | 661) | (b'M', 980 | 1980) => {
@@ -360,7 +362,13 @@ mod tests {
         let fixture = fixture(text);
         let tokens = fixture.project.semantic_tokens(FileId(0), None);
         let each = tokens.iter().map(|token| {
-            let sign = if token.is_written { "=" } else if token.is_declaration { "!" } else { "" };
+            let sign = if token.is_written {
+                "="
+            } else if token.is_declaration {
+                "!"
+            } else {
+                ""
+            };
             format!("{}:{:?}{sign}", fixture.text(FileId(0), token.range), token.kind)
         });
         each.collect::<Vec<_>>().join(" ")
@@ -373,7 +381,10 @@ mod tests {
             "%:Mark O1:Program! (A):Comment N1:SequenceNumber! G1:FeedMotion X:FeedMotion 1.:Number F:Address 9:Number \
              Y:FeedMotion 2:Number"
         );
-        assert_eq!(shown("G4 X1\nG0 G90 X1"), "G4:GCode X:Address 1:Number G0:RapidMotion G90:GCode X:RapidMotion 1:Number");
+        assert_eq!(
+            shown("G4 X1\nG0 G90 X1"),
+            "G4:GCode X:Address 1:Number G0:RapidMotion G90:GCode X:RapidMotion 1:Number"
+        );
         assert_eq!(
             shown("G2 X1 I2\nG83 Z-1 Q1\nM8"),
             "G2:ArcMotion X:ArcMotion 1:Number I:ArcMotion 2:Number G83:CycleMotion Z:CycleMotion -1:Number \
@@ -395,7 +406,11 @@ mod tests {
             "IF:Keyword #1:LocalVariable EQ:Operator 2:Number THEN:Keyword #2:LocalVariable= =:Operator 3:Number (N):Comment"
         );
         assert_eq!(shown("GOTO 5"), "GOTO:Keyword 5:SequenceNumber");
-        assert_eq!(shown("X..5 #1 (C)"), "X:Address ..5:Number #1:LocalVariable (C):Comment", "text that cannot be read");
+        assert_eq!(
+            shown("X..5 #1 (C)"),
+            "X:Address ..5:Number #1:LocalVariable (C):Comment",
+            "text that cannot be read"
+        );
     }
 
     #[test]
@@ -404,7 +419,10 @@ mod tests {
         let fixture = fixture(&text);
         let end = text.len() as u32;
         let tokens = fixture.project.semantic_tokens(FileId(0), Some(TextRange::new(end - 4, end)));
-        assert_eq!(tokens.iter().map(|token| token.kind).collect::<Vec<_>>(), [TokenKind::FeedMotion, TokenKind::Number]);
+        assert_eq!(
+            tokens.iter().map(|token| token.kind).collect::<Vec<_>>(),
+            [TokenKind::FeedMotion, TokenKind::Number]
+        );
     }
 
     proptest! {

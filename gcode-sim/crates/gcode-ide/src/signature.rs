@@ -39,7 +39,8 @@ impl Project {
         let called = self.called_program(file, &call.record.target)?;
         let index = self.file(file)?;
         let code = String::from_utf8_lossy(call.code.of(index.text())).into_owned();
-        let target = call.target_range().map(|range| String::from_utf8_lossy(range.of(index.text())).into_owned());
+        let target =
+            call.target_range().map(|range| String::from_utf8_lossy(range.of(index.text())).into_owned());
         let mut label = code;
         label.extend(target.map(|target| format!(" {target}")));
         let mut parameters = Vec::new();
@@ -60,14 +61,17 @@ impl Project {
         // The last letter before the cursor.
         let line = line_range(index.text(), offset);
         let lexemes = self.line_lexemes(file, line);
-        let letters = lexemes.iter().filter(|lexeme| lexeme.range.start < offset && lexeme.range.start > call.code.start);
+        let letters = lexemes
+            .iter()
+            .filter(|lexeme| lexeme.range.start < offset && lexeme.range.start > call.code.start);
         let last = letters.filter_map(|lexeme| match lexeme.kind {
-            LexemeKind::Letter(letter) => Some(char::from(letter)),
+            LexemeKind::Letter(letter) => Some((lexeme.range.start, char::from(letter))),
             _ => None,
         });
-        let last = last.last();
+        let last = last.max_by_key(|(start, _)| *start).map(|(_, letter)| letter);
         let active = parameters.iter().position(|parameter| Some(parameter.letter) == last);
-        let documentation = self.file(called.file).and_then(|index| title(index, called.program)).unwrap_or_default();
+        let documentation =
+            self.file(called.file).and_then(|index| title(index, called.program)).unwrap_or_default();
         Some(SignatureHelp { label, documentation, parameters, active })
     }
 
@@ -85,7 +89,8 @@ impl Project {
 mod tests {
     use crate::testing::fixture;
 
-    const MACRO: &str = "O9(HOLE)\n(R #18 RADIUS)\n(D #7 DEPTH)\nIF[#6 EQ #0]THEN #6=1.\n#30=#18*#7*#6\n#20=1.\nX#20\nM99\n";
+    const MACRO: &str =
+        "O9(HOLE)\n(R #18 RADIUS)\n(D #7 DEPTH)\nIF[#6 EQ #0]THEN #6=1.\n#30=#18*#7*#6\n#20=1.\nX#20\nM99\n";
 
     #[test]
     fn a_macro_shows_its_arguments() {

@@ -55,17 +55,17 @@ impl Project {
         let index = self.file(file)?;
         let program = self.program_at(file, offset)?;
         let outline = self.program(program)?;
-        if outline.name_range.touches(offset) && !outline.name_range.is_empty() {
-            return Some((Symbol::Program { name: outline.name.clone() }, outline.name_range));
-        }
         let line = line_range(index.text(), offset);
         let mut found: Option<(Symbol, TextRange)> = None;
+        // The narrowest symbol; one that ends at the offset gives way to one that contains it.
+        let rank = |range: TextRange| (range.end == offset, range.len());
         let mut offer = |symbol: Symbol, range: TextRange| {
-            let is_narrower = |(_, other): &(Symbol, TextRange)| range.len() < other.len();
-            if range.touches(offset) && found.as_ref().is_none_or(is_narrower) {
+            let is_better = |(_, other): &(Symbol, TextRange)| rank(range) < rank(*other);
+            if range.touches(offset) && !range.is_empty() && found.as_ref().is_none_or(is_better) {
                 found = Some((symbol, range));
             }
         };
+        offer(Symbol::Program { name: outline.name.clone() }, outline.name_range);
         for entry in index.entries(TextRange::new(line.start, line.end + 1)) {
             let number = entry.value;
             let symbol = match entry.kind {
@@ -123,7 +123,9 @@ impl Project {
 
     /// Returns the program that the call beside a Q starts.
     pub(crate) fn started_programs(&self, key: ProgramKey, start: TextRange) -> Vec<ProgramKey> {
-        let call = self.calls_of(key).find(|call| call.block().start <= start.start && start.end <= call.block().end);
+        let call = self
+            .calls_of(key)
+            .find(|call| call.block().start <= start.start && start.end <= call.block().end);
         call.and_then(|call| self.called_program(key.file, &call.record.target)).into_iter().collect()
     }
 }

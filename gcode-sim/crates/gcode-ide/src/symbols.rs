@@ -107,7 +107,9 @@ impl Project {
                 }
                 EntryKind::LoopEnd => {
                     // An END closes its own loop and those that lack theirs.
-                    let Some(at) = open.iter().rposition(|(number, _)| *number == entry.value) else { continue };
+                    let Some(at) = open.iter().rposition(|(number, _)| *number == entry.value) else {
+                        continue;
+                    };
                     close_loops(&mut open, &mut top, at, line.end);
                 }
                 _ => {}
@@ -123,7 +125,8 @@ impl Project {
         let query = query.trim().to_ascii_uppercase();
         let mut found = Vec::new();
         for (key, outline) in self.programs() {
-            let (name, title) = (self.label(key), self.file(key.file).and_then(|index| title(index, key.program)));
+            let (name, title) =
+                (self.label(key), self.file(key.file).and_then(|index| title(index, key.program)));
             let container = title.unwrap_or_default();
             let is_number = matches!(&outline.name, ProgramName::Number(n) if query.strip_prefix('O').and_then(|q| q.parse().ok()) == Some(*n));
             if is_number || name.contains(&query) || container.to_ascii_uppercase().contains(&query) {
@@ -134,7 +137,8 @@ impl Project {
         if query.starts_with('N') && query[1..].bytes().all(|byte| byte.is_ascii_digit()) {
             for (key, _) in self.programs() {
                 let Some(index) = self.file(key.file) else { continue };
-                let numbers = index.program_entries(key.program).filter(|entry| entry.kind == EntryKind::Number);
+                let numbers =
+                    index.program_entries(key.program).filter(|entry| entry.kind == EntryKind::Number);
                 let named = numbers.map(|entry| (format!("N{}", entry.value), entry.range));
                 let matching = named.filter(|(name, _)| name.starts_with(&query)).take(limit);
                 found.extend(matching.map(|(name, range)| WorkspaceSymbol {

@@ -179,7 +179,8 @@ fn exchanged(text: &str, settings: &Settings) -> String {
 
 /// Returns the number of an axis with its letter, `3 (Z)`.
 fn axis(index: u32, settings: &Settings) -> String {
-    let letter = (b'A'..=b'Z').find(|letter| settings.axes.find(*letter).is_some_and(|axis| axis as u32 == index));
+    let letter =
+        (b'A'..=b'Z').find(|letter| settings.axes.find(*letter).is_some_and(|axis| axis as u32 == index));
     let letter = letter.map_or_else(String::new, |letter| format!(" ({})", char::from(letter)));
     format!("{}{letter}", index + 1)
 }

@@ -149,7 +149,9 @@ fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<
         };
         let target = CalledProgramName::Number(program);
         let target_span = match called.kind {
-            CodeCallKind::MacroInP => words.list.iter().find(|word| word.letter == b'P').map(|word| word.span),
+            CodeCallKind::MacroInP => {
+                words.list.iter().find(|word| word.letter == b'P').map(|word| word.span)
+            }
             CodeCallKind::Macro | CodeCallKind::Modal | CodeCallKind::Subprogram => None,
         };
         Some(CallSite {

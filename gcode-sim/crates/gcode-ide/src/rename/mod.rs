@@ -61,12 +61,16 @@ impl Project {
             Renamed::Variable { number, program } => {
                 self.rename_variable(number, program, new_number(new_name, &['#'], "a variable as #101")?)?
             }
-            Renamed::Number { number, program } => {
-                self.rename_number(number, program, new_number(new_name, &['N'], "a sequence number as N10")?)?
-            }
-            Renamed::Program { number } => {
-                self.rename_program(number, file, new_number(new_name, &['O', ':'], "a program number as O8101")?)?
-            }
+            Renamed::Number { number, program } => self.rename_number(
+                number,
+                program,
+                new_number(new_name, &['N'], "a sequence number as N10")?,
+            )?,
+            Renamed::Program { number } => self.rename_program(
+                number,
+                file,
+                new_number(new_name, &['O', ':'], "a program number as O8101")?,
+            )?,
         };
         edits.sort_unstable();
         edits.dedup();
@@ -87,11 +91,16 @@ impl Project {
             Symbol::Program { name: ProgramName::Number(number) } => Renamed::Program { number },
             Symbol::Program { .. } => return refused("only programs with an O number are renamed"),
             Symbol::Argument { letter, local, .. } => {
-                let reason = format!("{letter} is the argument for #{local}: rename #{local} in the called program");
+                let reason =
+                    format!("{letter} is the argument for #{local}: rename #{local} in the called program");
                 return refused(&reason);
             }
-            Symbol::ComputedVariable => return refused("the number of this variable is known at run time only"),
-            Symbol::ComputedJump => return refused("the sequence number of this jump is known at run time only"),
+            Symbol::ComputedVariable => {
+                return refused("the number of this variable is known at run time only");
+            }
+            Symbol::ComputedJump => {
+                return refused("the sequence number of this jump is known at run time only");
+            }
             Symbol::ComputedCall => return refused("the number of this program is known at run time only"),
         };
         Ok((renamed, range))
@@ -151,15 +160,17 @@ impl Project {
             let mut others = new.all_entries().filter(is_comparable);
             for entry in old.all_entries().filter(is_comparable) {
                 let is_same = others.next().is_some_and(|other| {
-                    let targets = [&entry, &other].map(|e| {
-                        e.call().and_then(|call| crate::project::program_name(&call.record.target))
-                    });
+                    let targets = [&entry, &other]
+                        .map(|e| e.call().and_then(|call| crate::project::program_name(&call.record.target)));
                     let is_same_call = targets[0] == targets[1] || is_recalled(&targets[0], &targets[1]);
-                    let is_same_value = entry.value == other.value || is_renamed(entry.kind, entry.value, other.value);
+                    let is_same_value =
+                        entry.value == other.value || is_renamed(entry.kind, entry.value, other.value);
                     entry.kind == other.kind && is_same_value && is_same_call
                 });
                 if !is_same {
-                    return Err(Refusal::new("the block would be read differently afterwards").at(file, entry.range));
+                    return Err(
+                        Refusal::new("the block would be read differently afterwards").at(file, entry.range)
+                    );
                 }
             }
             if others.next().is_some() {
@@ -200,7 +211,8 @@ fn file_edit(file: FileId, range: TextRange, text: impl Into<String>) -> FileEdi
 fn digits_in(text: &[u8], range: TextRange) -> Option<TextRange> {
     let bytes = range.of(text);
     let first = bytes.iter().position(u8::is_ascii_digit)?;
-    let is_prefix = |byte: &u8| matches!(byte, b'#' | b'O' | b'o' | b':' | b'N' | b'n' | b'P' | b'p' | b' ' | b'\t');
+    let is_prefix =
+        |byte: &u8| matches!(byte, b'#' | b'O' | b'o' | b':' | b'N' | b'n' | b'P' | b'p' | b' ' | b'\t');
     let is_plain = bytes[..first].iter().all(is_prefix);
     let length = bytes[first..].iter().take_while(|byte| byte.is_ascii_digit()).count();
     let start = range.start + first as u32;

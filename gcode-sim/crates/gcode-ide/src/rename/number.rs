@@ -30,7 +30,12 @@ impl Project {
     }
 
     /// Returns the edits that give a block another sequence number.
-    pub(super) fn rename_number(&self, number: u32, key: ProgramKey, new: u32) -> Result<Vec<FileEdit>, Refusal> {
+    pub(super) fn rename_number(
+        &self,
+        number: u32,
+        key: ProgramKey,
+        new: u32,
+    ) -> Result<Vec<FileEdit>, Refusal> {
         self.check_number(number, key)?;
         if new == number {
             return Ok(Vec::new());
@@ -42,7 +47,9 @@ impl Project {
             let place = self.place(key, taken.location.range);
             let reason = match taken.access {
                 Access::Declaration => format!("N{new} is in use: {place}"),
-                Access::Read | Access::Write => format!("a jump to N{new}, which is missing, would find it: {place}"),
+                Access::Read | Access::Write => {
+                    format!("a jump to N{new}, which is missing, would find it: {place}")
+                }
             };
             return Err(Refusal::new(reason).at(taken.location.file, taken.location.range));
         }
@@ -92,7 +99,11 @@ impl Project {
         }
         self.refuse_reads(&[4114, 4314], "the sequence number")?;
         let is_unnamed = self.program(key).is_some_and(|program| program.name == ProgramName::Unnamed);
-        if is_unnamed { self.refuse_reads(&[4115, 4315], "the first sequence number as program number") } else { Ok(()) }
+        if is_unnamed {
+            self.refuse_reads(&[4115, 4315], "the first sequence number as program number")
+        } else {
+            Ok(())
+        }
     }
 
     fn is_every_block(&self, kind: Option<CallCode>, is_modal: bool) -> bool {

@@ -21,12 +21,15 @@ impl Project {
             [] => return Err(Refusal::new(format!("{label} is not in the project"))),
             [key] => {
                 if self.program(key).is_none_or(|program| program.name != name) {
-                    return Err(Refusal::new(format!("{label} has its number from the name of its file: rename the file")));
+                    return Err(Refusal::new(format!(
+                        "{label} has its number from the name of its file: rename the file"
+                    )));
                 }
             }
             [_, second, ..] => {
                 let range = self.program(second).map(|program| program.name_range).unwrap_or_default();
-                let reason = format!("{label} is in the project more than once: {}", self.place(second, range));
+                let reason =
+                    format!("{label} is in the project more than once: {}", self.place(second, range));
                 return Err(Refusal::new(reason).at(second.file, range));
             }
         }
@@ -37,7 +40,9 @@ impl Project {
             let place = || self.place(key, call.code);
             let is_by_code = call.target_range().is_none();
             let reason = match &call.record.target {
-                CalledProgramName::Computed => format!("{} calls a program whose number is computed", place()),
+                CalledProgramName::Computed => {
+                    format!("{} calls a program whose number is computed", place())
+                }
                 CalledProgramName::Number(called) if *called == number && is_by_code => {
                     format!("{} calls {label} by a code, a setting of the control", place())
                 }
@@ -50,7 +55,12 @@ impl Project {
     }
 
     /// Returns the edits that give a program another number.
-    pub(super) fn rename_program(&self, number: u32, from: FileId, new: u32) -> Result<Vec<FileEdit>, Refusal> {
+    pub(super) fn rename_program(
+        &self,
+        number: u32,
+        from: FileId,
+        new: u32,
+    ) -> Result<Vec<FileEdit>, Refusal> {
         self.check_program(number, from)?;
         if new == number {
             return Ok(Vec::new());
@@ -72,14 +82,18 @@ impl Project {
         for key in self.programs_named(&old_name, from) {
             let Some((index, program)) = self.file(key.file).zip(self.program(key)) else { continue };
             let spelled = digits_in(index.text(), program.name_range);
-            let unread = || Refusal::new("the name of the program is no number").at(key.file, program.name_range);
+            let unread =
+                || Refusal::new("the name of the program is no number").at(key.file, program.name_range);
             edits.push(file_edit(key.file, spelled.ok_or_else(unread)?, format!("{new:04}")));
         }
         for (key, call) in self.all_calls() {
             match &call.record.target {
                 CalledProgramName::Number(called) if *called == number => {}
                 CalledProgramName::Number(called) if *called == new => {
-                    let reason = format!("{} calls {label}, which is missing, and would find it", self.place(key, call.code));
+                    let reason = format!(
+                        "{} calls {label}, which is missing, and would find it",
+                        self.place(key, call.code)
+                    );
                     return Err(Refusal::new(reason).at(key.file, call.code));
                 }
                 _ => continue,
@@ -137,7 +151,9 @@ impl Project {
         let spelled = [format!("P{number}"), format!("P{number:04}")];
         for (key, _) in self.programs() {
             let Some(index) = self.file(key.file) else { continue };
-            for entry in index.program_entries(key.program).filter(|entry| entry.kind == EntryKind::Unreadable) {
+            for entry in
+                index.program_entries(key.program).filter(|entry| entry.kind == EntryKind::Unreadable)
+            {
                 let text = self.text(key.file, entry.range).replace(' ', "").to_ascii_uppercase();
                 if spelled.iter().any(|spelled| text.contains(spelled.as_str())) {
                     let reason = format!("{} cannot be read and may call it", self.place(key, entry.range));

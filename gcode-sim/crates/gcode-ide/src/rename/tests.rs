@@ -49,10 +49,7 @@ fn a_subprogram_shares_the_locals_of_its_caller() {
 #[test]
 fn a_common_changes_in_all_files() {
     let text = "//- O1.nc\nO1\n#$0101=5\nG65 P2 A#101\nM30\n//- O2.nc\nO2\nX[#101+#1] Y#1010\nM99\n";
-    assert_eq!(
-        renamed(text, "#102"),
-        "O1\n#102=5\nG65 P2 A#102\nM30\nO2\nX[#102+#1] Y#1010\nM99\n"
-    );
+    assert_eq!(renamed(text, "#102"), "O1\n#102=5\nG65 P2 A#102\nM30\nO2\nX[#102+#1] Y#1010\nM99\n");
     assert!(refused(text, "#7").contains("#7 is a local variable"));
     assert!(refused(text, "#5001").contains("not such a variable"));
     assert!(refused(text, "#34").contains("not such a variable"));
@@ -134,7 +131,10 @@ fn parameter_numbers_are_no_sequence_numbers() {
 #[test]
 fn a_program_changes_with_its_calls() {
     assert_eq!(
-        renamed("//- O1.nc\nO1\nG65 P8101 A1.\nM98 P58101\nM98 P8101 L2\nG66 P08101\nM30\n//- O8101.nc\nO$08101(T)\nM99\n", "O8102"),
+        renamed(
+            "//- O1.nc\nO1\nG65 P8101 A1.\nM98 P58101\nM98 P8101 L2\nG66 P08101\nM30\n//- O8101.nc\nO$08101(T)\nM99\n",
+            "O8102"
+        ),
         "O1\nG65 P8102 A1.\nM98 P58102\nM98 P8102 L2\nG66 P08102\nM30\nO8102(T)\nM99\n"
     );
     assert_eq!(renamed("O1\nG65 P2 X..5\nO$02\n", "7"), "O1\nG65 P7 X..5\nO0007\n", "before unreadable text");

@@ -22,7 +22,9 @@ impl Project {
         match scope {
             VariableScope::Null => return Err(Refusal::new("#0 is the vacant variable of the control")),
             VariableScope::System => {
-                return Err(Refusal::new(format!("#{number} is a system variable: the control gives it its number")));
+                return Err(Refusal::new(format!(
+                    "#{number} is a system variable: the control gives it its number"
+                )));
             }
             VariableScope::Local | VariableScope::Common => {}
         }
@@ -85,10 +87,11 @@ impl Project {
     fn check_new_variable(&self, number: u32, scope: VariableScope, new: u32) -> Result<(), Refusal> {
         let new_scope = VariableScope::of(new, self.settings());
         if new_scope != scope {
-            let range = if scope == VariableScope::Local { "#1 to #33" } else { "#100 to #199 or #500 to #999" };
-            let kind = if new_scope == VariableScope::Local { "a local variable" } else { "not such a variable" };
-            let reason =
-                format!("#{number} is a {}, #{new} is {kind}: write {range}", scope.name());
+            let range =
+                if scope == VariableScope::Local { "#1 to #33" } else { "#100 to #199 or #500 to #999" };
+            let kind =
+                if new_scope == VariableScope::Local { "a local variable" } else { "not such a variable" };
+            let reason = format!("#{number} is a {}, #{new} is {kind}: write {range}", scope.name());
             return Err(Refusal::new(reason));
         }
         if canonical(new, self.settings()) != new {
@@ -152,7 +155,9 @@ impl Project {
                     EntryKind::SetNames => {
                         let count = self.count_of_names(key, entry.range);
                         let first = entry.value;
-                        numbers.iter().any(|n| first == NAMED || (first..first.saturating_add(count)).contains(n))
+                        numbers
+                            .iter()
+                            .any(|n| first == NAMED || (first..first.saturating_add(count)).contains(n))
                     }
                     EntryKind::Read | EntryKind::Write if entry.value == NAMED => {
                         numbers.iter().any(|number| NAMED_COMMONS.contains(number))
@@ -256,7 +261,9 @@ impl Project {
             let locals = call.record.arguments.iter().map(|argument| argument.local);
             let passes = |local: u32| locals.clone().any(|other| other == local);
             let is_called = |key: &ProgramKey| keys.contains(key);
-            if !passes(number) && !passes(new) || !self.called_program(from.file, &call.record.target).as_ref().is_some_and(is_called) {
+            if !passes(number) && !passes(new)
+                || !self.called_program(from.file, &call.record.target).as_ref().is_some_and(is_called)
+            {
                 continue;
             }
             let place = self.place(from, call.code);
@@ -264,10 +271,12 @@ impl Project {
             if passes(new) {
                 return Err(refused(format!("#{new} is in use: it is an argument of {place}")));
             }
-            let letter = argument_letter(new as usize)
-                .ok_or_else(|| refused(format!("#{number} is an argument of {place}, and #{new} has no letter")))?;
+            let letter = argument_letter(new as usize).ok_or_else(|| {
+                refused(format!("#{number} is an argument of {place}, and #{new} has no letter"))
+            })?;
             if !self.has_renamed_locals(&call, (number, new), letter) {
-                let reason = format!("with {letter} for #{new} the arguments of {place} would set other variables");
+                let reason =
+                    format!("with {letter} for #{new} the arguments of {place} would set other variables");
                 return Err(refused(reason));
             }
             let arguments = call.record.arguments.iter().filter(|argument| argument.local == number);
@@ -279,7 +288,9 @@ impl Project {
     /// Returns true if the arguments set the same locals with a new letter, but for the renamed one.
     fn has_renamed_locals(&self, call: &Call<'_>, (number, new): (u32, u32), letter: char) -> bool {
         let is_every_block = call.record.kind == Some(CallCode::EveryBlock)
-            || call.record.is_modal && call.record.kind.is_none() && self.settings().code_calls.modal_is_every_block;
+            || call.record.is_modal
+                && call.record.kind.is_none()
+                && self.settings().code_calls.modal_is_every_block;
         let mut locals = ArgumentLocals::new(self.settings().reads_ijk_plainly, is_every_block);
         call.record.arguments.iter().all(|argument| {
             let is_renamed = argument.local == number;

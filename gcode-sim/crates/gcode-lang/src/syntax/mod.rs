@@ -22,8 +22,8 @@ mod statement;
 mod token;
 mod word;
 
-pub use file::{block_at, parse};
 pub(crate) use file::{BlockOutline, ProgramParts, outline, sequence_number_at};
+pub use file::{block_at, parse};
 pub use file_items::{FileItem, FileItems};
 pub(crate) use file_items::{end_without_spaces, without_trailer};
 pub use lines::{LineItem, first_line, line_items};
