@@ -57,7 +57,8 @@ impl Client {
     }
 
     fn initialize(&mut self) {
-        let answer = self.ask(0, "initialize", json!({ "processId": null, "rootUri": null, "capabilities": {} }));
+        let answer =
+            self.ask(0, "initialize", json!({ "processId": null, "rootUri": null, "capabilities": {} }));
         assert_eq!(answer["result"]["serverInfo"]["name"], "gcode-sim");
         self.send(json!({ "method": "initialized", "params": {} }));
     }

@@ -120,9 +120,14 @@ impl<'a> Session<'a> {
                 self.version = words.next().unwrap().parse().unwrap();
                 let changes: Vec<Value> = body.iter().map(|line| change(line.trim())).collect();
                 let document = json!({ "uri": self.uri(name), "version": self.version });
-                self.notify("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+                self.notify(
+                    "textDocument/didChange",
+                    json!({ "textDocument": document, "contentChanges": changes }),
+                );
             }
-            "close" => self.notify("textDocument/didClose", json!({ "textDocument": { "uri": self.uri(name) } })),
+            "close" => {
+                self.notify("textDocument/didClose", json!({ "textDocument": { "uri": self.uri(name) } }))
+            }
             "disk" => {
                 std::fs::write(self.folder.join(name), self.text(body)).unwrap();
                 if words.next() != Some("silently") {
@@ -149,8 +154,12 @@ impl<'a> Session<'a> {
             "server" => {
                 let words = rest.split_once('~').map_or("", |(_, words)| words).to_owned();
                 self.await_message(|message| match message {
-                    Message::Notification(message) if message.method == name => message.params.to_string().contains(&words),
-                    Message::Request(message) if message.method == name => message.params.to_string().contains(&words),
+                    Message::Notification(message) if message.method == name => {
+                        message.params.to_string().contains(&words)
+                    }
+                    Message::Request(message) if message.method == name => {
+                        message.params.to_string().contains(&words)
+                    }
                     _ => false,
                 });
             }
@@ -186,7 +195,8 @@ impl<'a> Session<'a> {
 
     /// Parses JSON; `$O1.nc` in it is the URI of a file.
     fn json(&self, text: &str) -> Value {
-        let mut value = serde_json::from_str(text).unwrap_or_else(|error| panic!("{}: {error}: {text}", self.place));
+        let mut value =
+            serde_json::from_str(text).unwrap_or_else(|error| panic!("{}: {error}: {text}", self.place));
         self.insert_uris(&mut value);
         value
     }
@@ -225,7 +235,8 @@ impl<'a> Session<'a> {
     /// Waits for the answer to the last request.
     fn answer(&mut self) -> Response {
         let id = self.asked.take().unwrap_or_else(|| panic!("{}: no request", self.place)).into();
-        let message = self.await_message(|message| matches!(message, Message::Response(response) if response.id == id));
+        let message =
+            self.await_message(|message| matches!(message, Message::Response(response) if response.id == id));
         let Message::Response(response) = message else { unreachable!() };
         response
     }
@@ -237,7 +248,8 @@ impl<'a> Session<'a> {
         }
         loop {
             let message = self.client.receiver.recv_timeout(PATIENCE);
-            let message = message.unwrap_or_else(|_| panic!("{}: nothing came, but {:?}", self.place, self.received));
+            let message =
+                message.unwrap_or_else(|_| panic!("{}: nothing came, but {:?}", self.place, self.received));
             if is_awaited(&message) {
                 return message;
             }
@@ -248,7 +260,8 @@ impl<'a> Session<'a> {
     fn compare_answer(&self, rest: &str, body: &[&str], answer: Response) {
         if let Some(error) = rest.strip_prefix("error ") {
             let (code, words) = error.split_once(" ~").unwrap_or((error, ""));
-            let found = answer.error.unwrap_or_else(|| panic!("{}: no error: {:?}", self.place, answer.result));
+            let found =
+                answer.error.unwrap_or_else(|| panic!("{}: no error: {:?}", self.place, answer.result));
             assert_eq!(found.code, code.parse::<i32>().unwrap(), "{}: {}", self.place, found.message);
             assert!(found.message.contains(words), "{}: {}", self.place, found.message);
             return;
@@ -285,7 +298,8 @@ impl<'a> Session<'a> {
 /// Returns published diagnostics as lines.
 fn published(message: &Message, uri: &str, version: &Value) -> Option<Vec<String>> {
     let Message::Notification(Notification { method, params }) = message else { return None };
-    let is_of = method == "textDocument/publishDiagnostics" && params["uri"] == *uri && params["version"] == *version;
+    let is_of =
+        method == "textDocument/publishDiagnostics" && params["uri"] == *uri && params["version"] == *version;
     let severity = |diagnostic: &Value| match diagnostic["severity"].as_u64() {
         Some(1) => "error",
         Some(2) => "warning",
@@ -310,7 +324,8 @@ fn is_expected(expected: &[&str], found: &[String]) -> bool {
         let (found_head, message) = found.split_once(" ~").unwrap();
         head == found_head && message.contains(words)
     };
-    expected.len() == found.len() && expected.iter().zip(found).all(|(expected, found)| is_same(expected, found))
+    expected.len() == found.len()
+        && expected.iter().zip(found).all(|(expected, found)| is_same(expected, found))
 }
 
 /// Parses a change: `2:0-2:4 "text"`, `all "text"`.
@@ -322,7 +337,9 @@ fn change(line: &str) -> Value {
         json!({ "line": line.parse::<u32>().unwrap(), "character": character.parse::<u32>().unwrap() })
     };
     match range.split_once('-') {
-        Some((start, end)) => json!({ "range": { "start": position(start), "end": position(end) }, "text": text }),
+        Some((start, end)) => {
+            json!({ "range": { "start": position(start), "end": position(end) }, "text": text })
+        }
         None => json!({ "text": text }),
     }
 }

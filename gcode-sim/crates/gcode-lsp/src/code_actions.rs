@@ -4,8 +4,8 @@ use std::sync::Arc;
 use gcode_control::Progress;
 use gcode_ide::{FileEdit, FileId};
 use lsp_types::{
-    CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams, CodeActionResponse,
-    Diagnostic, NumberOrString, Range,
+    CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams,
+    CodeActionResponse, Diagnostic, NumberOrString, Range,
 };
 
 use crate::edits::{format_edits, renumber_edits, workspace_edit};
@@ -40,7 +40,8 @@ pub(crate) fn code_actions(
     let mut actions = Vec::new();
     if is_wanted(&CodeActionKind::QUICKFIX) {
         let given = params.context.diagnostics.iter();
-        let published = snapshot.published.get(&file).map(|published| published.as_slice()).unwrap_or_default();
+        let published =
+            snapshot.published.get(&file).map(|published| published.as_slice()).unwrap_or_default();
         let here = published.iter().filter(|_| params.context.diagnostics.is_empty());
         let here = here.filter(|diagnostic| touches(diagnostic.range, params.range));
         for diagnostic in given.chain(here) {

@@ -28,7 +28,8 @@ pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Resul
         by_file.entry(file).or_default().push(TextEdit { range, new_text: edit.text });
         last = Some((file, text));
     }
-    let files = by_file.into_iter().filter_map(|(file, edits)| Some((file, snapshot.uri(file)?.clone(), edits)));
+    let files =
+        by_file.into_iter().filter_map(|(file, edits)| Some((file, snapshot.uri(file)?.clone(), edits)));
     if !snapshot.client.has_document_changes {
         let changes = files.map(|(_, uri, edits)| (uri, edits)).collect();
         return Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() });

@@ -7,7 +7,8 @@ use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::program::Memory;
 use gcode_lang::source::{SourceId, Sources, Span};
 use lsp_types::{
-    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, Range, Uri,
+    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString,
+    Range, Uri,
 };
 
 use crate::client::Client;

@@ -135,6 +135,10 @@ impl Server {
                 let result = guarded(&method, || handler(&self.state.snapshot, params));
                 self.state.send(response(id, result));
             }
+            Handler::Aside(handler) => self.in_background(id, move |snapshot, id, _| {
+                let result = guarded(&method, || handler(&snapshot, params));
+                BackgroundAnswer::Answered(response(id, result))
+            }),
             Handler::Later(handler) => self.in_background(id, move |snapshot, id, progress| {
                 let result = guarded(&method, || handler(&snapshot, params, progress));
                 BackgroundAnswer::Answered(response(id, result))
@@ -149,7 +153,9 @@ impl Server {
     fn in_background(
         &mut self,
         id: RequestId,
-        work: impl FnOnce(crate::snapshot::Snapshot, RequestId, &Arc<Progress>) -> BackgroundAnswer + Send + 'static,
+        work: impl FnOnce(crate::snapshot::Snapshot, RequestId, &Arc<Progress>) -> BackgroundAnswer
+        + Send
+        + 'static,
     ) {
         let progress = Arc::new(Progress::default());
         self.state.pending.insert(id.clone(), Arc::clone(&progress));
@@ -166,8 +172,10 @@ impl Server {
     fn on_response(&mut self, response: Response) {
         if self.state.configuration_requests.remove(&response.id) {
             let result = response.result.unwrap_or_default();
-            let settings = result.get(0).cloned().unwrap_or_default();
-            notifications::set_configuration(&mut self.state, &settings);
+            // A client without such settings answers null: those of initialize stay.
+            if let Some(settings) = result.get(0).filter(|settings| !settings.is_null()) {
+                notifications::set_configuration(&mut self.state, settings);
+            }
         }
     }
 
@@ -187,7 +195,9 @@ impl Server {
                     self.answer(request);
                 }
             }
-            BackgroundAnswer::Scanned(paths) => paths.iter().for_each(|path| self.state.read_within_budget(path)),
+            BackgroundAnswer::Scanned(paths) => {
+                paths.iter().for_each(|path| self.state.read_within_budget(path))
+            }
         }
     }
 
@@ -202,7 +212,12 @@ impl Server {
             }
             if let Some(uri) = shown.filter(|_| self.state.snapshot.client.has_show_document) {
                 let external = Some(true);
-                self.state.ask::<ShowDocument>(ShowDocumentParams { uri, external, take_focus: None, selection: None });
+                self.state.ask::<ShowDocument>(ShowDocumentParams {
+                    uri,
+                    external,
+                    take_focus: None,
+                    selection: None,
+                });
             }
             if let Some((label, edit)) = applied {
                 self.state.ask::<ApplyWorkspaceEdit>(ApplyWorkspaceEditParams { label: Some(label), edit });

@@ -140,7 +140,9 @@ impl ServerState {
     /// Reads the programs of the folders in which the programs that a document calls are found.
     fn read_neighbours(&mut self, file: FileId) {
         use gcode_session::files::FileAccess;
-        if document_uri::path(&self.snapshot.documents[&file].uri).is_none() && self.snapshot.folders.is_empty() {
+        if document_uri::path(&self.snapshot.documents[&file].uri).is_none()
+            && self.snapshot.folders.is_empty()
+        {
             return;
         }
         for folder in self.snapshot.setup(file).folders() {
@@ -173,7 +175,8 @@ impl ServerState {
         version: i32,
         changes: Vec<lsp_types::TextDocumentContentChangeEvent>,
     ) {
-        let Some(file) = self.snapshot.known(uri).filter(|file| self.snapshot.documents.contains_key(file)) else {
+        let Some(file) = self.snapshot.known(uri).filter(|file| self.snapshot.documents.contains_key(file))
+        else {
             return;
         };
         self.use_settings(file);
@@ -253,7 +256,8 @@ impl ServerState {
     pub(crate) fn poll_disk(&mut self) {
         let host = self.snapshot.files.host();
         let stamps = self.checked.values().flat_map(|basis| &basis.stamps);
-        let changed = stamps.filter(|(path, stamp)| host.stamp(path) != **stamp).map(|(path, _)| path.clone());
+        let changed =
+            stamps.filter(|(path, stamp)| host.stamp(path) != **stamp).map(|(path, _)| path.clone());
         let changed: BTreeSet<_> = changed.filter(|path| !self.snapshot.files.is_open(path)).collect();
         if changed.is_empty() {
             return;
@@ -278,7 +282,9 @@ impl ServerState {
 
     /// Has the index read for the control of a document.
     pub(crate) fn use_settings(&mut self, file: FileId) {
-        if let Some(settings) = self.settings.get(&file).filter(|settings| *settings != self.snapshot.project.settings()) {
+        if let Some(settings) =
+            self.settings.get(&file).filter(|settings| *settings != self.snapshot.project.settings())
+        {
             Arc::make_mut(&mut self.snapshot.project).set_settings(settings.clone());
         }
     }
@@ -303,7 +309,8 @@ impl ServerState {
         let host = self.snapshot.files.host();
         let files = checked.called.iter().chain(&checked.surroundings);
         let stamps = files.map(|path| (path.clone(), host.stamp(path))).collect();
-        let (called, surroundings, is_in_project) = (checked.called, checked.surroundings, checked.is_in_project);
+        let (called, surroundings, is_in_project) =
+            (checked.called, checked.surroundings, checked.is_in_project);
         self.checked.insert(file, CheckBasis { called, surroundings, is_in_project, stamps });
         let published = Arc::new(checked.diagnostics.clone());
         Arc::make_mut(&mut self.snapshot.published).insert(file, published);

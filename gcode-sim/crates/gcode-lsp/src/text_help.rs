@@ -4,9 +4,10 @@ use std::sync::Arc;
 use gcode_control::Progress;
 use gcode_ide::{CompletionKind, FileId, Symbol, TextRange, VariableScope};
 use lsp_types::{
-    CompletionItem, CompletionItemKind, CompletionList, CompletionParams, CompletionResponse, CompletionTextEdit,
-    Documentation, Hover, HoverContents, HoverParams, InsertTextFormat, MarkupContent, MarkupKind,
-    ParameterInformation, ParameterLabel, SignatureHelp, SignatureHelpParams, SignatureInformation, TextEdit,
+    CompletionItem, CompletionItemKind, CompletionList, CompletionParams, CompletionResponse,
+    CompletionTextEdit, Documentation, Hover, HoverContents, HoverParams, InsertTextFormat, MarkupContent,
+    MarkupKind, ParameterInformation, ParameterLabel, SignatureHelp, SignatureHelpParams,
+    SignatureInformation, TextEdit,
 };
 
 use crate::background_run;
@@ -53,7 +54,9 @@ fn value_in_run(facts: &RunFacts, range: TextRange, number: u32, scope: Variable
         });
         return match values.last.is_vacant() {
             true => format!("`#{number}` is **vacant** here{spread}; {run}."),
-            false => format!("`#{number}` = **{}**, the last value here{spread}; {run}.", value_text(values.last)),
+            false => {
+                format!("`#{number}` = **{}**, the last value here{spread}; {run}.", value_text(values.last))
+            }
         };
     }
     match facts.commons.get(&number) {
