@@ -5,7 +5,7 @@ use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Block, Decimal, Expr, ExprKind, Item, Statement, Unreadable, Word, WordValue};
 use gcode_lint::{CalledProgramName, ValueUse, block_expressions, call_site, constant, variable};
 
-use crate::chunk::{ChunkBuilder, is_read_g, is_read_m};
+use crate::chunk_builder::{ChunkBuilder, is_read_g, is_read_m};
 use crate::entry::{ArgumentRecord, CallRecord, EntryKind};
 use crate::text::TextRange;
 
@@ -57,9 +57,14 @@ fn record_statement(builder: &mut ChunkBuilder<'_>, statement: &Statement, range
 
 /// Records a jump, or that its sequence number is computed.
 fn push_jump(builder: &mut ChunkBuilder<'_>, kind: EntryKind, number: Option<u32>, range: TextRange) {
+    let computed = match kind {
+        EntryKind::ReturnTo => EntryKind::ComputedReturn,
+        EntryKind::StartAt => EntryKind::ComputedStart,
+        _ => EntryKind::ComputedGoto,
+    };
     match number {
         Some(number) => builder.push(kind, range, number),
-        None => builder.push(EntryKind::ComputedJump, range, 0),
+        None => builder.push(computed, range, 0),
     }
 }
 

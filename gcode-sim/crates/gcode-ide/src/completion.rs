@@ -95,7 +95,14 @@ impl Project {
         } else if is_code && letter == b'P' && self.takes_program(text, &lexemes) {
             found = self.program_numbers(&typed);
         } else if is_code && letter == b'P' && self.takes_number(text, &lexemes) {
-            found.extend(key.map(|key| self.numbers(key, &typed, 1)).unwrap_or_default());
+            let programs = key.map(|key| match self.block_kind(text, &lexemes).is_return {
+                true => self.return_programs(key),
+                false => vec![key],
+            });
+            found.extend(programs.into_iter().flatten().flat_map(|key| self.numbers(key, &typed, 1)));
+        } else if is_code && letter == b'Q' && self.block_kind(text, &lexemes).is_subprogram_call {
+            let programs = key.map(|key| self.started_programs(key, TextRange::new(line.start, line.start)));
+            found.extend(programs.into_iter().flatten().flat_map(|key| self.numbers(key, &typed, 1)));
         } else if is_expression(text, &typed.before) {
             found.extend(words(&typed, true));
         } else if let Some(arguments) = self.arguments(file, offset, &typed) {
@@ -110,7 +117,7 @@ impl Project {
             found.extend(words(&typed, false));
         }
         found.retain(|completion| {
-            completion.filter.starts_with(typed.text.trim_start_matches(['P']))
+            completion.filter.starts_with(typed.text.trim_start_matches(['P', 'Q']))
                 || completion.filter.starts_with(&typed.text)
         });
         found
@@ -383,6 +390,8 @@ mod tests {
         assert_eq!(offered(text), ["10", "20"]);
         assert_eq!(offered("O1\nN10 X1.\nN20\nIF[#1 EQ 1]GOTO2$0\n"), ["20"]);
         assert_eq!(offered("O1\nN10\nM99 P$0\n"), ["10"]);
+        assert_eq!(offered("O1\nM98 P2\nN7\nO2\nN8\nM99 P$0\n"), ["7"], "in the caller");
+        assert_eq!(offered("O1\nM98 P2 Q$0\nN7\nO2\nN8\nM99\n"), ["8"], "in the called program");
         let calls = "//- O1.nc\nO1\nG65 P$0\n//- O8101.nc\nO8101(HOLE)\n";
         assert_eq!(offered(calls), ["1", "8101"]);
         assert_eq!(offered(&calls.replace("P$0", "P81$0")), ["8101"]);

@@ -26,8 +26,12 @@ pub(crate) enum EntryKind {
     StartAt,
     /// Sequence number of M97 P, or of M98 Q or H without a program: in the same program.
     LocalCall,
-    /// GOTO, M99 P, M98 Q or M97 P whose sequence number is computed.
-    ComputedJump,
+    /// GOTO or M97 P whose sequence number is computed.
+    ComputedGoto,
+    /// M99 P whose sequence number is computed.
+    ComputedReturn,
+    /// M98 Q whose sequence number is computed.
+    ComputedStart,
     /// Code of a call; the value is an index in the calls of the chunk.
     Call,
     /// Read of a variable; the value is its number.

@@ -6,7 +6,8 @@ use gcode_lang::source::Bytes;
 use gcode_lang::syntax::ast::{Folder, ProgramName};
 use gcode_lang::syntax::first_line;
 
-use crate::chunk::{self, Chunk, MotionKind};
+use crate::chunk;
+use crate::chunk_builder::{Chunk, MotionKind};
 use crate::entry::{CallRecord, EntryKind};
 use crate::text::{TextEdit, TextRange, apply_edits};
 

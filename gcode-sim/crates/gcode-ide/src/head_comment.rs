@@ -1,4 +1,6 @@
 //! Head of a program: its title, and the meaning of its variables as its comments state them.
+use gcode_lang::program::argument_letter;
+
 use crate::entry::EntryKind;
 use crate::file_index::FileIndex;
 use crate::text::{TextRange, line_range, lossy};
@@ -29,7 +31,7 @@ pub(crate) fn title(index: &FileIndex, program: usize) -> Option<String> {
 
 /// Returns the meanings of variables that the comments of a program state.
 ///
-/// `(A #1  RADIUS)`, `(#1 = X START)`, `(A = #1 RADIUS)`, `(#24-#29 RESULTS)`, `(#4 #5 MODES, #6 FEED)`, and the
+/// `(A #1  RADIUS)`, `(A = RADIUS)`, `(#1 = X START)`, `(A = #1 RADIUS)`, `(#24-#29 RESULTS)`, `(#4 #5 MODES, #6 FEED)`, and the
 /// comment behind an assignment, `#101=5. (FEED)`.
 pub(crate) fn meanings(index: &FileIndex, program: usize) -> Vec<VariableMeaning> {
     let mut found = Vec::new();
@@ -37,6 +39,7 @@ pub(crate) fn meanings(index: &FileIndex, program: usize) -> Vec<VariableMeaning
     let end = outline.range.end.min(outline.range.start + MAX_HEAD);
     let head = TextRange::new(outline.range.start, end);
     let mut continued: Option<usize> = None;
+    let mut by_letter = Vec::new();
     for entry in index.entries(head).filter(|entry| entry.kind == EntryKind::Comment) {
         let text = lossy(entry.range.of(index.text()));
         let text = text.trim_start_matches(['(', ';', '/']).trim_end_matches(')');
@@ -51,14 +54,34 @@ pub(crate) fn meanings(index: &FileIndex, program: usize) -> Vec<VariableMeaning
             }
         } else {
             continued = None;
+            by_letter.extend(letter_meaning(text, entry.range));
         }
     }
+    // A comment that names the variable precedes one that names its letter.
+    by_letter.retain(|meaning| found.iter().all(|other| other.number != meaning.number));
+    found.extend(by_letter);
     found
+}
+
+/// Returns the meaning in `A = RADIUS`, `A: RADIUS` or `A - RADIUS`, unless it is a formula.
+fn letter_meaning(comment: &str, range: TextRange) -> Option<VariableMeaning> {
+    let letter = comment.trim_start().chars().next()?.to_ascii_uppercase();
+    let behind = comment.trim_start().get(1..)?.trim_start();
+    let words = behind.strip_prefix([':', '=', '-'])?.trim();
+    let number = (1..=26).find(|local| argument_letter(*local) == Some(letter))?;
+    let is_text =
+        words.len() > 2 && !words.contains(['=', '*', '[', '#']) && words.starts_with(char::is_alphabetic);
+    is_text.then(|| VariableMeaning {
+        number: number as u32,
+        letter: Some(letter),
+        text: words.to_owned(),
+        range,
+    })
 }
 
 /// Collects the meanings of one comment.
 fn collect(comment: &str, range: TextRange, found: &mut Vec<VariableMeaning>) {
-    let letter = argument_letter(comment);
+    let letter = stated_letter(comment);
     let mut pending: Vec<u32> = Vec::new();
     let mut is_first = true;
     let mut rest = comment;
@@ -106,7 +129,7 @@ fn flush(
 }
 
 /// Returns the letter at the start of a comment about an argument: `A #1`, `A = #1`, `(A) #1`.
-fn argument_letter(comment: &str) -> Option<char> {
+fn stated_letter(comment: &str) -> Option<char> {
     let text = comment.trim_start();
     let letter = text.chars().next().filter(char::is_ascii_alphabetic)?;
     let behind = text[1..].trim_start_matches([' ', '=', ':', ')', ',', '-']);
@@ -138,6 +161,8 @@ mod tests {
             stated("O1\n(VARIABLES #4 #5 MODES, #24-#26 RESULTS)\n(          #141 READ)\n"),
             ["#4 MODES", "#5 MODES", "#24 RESULTS", "#25 RESULTS", "#26 RESULTS", "#141 READ"]
         );
+        assert_eq!(stated("O1\n(R = RADIUS)\n(D: DEPTH)\n(#18 OTHER)\n"), ["#18 OTHER", "#7D DEPTH"]);
+        assert_eq!(stated("O1\n(X = R, Y = B*2)\n(B - 2)\n(P = PITCH)\n(NOTE: SLOW)\n"), [""; 0]);
         assert_eq!(stated("O1\n(SET HEAD TO #140)\nX#1\n(NO MEANING #)\n"), ["#140 SET HEAD TO"]);
     }
 

@@ -28,6 +28,7 @@
 mod block_entries;
 mod call_hierarchy;
 mod chunk;
+mod chunk_builder;
 mod code_text;
 mod completion;
 mod entry;
@@ -64,7 +65,7 @@ pub use completion::{Completion, CompletionKind};
 pub use file_index::{FileIndex, ProgramOutline};
 pub use folding::{FoldingKind, FoldingRange};
 pub use hover::Hover;
-pub use links::DocumentLink;
+pub use links::{DocumentLink, PageLink};
 pub use navigation::{Access, Definition, NavigationTarget, Reference};
 pub use project::{ProgramKey, Project};
 pub use quick_fix::QuickFix;

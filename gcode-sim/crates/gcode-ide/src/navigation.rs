@@ -1,6 +1,7 @@
 //! Definition and references of the symbol at a place.
 use gcode_lang::syntax::ast::ProgramName;
 
+use crate::block_entries::NAMED;
 use crate::entry::EntryKind;
 use crate::file_index::PlacedEntry;
 use crate::head_comment::meanings;
@@ -119,7 +120,11 @@ impl Project {
                     EntryKind::Write => Access::Write,
                     _ => continue,
                 };
-                if canonical(entry.value, self.settings()) == number {
+                let value = match entry.value {
+                    NAMED => self.named_variable(key.file, entry.range).unwrap_or(NAMED),
+                    value => value,
+                };
+                if canonical(value, self.settings()) == number {
                     found.push(Reference {
                         location: Location { file: key.file, range: entry.range },
                         access,

@@ -71,6 +71,11 @@ fn references_are_told_apart_by_their_use() {
     );
     assert_eq!(referred("O1\nN5\nIF[#1 EQ 1]GOTO 5\nGOTO $05\nO2\nGOTO 5\n"), ["2:N5!", "3:5", "4:5"]);
     assert_eq!(referred("O1\nG65 P2\nM98 P2\nM30\n$0O2\nM99\n"), ["2:P2", "3:P2", "5:O2!"]);
+    assert_eq!(
+        referred("O1\nSETVN 510[TOOL,WORK]\n#$0511=1\nX[#WORK]\nY[#TOOL]\nM30\n"),
+        ["3:#511=", "4:[#WORK]"],
+        "a name that a program gives"
+    );
     assert_eq!(referred("O1\n#1=#$05021\nX[#_ABSMT[1]]\n"), ["2:#5021", "3:[#_ABSMT[1]]"]);
 }
 

@@ -1,7 +1,12 @@
 //! Scope of variables: the macro level of a local, the project for a common.
 use gcode_lang::control::Settings;
 
+use gcode_lang::syntax::ast::{Item, Statement};
+
+use crate::block_entries::NAMED;
+use crate::entry::EntryKind;
 use crate::project::{ProgramKey, Project};
+use crate::text::{FileId, TextRange, lossy};
 
 /// Scope of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,5 +79,33 @@ impl Project {
             next += 1;
         }
         level
+    }
+
+    /// Returns the names that a SETVN gives to consecutive variables.
+    pub(crate) fn given_names(&self, file: FileId, range: TextRange) -> Vec<String> {
+        let block = self.block(file, range.start);
+        let names = block.into_iter().flat_map(|block| block.items).filter_map(|item| match item {
+            Item::Statement(statement) => match statement.node {
+                Statement::SetNames { names, .. } => Some(names),
+                _ => None,
+            },
+            _ => None,
+        });
+        names.flatten().collect()
+    }
+
+    /// Returns the number of the variable that is spelled by a name, `[#TOOL_NO]`, if a SETVN of the project gives it.
+    pub(crate) fn named_variable(&self, file: FileId, range: TextRange) -> Option<u32> {
+        let text = lossy(range.of(self.file(file)?.text())).to_ascii_uppercase();
+        let (_, behind) = text.split_once('#')?;
+        let name = behind.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next()?;
+        self.files().find_map(|(other, index)| {
+            let mut given =
+                index.all_entries().filter(|entry| entry.kind == EntryKind::SetNames && entry.value != NAMED);
+            given.find_map(|entry| {
+                let place = self.given_names(other, entry.range).iter().position(|given| given == name)?;
+                entry.value.checked_add(place as u32)
+            })
+        })
     }
 }

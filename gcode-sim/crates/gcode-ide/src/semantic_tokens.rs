@@ -4,7 +4,7 @@ use gcode_lang::program::g_codes::{self, Effect, OneShot};
 use gcode_lang::program::names;
 use gcode_lang::syntax::{LineItem, line_items};
 
-use crate::chunk::{MotionChange, MotionKind, motion_of};
+use crate::chunk_builder::{MotionChange, MotionKind, motion_of};
 use crate::lexer::{Lexeme, LexemeKind, lexemes};
 use crate::project::Project;
 use crate::scope::VariableScope;

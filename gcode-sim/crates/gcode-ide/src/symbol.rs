@@ -80,8 +80,18 @@ impl Project {
                     let programs = self.started_programs(program, entry.range);
                     Symbol::SequenceNumber { number, programs }
                 }
-                EntryKind::ComputedJump => Symbol::ComputedJump,
-                EntryKind::Read | EntryKind::Write if number == NAMED => Symbol::ComputedVariable,
+                EntryKind::ComputedGoto | EntryKind::ComputedReturn | EntryKind::ComputedStart => {
+                    Symbol::ComputedJump
+                }
+                EntryKind::Read | EntryKind::Write if number == NAMED => {
+                    match self.named_variable(file, entry.range) {
+                        Some(number) => {
+                            let scope = VariableScope::of(number, self.settings());
+                            Symbol::Variable { number, scope, program }
+                        }
+                        None => Symbol::ComputedVariable,
+                    }
+                }
                 EntryKind::Read | EntryKind::Write => {
                     let scope = VariableScope::of(number, self.settings());
                     Symbol::Variable { number, scope, program }

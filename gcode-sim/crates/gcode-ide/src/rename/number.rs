@@ -6,7 +6,7 @@ use super::file_edit;
 use crate::entry::EntryKind;
 use crate::navigation::Access;
 use crate::project::{ProgramKey, Project};
-use crate::text::{FileEdit, Refusal};
+use crate::text::{FileEdit, Refusal, TextRange};
 
 /// Largest sequence number.
 pub(crate) const MAX_NUMBER: u32 = 99_999_999;
@@ -71,27 +71,27 @@ impl Project {
 
     /// Refuses a program whose sequence numbers something reads that cannot be followed.
     pub(crate) fn refuse_unknown_jumps(&self, key: ProgramKey) -> Result<(), Refusal> {
-        let callers = self.calls_to(key).map(|(from, _)| from);
-        let called = self.calls_of(key).filter_map(|call| self.called_program(key.file, &call.record.target));
-        let mut keys: Vec<_> = [key].into_iter().chain(callers).chain(called).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        for other in keys {
+        for (other, _) in self.programs() {
             let Some(index) = self.file(other.file) else { continue };
             for entry in index.program_entries(other.program) {
-                let text = self.text(other.file, entry.range);
+                let text = || self.text(other.file, entry.range);
+                let reaches = match entry.kind {
+                    EntryKind::ComputedGoto => other == key,
+                    EntryKind::ComputedReturn => self.return_programs(other).contains(&key),
+                    EntryKind::ComputedStart => self.starts(other, entry.range, key),
+                    EntryKind::Unreadable => other == key && may_jump(&text()),
+                    EntryKind::Call if other == key => entry
+                        .call()
+                        .is_some_and(|call| self.is_every_block(call.record.kind, call.record.is_modal)),
+                    _ => false,
+                };
+                if !reaches {
+                    continue;
+                }
                 let reason = match entry.kind {
-                    EntryKind::ComputedJump => format!("jumps to {text}, which may be any sequence number"),
-                    EntryKind::Unreadable if other == key && may_jump(&text) => {
-                        format!("cannot be read: {text}")
-                    }
-                    EntryKind::Call if other == key => match entry.call() {
-                        Some(call) if self.is_every_block(call.record.kind, call.record.is_modal) => {
-                            "makes N an argument of every block".to_owned()
-                        }
-                        _ => continue,
-                    },
-                    _ => continue,
+                    EntryKind::Unreadable => format!("cannot be read: {}", text()),
+                    EntryKind::Call => "makes N an argument of every block".to_owned(),
+                    _ => format!("jumps to {}, which may be any sequence number", text()),
                 };
                 let reason = format!("{} {reason}", self.place(other, entry.range));
                 return Err(Refusal::new(reason).at(other.file, entry.range));
@@ -106,7 +106,14 @@ impl Project {
         }
     }
 
-    fn is_every_block(&self, kind: Option<CallCode>, is_modal: bool) -> bool {
+    /// Returns true if the call beside a computed Q may start a program.
+    fn starts(&self, from: ProgramKey, start: TextRange, key: ProgramKey) -> bool {
+        let started = self.started_programs(from, start);
+        started.is_empty() || started.contains(&key)
+    }
+
+    /// Returns true for a call whose later blocks pass all their words as arguments: G66.1.
+    pub(super) fn is_every_block(&self, kind: Option<CallCode>, is_modal: bool) -> bool {
         kind == Some(CallCode::EveryBlock)
             || kind.is_none() && is_modal && self.settings().code_calls.modal_is_every_block
     }

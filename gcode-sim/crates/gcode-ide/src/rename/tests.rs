@@ -33,6 +33,8 @@ fn a_local_changes_with_the_letters_that_set_it() {
     assert!(refused(sets, "#4").contains("#4 is in use"));
     let second = "O1\nG65 P2 J1. R5.\nM30\nO2\nX#$018\nM99\n";
     assert!(refused(second, "#4").contains("would set other variables"), "I behind J is #7");
+    let every = "O1\nG66.1 P2\nR5.\nM30\nO2\n#$018=5\nX#18\nM99\n";
+    assert!(refused(every, "#19").contains("words of all blocks"), "{}", refused(every, "#19"));
     assert!(refused("O2\nX#$018\nM99\n", "#19").contains("argument R"), "unknown callers");
     assert_eq!(renamed("O2\n#$018=5\nX#18\nM99\n", "#19"), "O2\n#19=5\nX#19\nM99\n");
 }
@@ -105,6 +107,8 @@ fn a_sequence_number_changes_with_its_jumps() {
 fn a_sequence_number_that_cannot_be_followed_is_refused() {
     for (text, reason) in [
         ("O1\nN$010\nGOTO#1\n", "jumps to #1"),
+        ("O2\nN$010 M99\nO1\nM98 P2 Q#1\n", "jumps to #1"),
+        ("O1\nM98 P#1 Q#2\nN$010\n", "jumps to #2"),
         ("O1\nN$010\nM99 P#2\n", "jumps to #2"),
         ("O1\nN$010\nM98 P2\nM30\nO2\nM99 P#2\n", "jumps to #2"),
         ("O1\nN$010\nN20\n", "N20 is in use"),
@@ -120,6 +124,8 @@ fn a_sequence_number_that_cannot_be_followed_is_refused() {
     }
     assert!(refused("O1\nN$010\n", "N100000000").contains("out of range"));
     assert_eq!(renamed("O1\nN$010\nO2\nGOTO#1\n", "N20"), "O1\nN20\nO2\nGOTO#1\n", "another program");
+    let called = "O1\nN$010 M98 P2\nM30\nO2\nGOTO#1\nM99\n";
+    assert_eq!(renamed(called, "N20"), called.replace("N$010", "N20"), "in the called program alone");
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! Rename of a local within its macro level, and of a common in the whole project.
-use gcode_lang::program::{ArgumentLocals, CallCode, argument_letter};
-use gcode_lang::syntax::ast::{Item, Statement};
+use gcode_lang::program::{ArgumentLocals, argument_letter};
 
 use super::{digits_in, file_edit};
 use crate::block_entries::NAMED;
@@ -153,7 +152,7 @@ impl Project {
             for entry in index.program_entries(key.program) {
                 let is_named = match entry.kind {
                     EntryKind::SetNames => {
-                        let count = self.count_of_names(key, entry.range);
+                        let count = self.given_names(key.file, entry.range).len() as u32;
                         let first = entry.value;
                         numbers
                             .iter()
@@ -172,19 +171,6 @@ impl Project {
             }
         }
         Ok(())
-    }
-
-    fn count_of_names(&self, key: ProgramKey, range: TextRange) -> u32 {
-        let block = self.block(key.file, range.start);
-        let statements = block.iter().flat_map(|block| &block.items).filter_map(|item| match item {
-            Item::Statement(statement) => Some(&statement.node),
-            _ => None,
-        });
-        let mut counts = statements.filter_map(|statement| match statement {
-            Statement::SetNames { names, .. } => Some(names.len() as u32),
-            _ => None,
-        });
-        counts.next().unwrap_or(u32::MAX)
     }
 
     /// Refuses the commons that receive the number of an address that calls a program.
@@ -261,13 +247,17 @@ impl Project {
             let locals = call.record.arguments.iter().map(|argument| argument.local);
             let passes = |local: u32| locals.clone().any(|other| other == local);
             let is_called = |key: &ProgramKey| keys.contains(key);
-            if !passes(number) && !passes(new)
+            let is_every_block = self.is_every_block(call.record.kind, call.record.is_modal);
+            if !passes(number) && !passes(new) && !is_every_block
                 || !self.called_program(from.file, &call.record.target).as_ref().is_some_and(is_called)
             {
                 continue;
             }
             let place = self.place(from, call.code);
             let refused = |reason: String| Refusal::new(reason).at(from.file, call.code);
+            if is_every_block {
+                return Err(refused(format!("{place} passes the words of all blocks after it as arguments")));
+            }
             if passes(new) {
                 return Err(refused(format!("#{new} is in use: it is an argument of {place}")));
             }
@@ -287,10 +277,7 @@ impl Project {
 
     /// Returns true if the arguments set the same locals with a new letter, but for the renamed one.
     fn has_renamed_locals(&self, call: &Call<'_>, (number, new): (u32, u32), letter: char) -> bool {
-        let is_every_block = call.record.kind == Some(CallCode::EveryBlock)
-            || call.record.is_modal
-                && call.record.kind.is_none()
-                && self.settings().code_calls.modal_is_every_block;
+        let is_every_block = self.is_every_block(call.record.kind, call.record.is_modal);
         let mut locals = ArgumentLocals::new(self.settings().reads_ijk_plainly, is_every_block);
         call.record.arguments.iter().all(|argument| {
             let is_renamed = argument.local == number;
