@@ -53,10 +53,12 @@ pub(crate) fn code_actions(
         && let Some(program) = snapshot.project.program_at(file, offset)
     {
         let title = format!("Renumber the blocks of {}", snapshot.project.label(program));
-        let edits = renumber_edits(snapshot, program, NUMBERING, progress);
+        let prove = || renumber_edits(snapshot, program, NUMBERING, progress);
+        let edits = snapshot.runs.renumbering(program, progress, prove);
         actions.extend(source_action(snapshot, title, RENUMBER, edits)?);
     }
-    if is_wanted(&FORMAT) {
+    // An editor has a command of its own to format.
+    if params.context.only.is_some() && is_wanted(&FORMAT) {
         let edits = format_edits(snapshot, file, None, progress);
         actions.extend(source_action(snapshot, "Format the file".to_owned(), FORMAT, edits)?);
     }

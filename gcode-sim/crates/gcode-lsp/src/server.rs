@@ -19,7 +19,7 @@ use crate::failure::Failure;
 use crate::host::Host;
 use crate::notifications;
 use crate::requests::{self, Handler, guarded};
-use crate::state::{BackgroundAnswer, ServerState};
+use crate::state::{BackgroundAnswer, PendingRequest, ServerState};
 
 /// Period of the server's clock: it ends long runs and looks for changes on the disk.
 const TICK: Duration = Duration::from_millis(250);
@@ -135,15 +135,15 @@ impl Server {
                 let result = guarded(&method, || handler(&self.state.snapshot, params));
                 self.state.send(response(id, result));
             }
-            Handler::Aside(handler) => self.in_background(id, move |snapshot, id, _| {
+            Handler::Aside(handler) => self.in_background(id, false, move |snapshot, id, _| {
                 let result = guarded(&method, || handler(&snapshot, params));
                 BackgroundAnswer::Answered(response(id, result))
             }),
-            Handler::Later(handler) => self.in_background(id, move |snapshot, id, progress| {
+            Handler::Later(handler) => self.in_background(id, true, move |snapshot, id, progress| {
                 let result = guarded(&method, || handler(&snapshot, params, progress));
                 BackgroundAnswer::Answered(response(id, result))
             }),
-            Handler::Command(handler) => self.in_background(id, move |snapshot, id, progress| {
+            Handler::Command(handler) => self.in_background(id, false, move |snapshot, id, progress| {
                 let result = guarded(&method, || handler(&snapshot, params, progress));
                 BackgroundAnswer::Executed(id, result)
             }),
@@ -153,12 +153,14 @@ impl Server {
     fn in_background(
         &mut self,
         id: RequestId,
+        ends_with_edit: bool,
         work: impl FnOnce(crate::snapshot::Snapshot, RequestId, &Arc<Progress>) -> BackgroundAnswer
         + Send
         + 'static,
     ) {
         let progress = Arc::new(Progress::default());
-        self.state.pending.insert(id.clone(), Arc::clone(&progress));
+        let request = PendingRequest { progress: Arc::clone(&progress), ends_with_edit };
+        self.state.pending.insert(id.clone(), request);
         let (snapshot, answers) = (self.state.snapshot.clone(), self.state.background.clone());
         std::thread::spawn(move || _ = answers.send(work(snapshot, id, &progress)));
     }

@@ -34,11 +34,18 @@ pub(crate) enum BackgroundAnswer {
     Scanned(Vec<PathBuf>),
 }
 
+/// Request that is answered in the background.
+pub(crate) struct PendingRequest {
+    pub progress: Arc<Progress>,
+    /// An edit makes the answer useless.
+    pub ends_with_edit: bool,
+}
+
 /// State of the server.
 pub(crate) struct ServerState {
     pub snapshot: Snapshot,
     /// Requests in the background.
-    pub pending: BTreeMap<RequestId, Arc<Progress>>,
+    pub pending: BTreeMap<RequestId, PendingRequest>,
     /// Requests that wait for the scan of the workspace.
     pub waiting: Vec<Request>,
     pub is_scanning: bool,
@@ -179,6 +186,7 @@ impl ServerState {
         else {
             return;
         };
+        self.end_requests_of_text();
         self.use_settings(file);
         let names = |state: &Self| {
             let programs = state.snapshot.project.file(file).map(|index| index.programs().to_vec());
@@ -188,6 +196,27 @@ impl ServerState {
         self.snapshot.change(file, version, changes);
         let has_other_programs = before != names(self);
         self.changed(file, has_other_programs);
+    }
+
+    /// Ends the requests whose answers an edit makes useless.
+    fn end_requests_of_text(&mut self) {
+        let ended: Vec<_> = self
+            .pending
+            .iter()
+            .filter(|(_, request)| request.ends_with_edit)
+            .map(|(id, _)| id.clone())
+            .collect();
+        for id in ended {
+            self.end_request(&id, Failure::outdated());
+        }
+    }
+
+    /// Ends a request in the background and answers it with an error.
+    fn end_request(&mut self, id: &RequestId, failure: Failure) {
+        if let Some(request) = self.pending.remove(id) {
+            proof::cancel(&request.progress);
+            self.send(failure.response(id.clone()));
+        }
     }
 
     /// Closes a document. Its diagnostics stay if it belongs to a project, those of the file on the disk.
@@ -345,15 +374,13 @@ impl ServerState {
         });
     }
 
-    /// Ends a request in the background and answers it as cancelled.
+    /// Answers a request as cancelled, if it has no answer yet.
     pub(crate) fn cancel(&mut self, id: &RequestId) {
-        let waits = self.waiting.iter().any(|request| request.id == *id);
-        self.waiting.retain(|request| request.id != *id);
-        let progress = self.pending.remove(id);
-        progress.iter().for_each(|progress| proof::cancel(progress));
-        if waits || progress.is_some() {
+        if self.waiting.iter().any(|request| request.id == *id) {
+            self.waiting.retain(|request| request.id != *id);
             self.send(Failure::cancelled().response(id.clone()));
         }
+        self.end_request(id, Failure::cancelled());
     }
 }
 
