@@ -17,6 +17,7 @@ const COMMANDS: &[(&str, &str, &[&str])] = &[
     ("gcode-sim", "budget", &["text", "json"]),
     ("gcode-sim", "settings", &["text", "json"]),
     ("gcode-sim", "explain", &["text", "json"]),
+    ("gcode-sim", "lsp", &[]),
     ("gcode-sim", "schema", &[]),
     ("gcode-sim", "completions", &[]),
     ("gcode-sim", "man", &[]),

@@ -32,6 +32,7 @@ mod formats;
 mod honeycomb;
 mod house_rules;
 mod limits;
+mod lsp;
 mod misplaced;
 mod module_circles;
 mod mutations;

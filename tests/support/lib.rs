@@ -16,6 +16,7 @@ mod exec;
 pub mod expect;
 pub mod fuzz;
 mod r#gen;
+mod lsp;
 mod macros;
 mod picture;
 pub mod programs;
@@ -37,6 +38,7 @@ pub const KINDS: &[(&str, Run)] = &[
     ("control", control::run),
     ("exec", exec::run),
     ("gen", r#gen::run),
+    ("lsp", lsp::run),
     ("macro", macros::run),
     ("picture", picture::run),
     ("sheet", sheet::run),

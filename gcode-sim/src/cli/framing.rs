@@ -60,7 +60,8 @@ fn read_all(input: &mut impl BufRead, messages: &Sender<Message>, errors: &mut i
                 }
             }
             Err((code, id, message)) => {
-                let error = json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code, "message": message } });
+                let error =
+                    json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code, "message": message } });
                 _ = write_body(errors, error.to_string().as_bytes());
             }
         }
@@ -69,8 +70,8 @@ fn read_all(input: &mut impl BufRead, messages: &Sender<Message>, errors: &mut i
 
 /// Parses a message; an error has its code, the id of the request as far as it is known, and a sentence.
 fn parse(body: &[u8]) -> Result<Message, (i32, Value, String)> {
-    let value: Value =
-        serde_json::from_slice(body).map_err(|error| (PARSE_ERROR, Value::Null, format!("not JSON: {error}")))?;
+    let value: Value = serde_json::from_slice(body)
+        .map_err(|error| (PARSE_ERROR, Value::Null, format!("not JSON: {error}")))?;
     let invalid = |id, message: &str| (INVALID_REQUEST, id, message.to_owned());
     let Value::Object(mut fields) = value else {
         return Err(invalid(Value::Null, "a message is one object"));

@@ -31,10 +31,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(_: &Arguments) -> Result<ExitStatus, UsageError> {
-    let unusable = |error| UsageError::new(format!("no folder for pages: {error}"));
-    let pages = tempfile::Builder::new().prefix("gcode-sim-").tempdir().map_err(unusable)?;
+    let host = Arc::new(EditorHost::new()?);
     let (connection, writer) = framing::stdio();
-    let ending = serve(&connection, Arc::new(EditorHost { pages }));
+    let ending = serve(&connection, host);
     // The writer ends with the last sender of its messages; work in the background may hold one.
     drop(connection);
     writer.finish();
@@ -45,9 +44,18 @@ pub(super) fn run(_: &Arguments) -> Result<ExitStatus, UsageError> {
 }
 
 /// The disk, the reports and the pages of this program.
-struct EditorHost {
+#[derive(Debug)]
+pub struct EditorHost {
     /// Folder of the pages that were shown.
     pages: TempDir,
+}
+
+impl EditorHost {
+    /// Creates the host with a folder for pages, which goes with it.
+    pub fn new() -> Result<Self, UsageError> {
+        let unusable = |error| UsageError::new(format!("no folder for pages: {error}"));
+        Ok(Self { pages: tempfile::Builder::new().prefix("gcode-sim-").tempdir().map_err(unusable)? })
+    }
 }
 
 impl FileAccess for EditorHost {

@@ -14,7 +14,7 @@ mod framing;
 mod holes;
 pub mod input;
 pub mod library;
-mod lsp;
+pub mod lsp;
 mod new;
 mod options;
 pub mod output;

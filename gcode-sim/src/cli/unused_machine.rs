@@ -1,9 +1,9 @@
 //! Warns of an unused machine file: `--machine` is easily forgotten, and another machine makes other holes.
 use super::conditions::ProgramArguments;
 use super::output;
-use gcode_session::files::MACHINE_FILE;
 use gcode_lang::control::{Dialect, Increment};
 use gcode_session::Request;
+use gcode_session::files::MACHINE_FILE;
 
 /// Prints a note if no machine file is used and the program's comments name one.
 pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Request) {

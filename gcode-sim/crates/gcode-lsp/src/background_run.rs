@@ -46,8 +46,7 @@ fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts 
     let mut trace = Trace::default();
     let nominal = reference(&setup, &snapshot.files, &request, &mut library);
     let metal = nominal.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
-    let simulated =
-        gcode_session::simulate_observed(&request, &mut library, metal, &mut (), &mut trace);
+    let simulated = gcode_session::simulate_observed(&request, &mut library, metal, &mut (), &mut trace);
     let simulation = match simulated {
         Ok(simulation) => simulation,
         Err(error) => return RunFacts::cut_off(error.to_string()),
@@ -64,12 +63,16 @@ fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts 
             let tolerance = verdict.tolerance;
             let is_own = |label: &str| {
                 let programs = snapshot.project.programs();
-                programs.filter(|(key, _)| key.file == file).any(|(key, _)| snapshot.project.label(key) == label)
+                programs
+                    .filter(|(key, _)| key.file == file)
+                    .any(|(key, _)| snapshot.project.label(key) == label)
             };
             let mut holes: BTreeMap<u32, HoleDeviation> = BTreeMap::new();
             for hole in &verdict.holes {
-                let chain = std::iter::once(&hole.from).chain(&hole.calls);
-                let Some(origin) = chain.filter(|origin| is_own(&origin.program)).last() else { continue };
+                let mut chain = std::iter::once(&hole.from).chain(&hole.calls);
+                let Some(origin) = chain.rfind(|origin| is_own(&origin.program)) else {
+                    continue;
+                };
                 let deviation = HoleDeviation { phi: hole.position_deviation, tolerance, count: 0 };
                 let known = holes.entry(origin.line).or_insert(deviation);
                 known.phi = known.phi.max(deviation.phi);
@@ -122,7 +125,8 @@ pub(crate) fn main_of(project: &Project, file: FileId) -> FileId {
     let mut next = 0;
     while let Some(current) = seen.get(next).copied() {
         let keys = project.programs().map(|(key, _)| key).filter(|key| key.file == current);
-        let callers: Vec<_> = keys.flat_map(|key| project.incoming_calls(key)).map(|group| group.item.key.file).collect();
+        let callers: Vec<_> =
+            keys.flat_map(|key| project.incoming_calls(key)).map(|group| group.item.key.file).collect();
         let callers: Vec<_> = callers.into_iter().filter(|caller| *caller != current).collect();
         if callers.is_empty() {
             return current;

@@ -32,19 +32,26 @@ impl Client {
         let actions = text.and_then(|text| text.code_action.as_ref());
         let diagnostics = text.and_then(|text| text.publish_diagnostics.as_ref());
         let signature = text.and_then(|text| text.signature_help.as_ref()?.signature_information.as_ref());
-        let has_markdown = |kinds: Option<&Vec<MarkupKind>>| kinds.is_some_and(|kinds| kinds.contains(&MarkupKind::Markdown));
-        let symbols = text.and_then(|text| text.document_symbol.as_ref()?.hierarchical_document_symbol_support);
+        let has_markdown = |kinds: Option<&Vec<MarkupKind>>| {
+            kinds.is_some_and(|kinds| kinds.contains(&MarkupKind::Markdown))
+        };
+        let symbols =
+            text.and_then(|text| text.document_symbol.as_ref()?.hierarchical_document_symbol_support);
         let hover = text.and_then(|text| text.hover.as_ref()?.content_format.as_ref());
         let watchers = workspace.and_then(|workspace| workspace.did_change_watched_files.as_ref());
         Self {
             encoding: PositionEncoding::negotiate(encodings),
             has_document_changes: is(edit.and_then(|edit| edit.document_changes)),
             has_hierarchical_symbols: is(symbols),
-            has_disabled_actions: is(actions.and_then(|actions: &CodeActionClientCapabilities| actions.disabled_support)),
+            has_disabled_actions: is(
+                actions.and_then(|actions: &CodeActionClientCapabilities| actions.disabled_support)
+            ),
             has_related_information: is(diagnostics.and_then(|diagnostics| diagnostics.related_information)),
             has_diagnostic_tags: diagnostics.is_some_and(|diagnostics| diagnostics.tag_support.is_some()),
             has_markdown_hover: has_markdown(hover),
-            has_markdown_signatures: has_markdown(signature.and_then(|signature| signature.documentation_format.as_ref())),
+            has_markdown_signatures: has_markdown(
+                signature.and_then(|signature| signature.documentation_format.as_ref()),
+            ),
             has_label_offsets: is(signature
                 .and_then(|signature| signature.parameter_information.as_ref()?.label_offset_support)),
             has_show_document: window

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use gcode_control::Progress;
 use gcode_ide::{FileEdit, FileId};
 use lsp_types::{
-    CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams, CodeActionResponse,
-    Diagnostic, NumberOrString, Range,
+    CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams,
+    CodeActionResponse, Diagnostic, NumberOrString, Range,
 };
 
 use crate::edits::{format_edits, renumber_edits, workspace_edit};
@@ -40,7 +40,8 @@ pub(crate) fn code_actions(
     let mut actions = Vec::new();
     if is_wanted(&CodeActionKind::QUICKFIX) {
         let given = params.context.diagnostics.iter();
-        let published = snapshot.published.get(&file).map(|published| published.as_slice()).unwrap_or_default();
+        let published =
+            snapshot.published.get(&file).map(|published| published.as_slice()).unwrap_or_default();
         let here = published.iter().filter(|_| params.context.diagnostics.is_empty());
         let here = here.filter(|diagnostic| touches(diagnostic.range, params.range));
         for diagnostic in given.chain(here) {
@@ -52,10 +53,12 @@ pub(crate) fn code_actions(
         && let Some(program) = snapshot.project.program_at(file, offset)
     {
         let title = format!("Renumber the blocks of {}", snapshot.project.label(program));
-        let edits = renumber_edits(snapshot, program, NUMBERING, progress);
+        let prove = || renumber_edits(snapshot, program, NUMBERING, progress);
+        let edits = snapshot.runs.renumbering(program, progress, prove);
         actions.extend(source_action(snapshot, title, RENUMBER, edits)?);
     }
-    if is_wanted(&FORMAT) {
+    // An editor has a command of its own to format.
+    if params.context.only.is_some() && is_wanted(&FORMAT) {
         let edits = format_edits(snapshot, file, None, progress);
         actions.extend(source_action(snapshot, "Format the file".to_owned(), FORMAT, edits)?);
     }

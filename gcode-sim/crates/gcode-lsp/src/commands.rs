@@ -7,7 +7,8 @@ use gcode_ide::{FileId, ProgramKey};
 use gcode_lang::syntax::ast::ProgramPath;
 use gcode_session::Request;
 use lsp_types::{
-    CodeLens, CodeLensParams, Command, ExecuteCommandParams, MessageType, TextDocumentIdentifier, Uri, WorkspaceEdit,
+    CodeLens, CodeLensParams, Command, ExecuteCommandParams, MessageType, TextDocumentIdentifier, Uri,
+    WorkspaceEdit,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -53,11 +54,13 @@ impl CommandResult {
     }
 }
 
-/// Returns the lenses of a file: above each program its commands, `verify` if there is a reference.
-pub(crate) fn code_lenses(snapshot: &Snapshot, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>, Failure> {
+/// Returns the lenses of a file: above each program its commands.
+pub(crate) fn code_lenses(
+    snapshot: &Snapshot,
+    params: CodeLensParams,
+) -> Result<Option<Vec<CodeLens>>, Failure> {
     let file = snapshot.file(&params.text_document)?;
     let text = snapshot.text_of(file)?;
-    let setup = snapshot.setup(file);
     let mut lenses = Vec::new();
     for (key, outline) in snapshot.project.programs().filter(|(key, _)| key.file == file) {
         let range = text.range(outline.name_range.start, outline.name_range.end);
@@ -65,8 +68,7 @@ pub(crate) fn code_lenses(snapshot: &Snapshot, params: CodeLensParams) -> Result
         let label = snapshot.project.label(key);
         let target = Target { uri: params.text_document.uri.clone(), program: is_named.then_some(label) };
         let commands = [("Run", RUN), ("Verify", VERIFY), ("Show", SHOW), ("Debug", DEBUG)];
-        let has_reference = setup.paths.reference.is_some();
-        for (title, command) in commands.into_iter().filter(|(_, name)| *name != VERIFY || has_reference) {
+        for (title, command) in commands {
             let arguments = Some(vec![json!(target)]);
             let command = Command { title: title.to_owned(), command: command.to_owned(), arguments };
             lenses.push(CodeLens { range, command: Some(command), data: None });
@@ -126,7 +128,8 @@ fn request(
     let mut request = setup.request(text);
     if let Some(name) = &target.program {
         let path = ProgramPath::parse(name);
-        request.main = Some(path.ok_or_else(|| Failure::params(format!("'{name}' is not a program: O1234")))?);
+        request.main =
+            Some(path.ok_or_else(|| Failure::params(format!("'{name}' is not a program: O1234")))?);
     }
     Ok(request)
 }
@@ -158,8 +161,14 @@ fn plain(value: &Value) -> String {
 }
 
 fn verify(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<CommandResult, Failure> {
-    let no_reference = "no reference: name the program in [references] of gcode.toml, or put job.toml beside it";
-    let reference = setup.paths.reference.as_deref().ok_or_else(|| Failure::refused(no_reference))?;
+    let Some(reference) = &setup.paths.reference else {
+        let text = "no reference: name the program in [references] of gcode.toml, or put job.toml beside it";
+        let value = json!({ "verdict": null, "message": text });
+        return Ok(CommandResult {
+            message: Some((MessageType::WARNING, text.to_owned())),
+            ..CommandResult::new(value)
+        });
+    };
     let mut library = setup.library(&snapshot.files);
     let report = snapshot.files.host().verdict_report(request, &mut library, reference);
     let report = report.map_err(Failure::refused)?;
@@ -207,10 +216,10 @@ fn renumber(
     progress: &Arc<Progress>,
 ) -> Result<CommandResult, Failure> {
     let mut programs = snapshot.project.programs().map(|(key, _)| key).filter(|key| key.file == file);
-    let is_target = |key: &ProgramKey| {
-        target.program.as_ref().is_none_or(|name| *name == snapshot.project.label(*key))
-    };
-    let program = programs.find(is_target).ok_or_else(|| Failure::params("the document has no such program"))?;
+    let is_target =
+        |key: &ProgramKey| target.program.as_ref().is_none_or(|name| *name == snapshot.project.label(*key));
+    let program =
+        programs.find(is_target).ok_or_else(|| Failure::params("the document has no such program"))?;
     let edits = renumber_edits(snapshot, program, NUMBERING, progress).map_err(Failure::refused)?;
     let edit = workspace_edit(snapshot, edits)?;
     let applied = snapshot.client.has_apply_edit.then(|| ("Renumber".to_owned(), edit.clone()));

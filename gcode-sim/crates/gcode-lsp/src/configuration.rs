@@ -57,15 +57,22 @@ mod tests {
     #[test]
     fn settings_are_read_with_and_without_their_section() {
         let settings = EditorSettings { dialect: Some("haas-ngc".to_owned()), ..EditorSettings::default() };
-        assert_eq!(EditorSettings::parse(&json!({ "gcode-sim": { "dialect": "haas-ngc" } })), Ok(settings.clone()));
-        assert_eq!(EditorSettings::parse(&json!({ "dialect": "haas-ngc", "machine": "", "other": 1 })), Ok(settings));
+        assert_eq!(
+            EditorSettings::parse(&json!({ "gcode-sim": { "dialect": "haas-ngc" } })),
+            Ok(settings.clone())
+        );
+        assert_eq!(
+            EditorSettings::parse(&json!({ "dialect": "haas-ngc", "machine": "", "other": 1 })),
+            Ok(settings)
+        );
         assert_eq!(EditorSettings::parse(&Value::Null), Ok(EditorSettings::default()));
         assert!(EditorSettings::parse(&json!({ "libraries": "macros" })).is_err());
     }
 
     #[test]
     fn a_relative_path_begins_at_the_workspace() {
-        let settings = EditorSettings::parse(&json!({ "machine": "m.toml", "libraries": ["/lib", "lib"] })).unwrap();
+        let settings =
+            EditorSettings::parse(&json!({ "machine": "m.toml", "libraries": ["/lib", "lib"] })).unwrap();
         let settings = settings.below(Some(Path::new("/w")));
         assert_eq!(settings.machine, Some(PathBuf::from("/w/m.toml")));
         assert_eq!(settings.libraries, ["/lib", "/w/lib"].map(PathBuf::from));

@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use gcode_control::Progress;
-use gcode_ide::{FileEdit, FileId, Location, ProgramKey, Refusal, Symbol, TextRange};
+use gcode_ide::{FileEdit, FileId, ProgramKey, Symbol, TextRange};
 use lsp_types::{
     DocumentChanges, DocumentFormattingParams, DocumentRangeFormattingParams, OneOf,
     OptionalVersionedTextDocumentIdentifier, PrepareRenameResponse, RenameParams, TextDocumentEdit,
@@ -15,6 +15,7 @@ use crate::proof::{RenamedVariables, prove};
 use crate::snapshot::Snapshot;
 
 /// Returns edits of files as the client takes them: with the versions of its documents, if it can.
+#[expect(clippy::mutable_key_type, reason = "the protocol's type has URIs as keys")]
 pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Result<WorkspaceEdit, Failure> {
     let mut by_file: BTreeMap<FileId, Vec<TextEdit>> = BTreeMap::new();
     let mut last = None;
@@ -27,7 +28,8 @@ pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Resul
         by_file.entry(file).or_default().push(TextEdit { range, new_text: edit.text });
         last = Some((file, text));
     }
-    let files = by_file.into_iter().filter_map(|(file, edits)| Some((file, snapshot.uri(file)?.clone(), edits)));
+    let files =
+        by_file.into_iter().filter_map(|(file, edits)| Some((file, snapshot.uri(file)?.clone(), edits)));
     if !snapshot.client.has_document_changes {
         let changes = files.map(|(_, uri, edits)| (uri, edits)).collect();
         return Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() });
@@ -43,19 +45,6 @@ pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Resul
     Ok(WorkspaceEdit { document_changes, ..WorkspaceEdit::default() })
 }
 
-/// Returns the sentence of a refusal with its place.
-pub(crate) fn reason(snapshot: &Snapshot, refusal: &Refusal) -> String {
-    let place = |at: &Location| {
-        let line = snapshot.text(at.file)?.position(at.range.start).line + 1;
-        let path = snapshot.path(at.file);
-        Some(format!("{}, line {line}", path.file_name()?.display()))
-    };
-    match refusal.at.as_ref().and_then(place) {
-        Some(place) => format!("{} ({place})", refusal.reason),
-        None => refusal.reason.clone(),
-    }
-}
-
 pub(crate) fn prepare_rename(
     snapshot: &Snapshot,
     params: TextDocumentPositionParams,
@@ -65,7 +54,7 @@ pub(crate) fn prepare_rename(
         return Ok(None);
     }
     let target = snapshot.project.prepare_rename(file, offset);
-    let target = target.map_err(|refusal| Failure::refused(reason(snapshot, &refusal)))?;
+    let target = target.map_err(|refusal| Failure::refused(refusal.reason))?;
     let range = snapshot.text_of(file)?.range(target.range.start, target.range.end);
     Ok(Some(PrepareRenameResponse::RangeWithPlaceholder { range, placeholder: target.placeholder }))
 }
@@ -77,7 +66,7 @@ pub(crate) fn rename(
 ) -> Result<Option<WorkspaceEdit>, Failure> {
     let (file, offset) = snapshot.place(&params.text_document_position)?;
     let edits = snapshot.project.rename(file, offset, &params.new_name);
-    let edits = edits.map_err(|refusal| Failure::refused(reason(snapshot, &refusal)))?;
+    let edits = edits.map_err(|refusal| Failure::refused(refusal.reason))?;
     let symbol = snapshot.project.symbol_at(file, offset).map(|(symbol, _)| symbol);
     let proved = prove(snapshot, &edits, &renamed_variables(symbol, &params.new_name), progress);
     proved.map_err(|why| Failure::refused(format!("not renamed: {why}")))?;
@@ -156,7 +145,8 @@ pub(crate) fn renumber_edits(
     (from, step): (u32, u32),
     progress: &Arc<Progress>,
 ) -> Result<Vec<FileEdit>, String> {
-    let edits = snapshot.project.renumber(program, from, step).map_err(|refusal| reason(snapshot, &refusal))?;
+    let edits = snapshot.project.renumber(program, None, from, step);
+    let edits = edits.map_err(|refusal| refusal.reason)?;
     let proved = prove(snapshot, &edits, &BTreeSet::new(), progress);
     proved.map_err(|why| format!("not renumbered: {why}"))?;
     Ok(edits)

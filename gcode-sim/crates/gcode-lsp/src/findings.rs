@@ -7,7 +7,8 @@ use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::program::Memory;
 use gcode_lang::source::{SourceId, Sources, Span};
 use lsp_types::{
-    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, Range, Uri,
+    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString,
+    Range, Uri,
 };
 
 use crate::client::Client;
@@ -73,9 +74,10 @@ pub(crate) fn check(
     }
 }
 
-/// Returns the exact place of a finding.
+/// Returns the exact place of a finding; the block for one that lies between two characters, where an editor marks nothing.
 fn place(finding: &Finding) -> Option<Span> {
-    finding.span.or(finding.backtrace.as_ref().map(|backtrace| backtrace.block))
+    let block = finding.backtrace.as_ref().map(|backtrace| backtrace.block);
+    finding.span.filter(|span| span.start < span.end).or(block).or(finding.span)
 }
 
 struct FindingContext<'a> {

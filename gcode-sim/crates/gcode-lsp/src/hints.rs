@@ -36,14 +36,20 @@ pub(crate) fn inlay_hints(
     let first = params.range.start.line + 1;
     let last = params.range.end.line + 1;
     for (line, deviation) in facts.holes.range(first..=last.max(first)) {
-        hints.push(hint(&text, *line, deviation_text(deviation), "Position of the hole against the reference (ISO 1101)"));
+        hints.push(hint(
+            &text,
+            *line,
+            deviation_text(deviation),
+            "Position of the hole against the reference (ISO 1101)",
+        ));
     }
     hints.sort_by_key(|hint| hint.position);
     Ok(Some(hints))
 }
 
 fn value_hints(text: &TextDocument, facts: &RunFacts, range: TextRange) -> Vec<InlayHint> {
-    let is_in = |executed: &&ExecutedBlock| range.start <= executed.block.start && executed.block.start <= range.end;
+    let is_in =
+        |executed: &&ExecutedBlock| range.start <= executed.block.start && executed.block.start <= range.end;
     let hints = facts.blocks.iter().filter(is_in).filter_map(|executed| {
         let label = values_of_block(text, executed)?;
         let line = text.position(executed.block.start).line + 1;
@@ -64,8 +70,10 @@ fn values_of_block(text: &TextDocument, executed: &ExecutedBlock) -> Option<Stri
         false => assigned,
     };
     let single = shown.into_iter().filter(|values| has_one_value(values));
-    let labels: Vec<_> =
-        single.map(|values| format!("#{} = {}", values.number, value_text(values.last))).take(MAX_VALUES).collect();
+    let labels: Vec<_> = single
+        .map(|values| format!("#{} = {}", values.number, value_text(values.last)))
+        .take(MAX_VALUES)
+        .collect();
     (!labels.is_empty()).then(|| labels.join(", "))
 }
 
@@ -109,7 +117,8 @@ fn deviation_text(deviation: &HoleDeviation) -> String {
 /// Returns a hint behind the text of a line, counted from 1.
 fn hint(text: &TextDocument, line: u32, label: String, tooltip: &str) -> InlayHint {
     let content = text.line(line as usize - 1).trim_ascii_end();
-    let mut position = text.position(text.offset(lsp_types::Position::new(line - 1, 0)) + content.len() as u32);
+    let mut position =
+        text.position(text.offset(lsp_types::Position::new(line - 1, 0)) + content.len() as u32);
     position.line = line - 1;
     InlayHint {
         position,

@@ -85,6 +85,8 @@ mod notifications;
 mod overlay;
 mod program_setup;
 mod proof;
+#[cfg(test)]
+mod property_tests;
 mod requests;
 mod run_facts;
 mod runs;
@@ -92,6 +94,8 @@ mod semantic_tokens;
 mod server;
 mod snapshot;
 mod state;
+#[cfg(test)]
+mod testing;
 mod text_document;
 mod text_help;
 mod workspace_scan;

@@ -6,12 +6,13 @@ use gcode_ide::{
     SymbolKind as Kind, TextRange,
 };
 use lsp_types::{
-    CallHierarchyIncomingCall, CallHierarchyIncomingCallsParams, CallHierarchyItem, CallHierarchyOutgoingCall,
-    CallHierarchyOutgoingCallsParams, CallHierarchyPrepareParams, DocumentHighlight, DocumentHighlightKind,
-    DocumentHighlightParams, DocumentLink, DocumentLinkParams, DocumentSymbol, DocumentSymbolParams,
-    DocumentSymbolResponse, FoldingRange, FoldingRangeKind, FoldingRangeParams, GotoDefinitionParams,
-    GotoDefinitionResponse, Location, ReferenceParams, SymbolInformation, SymbolKind, TextDocumentIdentifier, Uri,
-    WorkspaceSymbolParams, WorkspaceSymbolResponse,
+    CallHierarchyIncomingCall, CallHierarchyIncomingCallsParams, CallHierarchyItem,
+    CallHierarchyOutgoingCall, CallHierarchyOutgoingCallsParams, CallHierarchyPrepareParams,
+    DocumentHighlight, DocumentHighlightKind, DocumentHighlightParams, DocumentLink, DocumentLinkParams,
+    DocumentSymbol, DocumentSymbolParams, DocumentSymbolResponse, FoldingRange, FoldingRangeKind,
+    FoldingRangeParams, GotoDefinitionParams, GotoDefinitionResponse, Location, ReferenceParams,
+    SymbolInformation, SymbolKind, TextDocumentIdentifier, Uri, WorkspaceSymbolParams,
+    WorkspaceSymbolResponse,
 };
 
 use crate::failure::Failure;
@@ -35,7 +36,10 @@ fn location_of(snapshot: &Snapshot, target: &NavigationTarget) -> Option<Locatio
     snapshot.location(gcode_ide::Location { file: target.file, range: target.selection })
 }
 
-pub(crate) fn references(snapshot: &Snapshot, params: ReferenceParams) -> Result<Option<Vec<Location>>, Failure> {
+pub(crate) fn references(
+    snapshot: &Snapshot,
+    params: ReferenceParams,
+) -> Result<Option<Vec<Location>>, Failure> {
     let (file, offset) = snapshot.place(&params.text_document_position)?;
     let found = snapshot.project.references(file, offset, params.context.include_declaration);
     let mut places = PlaceConverter::new(snapshot);

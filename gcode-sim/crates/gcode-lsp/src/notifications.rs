@@ -5,12 +5,13 @@ use std::sync::Arc;
 use lsp_server::{Notification, RequestId};
 use lsp_types::notification::{
     Cancel, DidChangeConfiguration, DidChangeTextDocument, DidChangeWatchedFiles, DidChangeWorkspaceFolders,
-    DidCloseTextDocument, DidOpenTextDocument, DidSaveTextDocument, Initialized, LogMessage, Notification as Kind,
+    DidCloseTextDocument, DidOpenTextDocument, DidSaveTextDocument, Initialized, LogMessage,
+    Notification as Kind,
 };
 use lsp_types::request::{RegisterCapability, WorkspaceConfiguration};
 use lsp_types::{
-    ConfigurationItem, ConfigurationParams, DidChangeWatchedFilesRegistrationOptions, FileSystemWatcher, GlobPattern,
-    LogMessageParams, MessageType, NumberOrString, Registration, RegistrationParams,
+    ConfigurationItem, ConfigurationParams, DidChangeWatchedFilesRegistrationOptions, FileSystemWatcher,
+    GlobPattern, LogMessageParams, MessageType, NumberOrString, Registration, RegistrationParams,
 };
 use serde_json::Value;
 
@@ -40,11 +41,13 @@ pub(crate) fn take(state: &mut ServerState, notification: Notification) {
         }
         DidSaveTextDocument::METHOD => decode::<DidSaveTextDocument>(params).map(|_| state.poll_disk()),
         DidChangeWatchedFiles::METHOD => decode::<DidChangeWatchedFiles>(params).map(|params| {
-            let paths: Vec<_> = params.changes.iter().filter_map(|change| document_uri::path(&change.uri)).collect();
+            let paths: Vec<_> =
+                params.changes.iter().filter_map(|change| document_uri::path(&change.uri)).collect();
             state.changed_on_disk(&paths);
         }),
         DidChangeWorkspaceFolders::METHOD => decode::<DidChangeWorkspaceFolders>(params).map(|params| {
-            let removed: Vec<_> = params.event.removed.iter().filter_map(|folder| document_uri::path(&folder.uri)).collect();
+            let removed: Vec<_> =
+                params.event.removed.iter().filter_map(|folder| document_uri::path(&folder.uri)).collect();
             let added = params.event.added.iter().filter_map(|folder| document_uri::path(&folder.uri));
             let folders = Arc::make_mut(&mut state.snapshot.folders);
             folders.retain(|folder| !removed.contains(folder));
@@ -54,7 +57,7 @@ pub(crate) fn take(state: &mut ServerState, notification: Notification) {
         DidChangeConfiguration::METHOD => decode::<DidChangeConfiguration>(params).map(|params| {
             if state.snapshot.client.has_configuration {
                 ask_configuration(state);
-            } else {
+            } else if !params.settings.is_null() {
                 set_configuration(state, &params.settings);
             }
         }),
@@ -81,7 +84,8 @@ fn initialized(state: &mut ServerState) {
     if state.snapshot.client.can_register_watchers {
         let endings = ENDINGS.map(|ending| format!("{ending},{}", ending.to_ascii_uppercase())).join(",");
         let globs = [format!("**/*.{{{endings},txt,toml,json,csv}}"), "**/[Oo][0-9]*".to_owned()];
-        let watchers = globs.map(|glob| FileSystemWatcher { glob_pattern: GlobPattern::String(glob), kind: None });
+        let watchers =
+            globs.map(|glob| FileSystemWatcher { glob_pattern: GlobPattern::String(glob), kind: None });
         let options = DidChangeWatchedFilesRegistrationOptions { watchers: watchers.to_vec() };
         let registration = Registration {
             id: "gcode-sim files".to_owned(),

@@ -19,6 +19,8 @@ pub(crate) struct Overlay {
     open: Arc<BTreeMap<PathBuf, Bytes>>,
     /// Files read from the host.
     cache: Arc<Mutex<BTreeMap<PathBuf, CachedFile>>>,
+    /// Folders of the host that were listed.
+    listings: Arc<Mutex<BTreeMap<PathBuf, FolderListing>>>,
 }
 
 struct CachedFile {
@@ -27,9 +29,15 @@ struct CachedFile {
     programs: Option<Arc<[ProgramName]>>,
 }
 
+/// Files of a folder, and the stamp of the folder then.
+struct FolderListing {
+    stamp: u64,
+    files: Vec<PathBuf>,
+}
+
 impl Overlay {
     pub(crate) fn new(host: Arc<dyn Host>) -> Self {
-        Self { host, open: Arc::default(), cache: Arc::default() }
+        Self { host, open: Arc::default(), cache: Arc::default(), listings: Arc::default() }
     }
 
     pub(crate) fn host(&self) -> &dyn Host {
@@ -54,6 +62,18 @@ impl Overlay {
     /// Returns the programs that are found from a file's own folder and in `folders`.
     pub(crate) fn library(&self, folders: Vec<PathBuf>) -> impl Library + use<> {
         FolderLibrary::of_folders(self.clone(), folders)
+    }
+
+    /// Returns the files of a folder of the host.
+    fn listing(&self, folder: &Path) -> Result<Vec<PathBuf>, String> {
+        let Some(stamp) = self.host.stamp(folder) else { return self.host.files(folder) };
+        let mut listings = self.listings.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(listing) = listings.get(folder).filter(|listing| listing.stamp == stamp) {
+            return Ok(listing.files.clone());
+        }
+        let files = self.host.files(folder)?;
+        listings.insert(folder.to_owned(), FolderListing { stamp, files: files.clone() });
+        Ok(files)
     }
 
     fn cache(&self) -> MutexGuard<'_, BTreeMap<PathBuf, CachedFile>> {
@@ -90,7 +110,7 @@ impl FileAccess for Overlay {
     }
 
     fn files(&self, folder: &Path) -> Result<Vec<PathBuf>, String> {
-        let mut files = self.host.files(folder)?;
+        let mut files = self.listing(folder)?;
         let unsaved = self.open.keys().filter(|path| path.parent() == Some(folder));
         files.extend(unsaved.cloned());
         files.sort();

@@ -81,7 +81,9 @@ impl ProgramSetup {
 
     /// Returns the folders in which called programs are found, in this order.
     pub(crate) fn folders(&self) -> Vec<PathBuf> {
-        std::iter::once(folder_of(&self.path).to_owned()).chain(self.paths.libraries.iter().cloned()).collect()
+        std::iter::once(folder_of(&self.path).to_owned())
+            .chain(self.paths.libraries.iter().cloned())
+            .collect()
     }
 
     /// Returns the called programs.

@@ -252,3 +252,61 @@ impl EventSink for SharedComparer<'_> {
 pub(crate) fn cancel(progress: &Progress) {
     progress.cancel.store(true, Ordering::Relaxed);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::opened;
+    use gcode_ide::TextRange;
+
+    /// Proves the replacement of one part of O0001 by another, among documents.
+    fn replaced(documents: &[(&str, &str)], old: &str, new: &str) -> Result<(), String> {
+        let (snapshot, files) = opened(documents);
+        let (index, start) = documents
+            .iter()
+            .enumerate()
+            .find_map(|(index, (_, text))| Some((index, text.find(old)?)))
+            .unwrap();
+        let range = TextRange::new(start as u32, (start + old.len()) as u32);
+        let edit = FileEdit { file: files[index], edit: TextEdit { range, text: new.to_owned() } };
+        prove(&snapshot, &[edit], &BTreeSet::new(), &Arc::default())
+    }
+
+    const MAIN: &str = "O0001\nG90G54\nG00X1.\nG65P9001A2.\n#100=3\nN7 M30\n";
+
+    #[test]
+    fn an_edit_that_changes_no_action_is_proved() {
+        assert_eq!(replaced(&[("O0001.nc", MAIN)], "N7 ", "N90   "), Ok(()));
+        let documents = [("O0001.nc", MAIN), ("O9001.nc", "O9001\nG00Z#1\nM99\n")];
+        assert_eq!(replaced(&documents, "G00X1.", "G00  X1.0"), Ok(()));
+        assert_eq!(replaced(&documents, "Z#1", "Z[#1]"), Ok(()), "in the macro, run by its caller");
+    }
+
+    #[test]
+    fn an_edit_that_changes_an_action_is_refused_with_the_place() {
+        let documents = [("O0001.nc", MAIN), ("O9001.nc", "O9001\nG00Z#1\nM99\n")];
+        for (old, new, why) in [
+            ("X1.", "X2.", "the machine would do something else from line 3 of O0001 on"),
+            ("Z#1", "Z-#1", "the machine would do something else from line 2 of O9001 on"),
+            ("G65P9001A2.", "", "the machine would do less"),
+            ("#100=3", "#100=4", "#100 would have another value at the end"),
+            ("N7 M30", "N7 #3000=1(X)", "the run would end otherwise"),
+            ("N7 M30", "N8 GOTO 8", "the run does not end: the program never ends"),
+        ] {
+            let found = replaced(&documents, old, new).unwrap_err();
+            assert!(found.starts_with(why), "{old}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_cancelled_proof_is_none() {
+        let (snapshot, files) =
+            opened(&[("O0001.nc", "O0001\n#1=0\nWHILE[#1LT300000]DO1\n#1=#1+1\nEND1\nM30\n")]);
+        let edit = TextEdit { range: TextRange::new(5, 6), text: "\n\n".to_owned() };
+        let progress = Arc::new(Progress::default());
+        cancel(&progress);
+        let edits = [FileEdit { file: files[0], edit }];
+        let found = prove(&snapshot, &edits, &BTreeSet::new(), &progress);
+        assert_eq!(found, Err("the run takes too long: it was ended before its end".to_owned()));
+    }
+}

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use gcode_control::Progress;
 use lsp_types::request::{
-    CallHierarchyIncomingCalls, CallHierarchyOutgoingCalls, CallHierarchyPrepare, CodeActionRequest, CodeLensRequest,
-    Completion, DocumentHighlightRequest, DocumentLinkRequest, DocumentSymbolRequest, ExecuteCommand,
-    FoldingRangeRequest, Formatting, GotoDefinition, HoverRequest, InlayHintRequest, PrepareRenameRequest,
-    RangeFormatting, References, Rename, Request, SemanticTokensFullRequest, SemanticTokensRangeRequest,
-    SignatureHelpRequest, WorkspaceSymbolRequest,
+    CallHierarchyIncomingCalls, CallHierarchyOutgoingCalls, CallHierarchyPrepare, CodeActionRequest,
+    CodeLensRequest, Completion, DocumentHighlightRequest, DocumentLinkRequest, DocumentSymbolRequest,
+    ExecuteCommand, FoldingRangeRequest, Formatting, GotoDefinition, HoverRequest, InlayHintRequest,
+    PrepareRenameRequest, RangeFormatting, References, Rename, Request, SemanticTokensFullRequest,
+    SemanticTokensRangeRequest, SignatureHelpRequest, WorkspaceSymbolRequest,
 };
 use serde_json::Value;
 
@@ -22,6 +22,8 @@ use crate::{code_actions, edits, hints, navigation, semantic_tokens, text_help};
 pub(crate) enum Handler {
     /// Answers at once.
     Now(fn(&Snapshot, Value) -> Result<Value, Failure>),
+    /// Answers for a whole text, which may be long, in the background.
+    Aside(fn(&Snapshot, Value) -> Result<Value, Failure>),
     /// Runs a program, and so answers in the background.
     Later(fn(&Snapshot, Value, &Arc<Progress>) -> Result<Value, Failure>),
     /// Executes a command in the background.
@@ -41,7 +43,16 @@ pub(crate) const OF_WORKSPACE: [&str; 5] = [
 pub(crate) fn handler(method: &str) -> Option<Handler> {
     macro_rules! now {
         ($request:ty, $handler:path) => {
-            Handler::Now(|snapshot, params| encode::<$request>($handler(snapshot, decode::<$request>(params)?)?))
+            Handler::Now(|snapshot, params| {
+                encode::<$request>($handler(snapshot, decode::<$request>(params)?)?)
+            })
+        };
+    }
+    macro_rules! aside {
+        ($request:ty, $handler:path) => {
+            Handler::Aside(|snapshot, params| {
+                encode::<$request>($handler(snapshot, decode::<$request>(params)?)?)
+            })
         };
     }
     macro_rules! later {
@@ -55,16 +66,16 @@ pub(crate) fn handler(method: &str) -> Option<Handler> {
         GotoDefinition::METHOD => now!(GotoDefinition, navigation::definition),
         References::METHOD => now!(References, navigation::references),
         DocumentHighlightRequest::METHOD => now!(DocumentHighlightRequest, navigation::highlights),
-        DocumentSymbolRequest::METHOD => now!(DocumentSymbolRequest, navigation::document_symbols),
+        DocumentSymbolRequest::METHOD => aside!(DocumentSymbolRequest, navigation::document_symbols),
         WorkspaceSymbolRequest::METHOD => now!(WorkspaceSymbolRequest, navigation::workspace_symbols),
         CallHierarchyPrepare::METHOD => now!(CallHierarchyPrepare, navigation::prepare_call_hierarchy),
         CallHierarchyIncomingCalls::METHOD => now!(CallHierarchyIncomingCalls, navigation::incoming_calls),
         CallHierarchyOutgoingCalls::METHOD => now!(CallHierarchyOutgoingCalls, navigation::outgoing_calls),
-        DocumentLinkRequest::METHOD => now!(DocumentLinkRequest, navigation::document_links),
-        FoldingRangeRequest::METHOD => now!(FoldingRangeRequest, navigation::folding_ranges),
+        DocumentLinkRequest::METHOD => aside!(DocumentLinkRequest, navigation::document_links),
+        FoldingRangeRequest::METHOD => aside!(FoldingRangeRequest, navigation::folding_ranges),
         Completion::METHOD => now!(Completion, text_help::completion),
         SignatureHelpRequest::METHOD => now!(SignatureHelpRequest, text_help::signature_help),
-        SemanticTokensFullRequest::METHOD => now!(SemanticTokensFullRequest, semantic_tokens::full),
+        SemanticTokensFullRequest::METHOD => aside!(SemanticTokensFullRequest, semantic_tokens::full),
         SemanticTokensRangeRequest::METHOD => now!(SemanticTokensRangeRequest, semantic_tokens::range),
         CodeLensRequest::METHOD => now!(CodeLensRequest, commands::code_lenses),
         PrepareRenameRequest::METHOD => now!(PrepareRenameRequest, edits::prepare_rename),

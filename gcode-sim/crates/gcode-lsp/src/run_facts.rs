@@ -43,9 +43,8 @@ impl RunFacts {
     pub(crate) fn in_block(&self, range: TextRange, number: u32) -> Option<&VariableValues> {
         let next = self.blocks.partition_point(|executed| executed.block.start <= range.start);
         let executed = self.blocks[..next].last().filter(|executed| range.start <= executed.block.end)?;
-        let of_variable = |role| {
-            executed.values.iter().find(move |values| values.number == number && values.role == role)
-        };
+        let of_variable =
+            |role| executed.values.iter().find(move |values| values.number == number && values.role == role);
         of_variable(VariableRole::Assigned).or_else(|| of_variable(VariableRole::Read))
     }
 

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use gcode_control::Progress;
-use gcode_ide::FileId;
+use gcode_ide::{FileEdit, FileId, ProgramKey};
 
 use crate::run_facts::RunFacts;
 
@@ -15,8 +15,13 @@ const MAX_TICKS: u32 = 12;
 #[derive(Debug, Default)]
 pub(crate) struct Runs {
     slots: Mutex<BTreeMap<FileId, Arc<Slot>>>,
+    /// Proved edits that renumber a program, or why there are none.
+    renumberings: Mutex<BTreeMap<ProgramKey, Renumbering>>,
     is_outdated: AtomicBool,
 }
+
+/// Proved edits that renumber a program, or the reason why there are none.
+pub(crate) type Renumbering = Result<Vec<FileEdit>, String>;
 
 #[derive(Debug, Default)]
 struct Slot {
@@ -42,6 +47,24 @@ impl Runs {
         }
         let facts = Arc::clone(slot.facts.get_or_init(|| Arc::new(run(&slot.progress))));
         (!self.is_outdated.load(Ordering::Relaxed)).then_some(facts)
+    }
+
+    /// Returns the renumbering of a program, proved once; one whose proof was cancelled is not kept.
+    pub(crate) fn renumbering(
+        &self,
+        program: ProgramKey,
+        progress: &Progress,
+        prove: impl FnOnce() -> Renumbering,
+    ) -> Renumbering {
+        let known = || self.renumberings.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(renumbering) = known().get(&program) {
+            return renumbering.clone();
+        }
+        let renumbering = prove();
+        if !progress.cancel.load(Ordering::Relaxed) {
+            known().insert(program, renumbering.clone());
+        }
+        renumbering
     }
 
     /// Ends all runs, whose results no longer count.

@@ -19,7 +19,7 @@ use crate::failure::Failure;
 use crate::host::Host;
 use crate::notifications;
 use crate::requests::{self, Handler, guarded};
-use crate::state::{BackgroundAnswer, ServerState};
+use crate::state::{BackgroundAnswer, PendingRequest, ServerState};
 
 /// Period of the server's clock: it ends long runs and looks for changes on the disk.
 const TICK: Duration = Duration::from_millis(250);
@@ -135,11 +135,15 @@ impl Server {
                 let result = guarded(&method, || handler(&self.state.snapshot, params));
                 self.state.send(response(id, result));
             }
-            Handler::Later(handler) => self.in_background(id, move |snapshot, id, progress| {
+            Handler::Aside(handler) => self.in_background(id, false, move |snapshot, id, _| {
+                let result = guarded(&method, || handler(&snapshot, params));
+                BackgroundAnswer::Answered(response(id, result))
+            }),
+            Handler::Later(handler) => self.in_background(id, true, move |snapshot, id, progress| {
                 let result = guarded(&method, || handler(&snapshot, params, progress));
                 BackgroundAnswer::Answered(response(id, result))
             }),
-            Handler::Command(handler) => self.in_background(id, move |snapshot, id, progress| {
+            Handler::Command(handler) => self.in_background(id, false, move |snapshot, id, progress| {
                 let result = guarded(&method, || handler(&snapshot, params, progress));
                 BackgroundAnswer::Executed(id, result)
             }),
@@ -149,10 +153,14 @@ impl Server {
     fn in_background(
         &mut self,
         id: RequestId,
-        work: impl FnOnce(crate::snapshot::Snapshot, RequestId, &Arc<Progress>) -> BackgroundAnswer + Send + 'static,
+        ends_with_edit: bool,
+        work: impl FnOnce(crate::snapshot::Snapshot, RequestId, &Arc<Progress>) -> BackgroundAnswer
+        + Send
+        + 'static,
     ) {
         let progress = Arc::new(Progress::default());
-        self.state.pending.insert(id.clone(), Arc::clone(&progress));
+        let request = PendingRequest { progress: Arc::clone(&progress), ends_with_edit };
+        self.state.pending.insert(id.clone(), request);
         let (snapshot, answers) = (self.state.snapshot.clone(), self.state.background.clone());
         std::thread::spawn(move || _ = answers.send(work(snapshot, id, &progress)));
     }
@@ -166,8 +174,10 @@ impl Server {
     fn on_response(&mut self, response: Response) {
         if self.state.configuration_requests.remove(&response.id) {
             let result = response.result.unwrap_or_default();
-            let settings = result.get(0).cloned().unwrap_or_default();
-            notifications::set_configuration(&mut self.state, &settings);
+            // A client without such settings answers null: those of initialize stay.
+            if let Some(settings) = result.get(0).filter(|settings| !settings.is_null()) {
+                notifications::set_configuration(&mut self.state, settings);
+            }
         }
     }
 
@@ -187,7 +197,9 @@ impl Server {
                     self.answer(request);
                 }
             }
-            BackgroundAnswer::Scanned(paths) => paths.iter().for_each(|path| self.state.snapshot.read(path)),
+            BackgroundAnswer::Scanned(paths) => {
+                paths.iter().for_each(|path| self.state.read_within_budget(path))
+            }
         }
     }
 
@@ -202,7 +214,12 @@ impl Server {
             }
             if let Some(uri) = shown.filter(|_| self.state.snapshot.client.has_show_document) {
                 let external = Some(true);
-                self.state.ask::<ShowDocument>(ShowDocumentParams { uri, external, take_focus: None, selection: None });
+                self.state.ask::<ShowDocument>(ShowDocumentParams {
+                    uri,
+                    external,
+                    take_focus: None,
+                    selection: None,
+                });
             }
             if let Some((label, edit)) = applied {
                 self.state.ask::<ApplyWorkspaceEdit>(ApplyWorkspaceEditParams { label: Some(label), edit });

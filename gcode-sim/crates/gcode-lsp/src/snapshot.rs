@@ -7,8 +7,8 @@ use std::sync::Arc;
 use gcode_ide::{FileId, Project, TextEdit, TextRange};
 use gcode_lang::source::Bytes;
 use lsp_types::{
-    Diagnostic, Location, TextDocumentContentChangeEvent, TextDocumentIdentifier,
-    TextDocumentPositionParams, Uri,
+    Diagnostic, Location, TextDocumentContentChangeEvent, TextDocumentIdentifier, TextDocumentPositionParams,
+    Uri,
 };
 
 use crate::client::Client;
@@ -147,7 +147,8 @@ impl Snapshot {
         let file = self.number(&uri);
         self.set_text(file, text.into_bytes().into());
         let index = self.project.file(file).map(|index| index.text().clone());
-        let text = Arc::new(TextDocument::new(index.unwrap_or_else(|| Vec::new().into()), self.client.encoding));
+        let text =
+            Arc::new(TextDocument::new(index.unwrap_or_else(|| Vec::new().into()), self.client.encoding));
         self.cover(&uri, &text);
         Arc::make_mut(&mut self.documents).insert(file, OpenDocument { uri, version, text });
         file
@@ -167,7 +168,12 @@ impl Snapshot {
     }
 
     /// Applies the changes of one notification, each to the text that the one before leaves.
-    pub(crate) fn change(&mut self, file: FileId, version: i32, changes: Vec<TextDocumentContentChangeEvent>) {
+    pub(crate) fn change(
+        &mut self,
+        file: FileId,
+        version: i32,
+        changes: Vec<TextDocumentContentChangeEvent>,
+    ) {
         let Some(open) = self.documents.get(&file).cloned() else { return };
         let mut text = open.text;
         for change in changes {
@@ -181,7 +187,11 @@ impl Snapshot {
             let edit = TextEdit { range: TextRange::new(start, end), text: change.text };
             Arc::make_mut(&mut self.project).edit_file(file, &edit);
             let Some(index) = self.project.file(file) else { return };
-            Arc::make_mut(&mut text).replace((start as usize, end as usize), edit.text.len(), index.text().clone());
+            Arc::make_mut(&mut text).replace(
+                (start as usize, end as usize),
+                edit.text.len(),
+                index.text().clone(),
+            );
         }
         self.cover(&open.uri, &text);
         Arc::make_mut(&mut self.documents).insert(file, OpenDocument { uri: open.uri, version, text });

@@ -22,11 +22,8 @@ use crate::runs::Runs;
 use crate::snapshot::Snapshot;
 use crate::workspace_scan;
 
-/// Largest size of a program beside an open one that is read with it, bytes.
-const MAX_NEIGHBOUR: usize = 16 << 20;
-
-/// Largest number of programs that are read with one that is opened.
-const MAX_NEIGHBOURS: usize = 500;
+/// Largest size of the programs that are read with one that is opened, or of a workspace, bytes.
+const MAX_NEIGHBOURS: usize = 64 << 20;
 
 /// Result of work in the background.
 pub(crate) enum BackgroundAnswer {
@@ -37,11 +34,18 @@ pub(crate) enum BackgroundAnswer {
     Scanned(Vec<PathBuf>),
 }
 
+/// Request that is answered in the background.
+pub(crate) struct PendingRequest {
+    pub progress: Arc<Progress>,
+    /// An edit makes the answer useless.
+    pub ends_with_edit: bool,
+}
+
 /// State of the server.
 pub(crate) struct ServerState {
     pub snapshot: Snapshot,
     /// Requests in the background.
-    pub pending: BTreeMap<RequestId, Arc<Progress>>,
+    pub pending: BTreeMap<RequestId, PendingRequest>,
     /// Requests that wait for the scan of the workspace.
     pub waiting: Vec<Request>,
     pub is_scanning: bool,
@@ -57,6 +61,8 @@ pub(crate) struct ServerState {
     checked: BTreeMap<FileId, CheckBasis>,
     /// Faults of the configuration that were shown.
     shown_faults: BTreeSet<String>,
+    /// Length of all programs that were read and no document has opened.
+    read_bytes: usize,
 }
 
 /// On what a check rests.
@@ -89,6 +95,7 @@ impl ServerState {
             settings: BTreeMap::new(),
             checked: BTreeMap::new(),
             shown_faults: BTreeSet::new(),
+            read_bytes: 0,
         }
     }
 
@@ -121,6 +128,9 @@ impl ServerState {
 
     /// Schedules the check of a document.
     fn check(&self, file: FileId, is_edited: bool) {
+        if is_other_text(&self.snapshot.path(file)) {
+            return;
+        }
         _ = self.checks.send(CheckJob { snapshot: self.snapshot.clone(), file, is_edited });
     }
 
@@ -137,10 +147,11 @@ impl ServerState {
     /// Reads the programs of the folders in which the programs that a document calls are found.
     fn read_neighbours(&mut self, file: FileId) {
         use gcode_session::files::FileAccess;
-        if document_uri::path(&self.snapshot.documents[&file].uri).is_none() && self.snapshot.folders.is_empty() {
+        if document_uri::path(&self.snapshot.documents[&file].uri).is_none()
+            && self.snapshot.folders.is_empty()
+        {
             return;
         }
-        let mut left = MAX_NEIGHBOURS;
         for folder in self.snapshot.setup(file).folders() {
             for path in self.snapshot.files.files(&folder).unwrap_or_default() {
                 let is_known = document_uri::of_path(&path).is_some_and(|uri| {
@@ -149,12 +160,18 @@ impl ServerState {
                 if is_known || !workspace_scan::is_program(&path, &self.snapshot.files) {
                     continue;
                 }
-                let is_small = self.snapshot.files.program(&path).is_ok_and(|text| text.len() < MAX_NEIGHBOUR);
-                if is_small && 0 < left {
-                    left -= 1;
-                    self.snapshot.read(&path);
-                }
+                self.read_within_budget(&path);
             }
+        }
+    }
+
+    /// Reads a program that no document has opened, as long as all of them are not too long.
+    pub(crate) fn read_within_budget(&mut self, path: &Path) {
+        use gcode_session::files::FileAccess;
+        let length = self.snapshot.files.program(path).map_or(0, |text| text.len());
+        if self.read_bytes + length <= MAX_NEIGHBOURS {
+            self.read_bytes += length;
+            self.snapshot.read(path);
         }
     }
 
@@ -165,9 +182,11 @@ impl ServerState {
         version: i32,
         changes: Vec<lsp_types::TextDocumentContentChangeEvent>,
     ) {
-        let Some(file) = self.snapshot.known(uri).filter(|file| self.snapshot.documents.contains_key(file)) else {
+        let Some(file) = self.snapshot.known(uri).filter(|file| self.snapshot.documents.contains_key(file))
+        else {
             return;
         };
+        self.end_requests_of_text();
         self.use_settings(file);
         let names = |state: &Self| {
             let programs = state.snapshot.project.file(file).map(|index| index.programs().to_vec());
@@ -177,6 +196,27 @@ impl ServerState {
         self.snapshot.change(file, version, changes);
         let has_other_programs = before != names(self);
         self.changed(file, has_other_programs);
+    }
+
+    /// Ends the requests whose answers an edit makes useless.
+    fn end_requests_of_text(&mut self) {
+        let ended: Vec<_> = self
+            .pending
+            .iter()
+            .filter(|(_, request)| request.ends_with_edit)
+            .map(|(id, _)| id.clone())
+            .collect();
+        for id in ended {
+            self.end_request(&id, Failure::outdated());
+        }
+    }
+
+    /// Ends a request in the background and answers it with an error.
+    fn end_request(&mut self, id: &RequestId, failure: Failure) {
+        if let Some(request) = self.pending.remove(id) {
+            proof::cancel(&request.progress);
+            self.send(failure.response(id.clone()));
+        }
     }
 
     /// Closes a document. Its diagnostics stay if it belongs to a project, those of the file on the disk.
@@ -199,6 +239,10 @@ impl ServerState {
 
     /// Has everything computed anew that rests on a text.
     fn changed(&mut self, file: FileId, has_other_programs: bool) {
+        let path = self.snapshot.path(file);
+        if is_other_text(&path) {
+            return self.changed_on_disk(&[path]);
+        }
         self.outdate_runs();
         self.check(file, true);
         self.changed_beside(file, has_other_programs);
@@ -241,7 +285,8 @@ impl ServerState {
     pub(crate) fn poll_disk(&mut self) {
         let host = self.snapshot.files.host();
         let stamps = self.checked.values().flat_map(|basis| &basis.stamps);
-        let changed = stamps.filter(|(path, stamp)| host.stamp(path) != **stamp).map(|(path, _)| path.clone());
+        let changed =
+            stamps.filter(|(path, stamp)| host.stamp(path) != **stamp).map(|(path, _)| path.clone());
         let changed: BTreeSet<_> = changed.filter(|path| !self.snapshot.files.is_open(path)).collect();
         if changed.is_empty() {
             return;
@@ -266,7 +311,9 @@ impl ServerState {
 
     /// Has the index read for the control of a document.
     pub(crate) fn use_settings(&mut self, file: FileId) {
-        if let Some(settings) = self.settings.get(&file).filter(|settings| *settings != self.snapshot.project.settings()) {
+        if let Some(settings) =
+            self.settings.get(&file).filter(|settings| *settings != self.snapshot.project.settings())
+        {
             Arc::make_mut(&mut self.snapshot.project).set_settings(settings.clone());
         }
     }
@@ -291,7 +338,8 @@ impl ServerState {
         let host = self.snapshot.files.host();
         let files = checked.called.iter().chain(&checked.surroundings);
         let stamps = files.map(|path| (path.clone(), host.stamp(path))).collect();
-        let (called, surroundings, is_in_project) = (checked.called, checked.surroundings, checked.is_in_project);
+        let (called, surroundings, is_in_project) =
+            (checked.called, checked.surroundings, checked.is_in_project);
         self.checked.insert(file, CheckBasis { called, surroundings, is_in_project, stamps });
         let published = Arc::new(checked.diagnostics.clone());
         Arc::make_mut(&mut self.snapshot.published).insert(file, published);
@@ -326,14 +374,19 @@ impl ServerState {
         });
     }
 
-    /// Ends a request in the background and answers it as cancelled.
+    /// Answers a request as cancelled, if it has no answer yet.
     pub(crate) fn cancel(&mut self, id: &RequestId) {
-        let waits = self.waiting.iter().any(|request| request.id == *id);
-        self.waiting.retain(|request| request.id != *id);
-        let progress = self.pending.remove(id);
-        progress.iter().for_each(|progress| proof::cancel(progress));
-        if waits || progress.is_some() {
+        if self.waiting.iter().any(|request| request.id == *id) {
+            self.waiting.retain(|request| request.id != *id);
             self.send(Failure::cancelled().response(id.clone()));
         }
+        self.end_request(id, Failure::cancelled());
     }
+}
+
+/// Returns true for a text that is no program: a configuration file, which counts as it is edited.
+fn is_other_text(path: &Path) -> bool {
+    const OTHERS: [&str; 4] = ["toml", "json", "csv", "md"];
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other))
 }

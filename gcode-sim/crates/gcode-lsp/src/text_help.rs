@@ -4,9 +4,10 @@ use std::sync::Arc;
 use gcode_control::Progress;
 use gcode_ide::{CompletionKind, FileId, Symbol, TextRange, VariableScope};
 use lsp_types::{
-    CompletionItem, CompletionItemKind, CompletionList, CompletionParams, CompletionResponse, CompletionTextEdit,
-    Documentation, Hover, HoverContents, HoverParams, InsertTextFormat, MarkupContent, MarkupKind,
-    ParameterInformation, ParameterLabel, SignatureHelp, SignatureHelpParams, SignatureInformation, TextEdit,
+    CompletionItem, CompletionItemKind, CompletionList, CompletionParams, CompletionResponse,
+    CompletionTextEdit, Documentation, Hover, HoverContents, HoverParams, InsertTextFormat, MarkupContent,
+    MarkupKind, ParameterInformation, ParameterLabel, SignatureHelp, SignatureHelpParams,
+    SignatureInformation, TextEdit,
 };
 
 use crate::background_run;
@@ -42,27 +43,27 @@ pub(crate) fn hover(
 /// Returns the sentence on the value of a variable in the run.
 fn value_in_run(facts: &RunFacts, range: TextRange, number: u32, scope: VariableScope) -> String {
     let run = match (facts.main.as_str(), &facts.stop) {
-        ("", Some(stop)) => return format!("No run: {stop}."),
+        ("", stop) => return format!("No run: {}.", stop.as_deref().unwrap_or("there is no program")),
         (main, None) => format!("run of {main}"),
-        (main, Some(stop)) => format!("run of {main}, which stops: {stop}"),
+        (main, Some(stop)) => format!("run of {main}, which stops with {stop}"),
     };
     if let Some(values) = facts.in_block(range, number) {
-        let mut sentence = format!("Last value in the {run}: `#{number}` = **{}**", value_text(values.last));
-        if values.last.is_vacant() {
-            sentence = format!("`#{number}` is **vacant** here in the {run}");
-        }
-        if let Some((low, high)) = values.range.filter(|(low, high)| low != high) {
-            let (low, high) = (number_text(low), number_text(high));
-            sentence.push_str(&format!(", {} times from {low} to {high}", values.count));
-        }
-        return sentence + ".";
+        let range = values.range.filter(|(low, high)| low != high);
+        let spread = range.map_or_else(String::new, |(low, high)| {
+            format!(" ({} times, {} to {})", values.count, number_text(low), number_text(high))
+        });
+        return match values.last.is_vacant() {
+            true => format!("`#{number}` is **vacant** here{spread}; {run}."),
+            false => {
+                format!("`#{number}` = **{}**, the last value here{spread}; {run}.", value_text(values.last))
+            }
+        };
     }
-    let is_executed = facts.is_executed(range.start);
     match facts.commons.get(&number) {
-        Some(value) => format!("`#{number}` = **{}** at the end of the {run}.", number_text(*value)),
-        None if scope == VariableScope::Common => format!("`#{number}` is **vacant** at the end of the {run}."),
-        None if is_executed => format!("No value of `#{number}` is recorded in the {run}."),
-        None => format!("This block is not executed in the {run}."),
+        Some(value) => format!("`#{number}` = **{}** at the end; {run}.", number_text(*value)),
+        None if scope == VariableScope::Common => format!("`#{number}` is **vacant** at the end; {run}."),
+        None if facts.is_executed(range.start) => format!("No value of `#{number}` is recorded; {run}."),
+        None => format!("This block is not executed; {run}."),
     }
 }
 

@@ -78,7 +78,9 @@ impl Project {
         let name = program.file_name().map(PathBuf::from).unwrap_or_default();
         let folder = files.canonical(folder_of(program));
         let root = folder.as_deref().and_then(|folder| project_folder(folder, files));
-        let (Some(folder), Some(root)) = (&folder, root) else { return Ok(Self { program: name, found: None }) };
+        let (Some(folder), Some(root)) = (&folder, root) else {
+            return Ok(Self { program: name, found: None });
+        };
         let below = folder.strip_prefix(root).unwrap_or(Path::new(""));
         let shown = shown(root);
         let path = shown.join(PROJECT_FILE);

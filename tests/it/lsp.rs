@@ -1,0 +1,140 @@
+//! The language server as a process: standard input and output, exit codes, and messages out of order.
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+
+use gcode_tests::programs;
+use serde_json::{Value, json};
+
+/// A client of the program.
+struct Client {
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+}
+
+impl Client {
+    fn start() -> Self {
+        let mut command = programs::program("gcode-sim");
+        let mut child = command.arg("lsp").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let (input, output) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()));
+        Self { child, input, output }
+    }
+
+    fn send_text(&mut self, body: &str) {
+        write!(self.input, "Content-Length: {}\r\n\r\n{body}", body.len()).unwrap();
+        self.input.flush().unwrap();
+    }
+
+    fn send(&mut self, mut message: Value) {
+        message["jsonrpc"] = "2.0".into();
+        self.send_text(&message.to_string());
+    }
+
+    /// Reads the next message; nothing but messages is on the output.
+    fn receive(&mut self) -> Value {
+        let mut line = String::new();
+        self.output.read_line(&mut line).unwrap();
+        let length: usize = line.strip_prefix("Content-Length: ").unwrap().trim().parse().unwrap();
+        line.clear();
+        self.output.read_line(&mut line).unwrap();
+        assert_eq!(line, "\r\n");
+        let mut body = vec![0; length];
+        self.output.read_exact(&mut body).unwrap();
+        let message: Value = serde_json::from_slice(&body).unwrap();
+        assert_eq!(message["jsonrpc"], "2.0");
+        message
+    }
+
+    /// Returns the answer to a request.
+    fn ask(&mut self, id: u32, method: &str, params: Value) -> Value {
+        self.send(json!({ "id": id, "method": method, "params": params }));
+        loop {
+            let message = self.receive();
+            if message["id"] == id && message.get("method").is_none() {
+                return message;
+            }
+        }
+    }
+
+    fn initialize(&mut self) {
+        let answer =
+            self.ask(0, "initialize", json!({ "processId": null, "rootUri": null, "capabilities": {} }));
+        assert_eq!(answer["result"]["serverInfo"]["name"], "gcode-sim");
+        self.send(json!({ "method": "initialized", "params": {} }));
+    }
+
+    /// Returns the exit code; the output has no further byte.
+    fn end(mut self) -> Option<i32> {
+        let mut rest = Vec::new();
+        self.output.read_to_end(&mut rest).unwrap();
+        assert_eq!(String::from_utf8(rest).unwrap(), "");
+        self.child.wait().unwrap().code()
+    }
+}
+
+#[test]
+fn shutdown_and_exit_end_the_server_with_0_exit_alone_with_1() {
+    let mut client = Client::start();
+    client.initialize();
+    assert_eq!(client.ask(1, "shutdown", Value::Null)["result"], Value::Null);
+    client.send(json!({ "method": "exit" }));
+    assert_eq!(client.end(), Some(0));
+    let mut client = Client::start();
+    client.initialize();
+    client.send(json!({ "method": "exit" }));
+    assert_eq!(client.end(), Some(1));
+    let mut client = Client::start();
+    client.send(json!({ "method": "exit" }));
+    assert_eq!(client.end(), Some(1));
+    // A client that goes without a word.
+    let Client { mut child, input, .. } = Client::start();
+    drop(input);
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+}
+
+#[test]
+fn requests_at_the_wrong_time_are_refused_and_the_server_goes_on() {
+    let mut client = Client::start();
+    assert_eq!(client.ask(1, "textDocument/hover", json!({}))["error"]["code"], -32002);
+    // Malformed parameters do not initialize.
+    assert_eq!(client.ask(2, "initialize", json!({ "capabilities": 5 }))["error"]["code"], -32602);
+    assert_eq!(client.ask(3, "shutdown", Value::Null)["error"]["code"], -32002);
+    client.initialize();
+    client.send_text("{\"jsonrpc\":");
+    assert_eq!(client.receive()["error"]["code"], -32700);
+    client.send_text("[1]");
+    assert_eq!(client.receive()["error"]["code"], -32600);
+    assert_eq!(client.ask(4, "shutdown", Value::Null)["result"], Value::Null);
+    assert_eq!(client.ask(5, "textDocument/hover", json!({}))["error"]["code"], -32600);
+    assert_eq!(client.ask(6, "shutdown", Value::Null)["error"]["code"], -32600);
+    client.send(json!({ "method": "exit" }));
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_cancelled_request_is_answered_once() {
+    let mut client = Client::start();
+    client.initialize();
+    // A run of a million blocks, longer than the way of the next message.
+    let text = "O1\n#1=0\nWHILE[#1LT900000]DO1\n#1=#1+1\nEND1\nM30\n";
+    let document = json!({ "uri": "untitled:O1", "languageId": "nc", "version": 1, "text": text });
+    client.send(json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } }));
+    let arguments = json!({ "command": "gcode-sim.run", "arguments": ["untitled:O1"] });
+    client.send(json!({ "id": 1, "method": "workspace/executeCommand", "params": arguments }));
+    client.send(json!({ "method": "$/cancelRequest", "params": { "id": 1 } }));
+    let mut answers = Vec::new();
+    client.send(json!({ "id": 2, "method": "textDocument/foldingRange", "params": { "textDocument": { "uri": "untitled:O1" } } }));
+    loop {
+        let message = client.receive();
+        if message["id"] == 1 {
+            answers.push(message["error"]["code"].clone());
+        }
+        if message["id"] == 2 {
+            break;
+        }
+    }
+    assert_eq!(answers, [-32800]);
+    client.ask(3, "shutdown", Value::Null);
+    client.send(json!({ "method": "exit" }));
+    assert_eq!(client.end(), Some(0));
+}
