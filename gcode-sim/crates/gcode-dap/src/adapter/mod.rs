@@ -7,8 +7,6 @@ mod outbox;
 mod program_files;
 mod source_requests;
 mod stack;
-#[cfg(test)]
-mod tests;
 mod typed_values;
 mod variables;
 

@@ -87,6 +87,7 @@ impl Debuggee {
     }
 
     /// Returns the next block.
+    #[cfg(test)]
     pub(crate) fn next_block(&self) -> Option<Span> {
         self.run.next_block()
     }
