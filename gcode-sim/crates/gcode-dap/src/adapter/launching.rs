@@ -107,7 +107,7 @@ impl<H: Host> Adapter<H> {
         self.tell_sources();
         if stops {
             if let Some(session) = &mut self.session {
-                session.debuggee.pause();
+                session.debuggee.stand_here();
             }
             self.stop(Stop::Entry);
         } else {
