@@ -3,7 +3,8 @@
 //! `--> next {"threadId": 1}` sends a request with its arguments, `--! TEXT` a message as it stands. `<-- next {…}` is the next
 //! message and must be the response with this body, `<-- refused next "text"` a failed one whose message contains the text,
 //! `<-- event stopped {…}` an event. Bodies may have more keys than expected, lists have as many entries, and `"~text"` is a
-//! text that contains the rest. A line that begins with spaces continues the one before; `$DIR` is the folder of the case.
+//! text that contains the rest. A line that begins with spaces continues the one before; `$DIR` is the folder of the case, `$ROOT` that
+//! of the workspace.
 use std::io::{Read, Write};
 use std::process::{Child, ChildStdin, Stdio};
 use std::sync::mpsc::{Receiver, channel};
@@ -11,7 +12,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::{Case, copy_folder, programs};
+use crate::{Case, copy_folder, programs, workspace};
 
 /// Time after which a missing message fails the case.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -101,6 +102,7 @@ pub(crate) fn run(case: &Case) {
     let folder = place.path().canonicalize().unwrap();
     copy_folder(&case.dir, &folder);
     let text = case.text("session.txt").replace("$DIR", &folder.display().to_string());
+    let text = text.replace("$ROOT", &workspace().display().to_string());
     let mut client = DapClient::start();
     let mut last = 0;
     for line in joined_lines(&text) {
