@@ -12,6 +12,7 @@ pub mod changes;
 mod check;
 mod cli;
 mod control;
+pub mod dap;
 mod exec;
 pub mod expect;
 pub mod fuzz;
@@ -36,6 +37,7 @@ pub const KINDS: &[(&str, Run)] = &[
     ("check", check::run),
     ("cli", cli::run),
     ("control", control::run),
+    ("dap", dap::run),
     ("exec", exec::run),
     ("gen", r#gen::run),
     ("lsp", lsp::run),

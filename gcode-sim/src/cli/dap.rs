@@ -94,7 +94,7 @@ struct Files;
 
 impl Host for Files {
     fn launch(&mut self, arguments: &LaunchArguments) -> Result<LaunchedProgram, String> {
-        launch(arguments).map_err(|refusal| refusal.to_string())
+        launch(arguments).map_err(|refusal| in_terms_of_launch(&refusal.to_string()))
     }
 
     fn program_text(&mut self, path: &str) -> Result<Bytes, String> {
@@ -119,6 +119,9 @@ fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
         return Err(UsageError::new(
             "launch: 'program' is the path of a file; standard input is the protocol's",
         ));
+    }
+    if let Some(missing) = arguments.library.iter().find(|folder| !Path::new(folder).is_dir()) {
+        return Err(UsageError::new(format!("launch: 'library', {missing}: no such folder")));
     }
     let pairs = |key: &str, values: &std::collections::BTreeMap<String, Value>| {
         let pair = |(name, value): (&String, &Value)| Ok(format!("{name}={}", setting(key, name, value)?));
@@ -153,6 +156,17 @@ fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
         Some(NominalPart::Flutes(_)) | None => None,
     };
     Ok(LaunchedProgram { request, library: Box::new(folders), reference })
+}
+
+/// Returns a refusal of the command line with the keys of a launch in place of its flags.
+fn in_terms_of_launch(refusal: &str) -> String {
+    let keys = [
+        ("--control", "launch: 'control'"),
+        ("--set", "launch: 'variables'"),
+        ("--program", "launch: 'mainProgram'"),
+    ];
+    let flag = keys.iter().find_map(|(flag, key)| Some((refusal.strip_prefix(flag)?, key)));
+    flag.map_or_else(|| refusal.to_owned(), |(rest, key)| format!("{key}{rest}"))
 }
 
 /// Returns a value of the launch as the command line has it: `true` is 1.

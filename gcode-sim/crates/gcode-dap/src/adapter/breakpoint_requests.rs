@@ -1,6 +1,6 @@
 //! Requests that set breakpoints.
 use super::typed_values::target;
-use super::{Adapter, Answer, Host, body};
+use super::{Adapter, Answer, Host, RequestedLines, body};
 use crate::debuggee::{
     BAD_HOLE, BlockPlace, Breakpoint, Conditions, FILTERS, Filters, HitCondition, LogMessage, ProgramPlace,
     VariablePlace, values,
@@ -9,7 +9,7 @@ use crate::protocol::arguments::{
     BreakpointConditions, DataBreakpoint, DataBreakpointInfo, FunctionBreakpoint, SetBreakpoints,
     SetDataBreakpoints, SetExceptionBreakpoints, SetFunctionBreakpoints, SourceBreakpoint,
 };
-use crate::protocol::bodies::{self, Breakpoints, FilterAnswer, FilterAnswers};
+use crate::protocol::bodies::{self, BreakpointChange, Breakpoints, FilterAnswer, FilterAnswers};
 use gcode_lang::program::Expression;
 use gcode_lang::syntax::ast::ProgramPath;
 
@@ -25,25 +25,37 @@ impl<H: Host> Adapter<H> {
             Some(requested) => requested.clone(),
             None => arguments.lines.iter().map(by_line).collect(),
         };
+        let with_id = |one| (self.breakpoints.next_id(), one);
+        let requested = RequestedLines {
+            source: arguments.source.clone(),
+            breakpoints: requested.into_iter().map(with_id).collect(),
+            answers: Vec::new(),
+        };
+        let answers = self.set_lines(&canonical, requested);
+        body(Breakpoints { breakpoints: answers })
+    }
+
+    /// Finds the blocks of the breakpoints in a file, hands them to the run, and keeps the request for the next one.
+    fn set_lines(&mut self, canonical: &str, mut requested: RequestedLines) -> Vec<bodies::Breakpoint> {
         let (mut answers, mut set) = (Vec::new(), Vec::new());
-        for one in &requested {
-            let id = self.breakpoints.next_id();
-            let source = Some(self.named_source(&path));
+        for (id, one) in &requested.breakpoints {
+            let source =
+                self.files.client_path(canonical).map(str::to_owned).map(|path| self.named_source(&path));
             let conditions = conditions(&one.conditions);
             let found = conditions.and_then(|conditions| {
-                let (_, site) = self.block_at(&arguments.source, one.line, one.column)?;
+                let (_, site) = self.block_at(&requested.source, one.line, one.column)?;
                 Ok((conditions, site))
             });
             answers.push(match found {
                 Ok((conditions, site)) => {
-                    let place = BlockPlace { path: canonical.clone(), start: site.start };
-                    set.push(Breakpoint::new(id, place, conditions));
+                    let place = BlockPlace { path: canonical.to_owned(), start: site.start };
+                    set.push(Breakpoint::new(*id, place, conditions));
                     let (line, column) = (self.client_line(site.line), self.client_column(site.column));
                     let (line, column) = (Some(line), Some(column));
-                    bodies::Breakpoint { id, verified: true, message: None, source, line, column }
+                    bodies::Breakpoint { id: *id, verified: true, message: None, source, line, column }
                 }
                 Err(message) => bodies::Breakpoint {
-                    id,
+                    id: *id,
                     message: Some(message),
                     source,
                     line: Some(one.line),
@@ -52,11 +64,22 @@ impl<H: Host> Adapter<H> {
             });
         }
         if let Some(session) = &mut self.session {
-            session.debuggee.breakpoints_mut().replace_lines(&canonical, set.clone());
+            session.debuggee.breakpoints_mut().replace_lines(canonical, set);
         }
-        self.breakpoints.lines.retain(|one| one.place.path != canonical);
-        self.breakpoints.lines.extend(set);
-        body(Breakpoints { breakpoints: answers })
+        requested.answers.clone_from(&answers);
+        self.breakpoints.lines.insert(canonical.to_owned(), requested);
+        answers
+    }
+
+    /// Finds the blocks of all breakpoints on lines in the texts of a new run, and tells the client which have changed.
+    pub(super) fn set_lines_again(&mut self) {
+        for (canonical, requested) in std::mem::take(&mut self.breakpoints.lines) {
+            let before = requested.answers.clone();
+            let answers = self.set_lines(&canonical, requested);
+            for (breakpoint, _) in answers.into_iter().zip(before).filter(|(now, before)| now != before) {
+                self.outbox.event("breakpoint", BreakpointChange { reason: "changed", breakpoint });
+            }
+        }
     }
 
     pub(super) fn set_function_breakpoints(&mut self, arguments: &SetFunctionBreakpoints) -> Answer {

@@ -18,6 +18,7 @@ impl<H: Host> Adapter<H> {
         check_thread(thread.thread_id)?;
         let session = self.standing()?;
         let goal = goal(session.debuggee.control().call_depth(), session.debuggee.position());
+        session.debuggee.set_off(goal);
         self.goal = Some(goal);
         self.exception = None;
         Ok(Value::Null)

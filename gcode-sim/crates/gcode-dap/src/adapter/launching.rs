@@ -70,11 +70,8 @@ impl<H: Host> Adapter<H> {
         if arguments.no_debug {
             debuggee.ignore_stops();
         }
-        // The files may have changed since their breakpoints were set; a client sets them again where they have.
-        self.files.forget_texts();
         debuggee.set_filters(self.breakpoints.filters.clone());
         let breakpoints = debuggee.breakpoints_mut();
-        breakpoints.lines.clone_from(&self.breakpoints.lines);
         breakpoints.programs.clone_from(&self.breakpoints.programs);
         breakpoints.variables.clone_from(&self.breakpoints.variables);
         self.session = Some(Session {
@@ -87,6 +84,9 @@ impl<H: Host> Adapter<H> {
         });
         self.exception = None;
         self.goto_targets.clear();
+        // The files may have changed since their breakpoints were set.
+        self.files.forget_texts();
+        self.set_lines_again();
         Ok(())
     }
 
@@ -107,7 +107,7 @@ impl<H: Host> Adapter<H> {
         self.tell_sources();
         if stops {
             if let Some(session) = &mut self.session {
-                session.debuggee.pause();
+                session.debuggee.stand_here();
             }
             self.stop(Stop::Entry);
         } else {
@@ -130,9 +130,9 @@ impl<H: Host> Adapter<H> {
 
     pub(super) fn terminate(&mut self) -> Answer {
         self.goal = None;
-        if let Some(session) = self.session.as_mut().filter(|session| !session.has_ended) {
-            session.has_ended = true;
-            self.outbox.event("terminated", Value::Null);
+        if self.session.as_ref().is_some_and(|session| !session.has_ended) {
+            // As an interrupted `gcode-sim run`.
+            self.tell_end(End::Stopped);
         }
         Ok(Value::Null)
     }

@@ -7,13 +7,12 @@ mod outbox;
 mod program_files;
 mod source_requests;
 mod stack;
-#[cfg(test)]
-mod tests;
 mod typed_values;
 mod variables;
 
 pub use host::{Host, LaunchedProgram};
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use serde::Serialize;
@@ -24,9 +23,10 @@ use self::outbox::Outbox;
 use self::program_files::ProgramFiles;
 use self::stack::GotoTarget;
 use crate::debuggee::{
-    BlockPlace, Breakpoint, Debuggee, Exception, Filters, Goal, OutputLine, ProgramPlace, VariablePlace,
+    Breakpoint, Debuggee, Exception, Filters, Goal, OutputLine, ProgramPlace, VariablePlace,
 };
-use crate::protocol::arguments::Launch;
+use crate::protocol::arguments::{Launch, Source, SourceBreakpoint};
+use crate::protocol::bodies;
 use crate::protocol::message::Request;
 use gcode_inspect::verify::Tolerances;
 use gcode_part::Reference;
@@ -76,10 +76,18 @@ impl Default for Client {
 #[derive(Default)]
 struct RequestedBreakpoints {
     last_id: i64,
-    lines: Vec<Breakpoint<BlockPlace>>,
+    /// By the canonical paths of their files.
+    lines: BTreeMap<String, RequestedLines>,
     programs: Vec<Breakpoint<ProgramPlace>>,
     variables: Vec<Breakpoint<VariablePlace>>,
     filters: Filters,
+}
+
+/// Breakpoints on lines of one file, with what the client has been told of them.
+struct RequestedLines {
+    source: Source,
+    breakpoints: Vec<(i64, SourceBreakpoint)>,
+    answers: Vec<bodies::Breakpoint>,
 }
 
 impl RequestedBreakpoints {

@@ -39,6 +39,11 @@ impl<H: Host> Adapter<H> {
     pub(super) fn evaluate(&mut self, arguments: &Evaluate) -> Answer {
         let level = self.level_of_frame(arguments.frame_id)?;
         let control = self.standing()?.debuggee.control();
+        if arguments.expression.contains('=') {
+            return Err(
+                "an assignment is no expression: set the variable among those of its scope".to_owned()
+            );
+        }
         let expression = Expression::parse(&arguments.expression).map_err(|alarm| values::alarm(&alarm))?;
         let result = control.evaluate(&expression, level).map_err(|alarm| values::alarm(&alarm))?;
         let kind = match result {

@@ -41,6 +41,17 @@ impl EventSink for BlockStops {
     }
 }
 
+/// What has been decided about the next block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum NextBlock {
+    /// Nothing: breakpoints and exceptions may stop the run there.
+    New,
+    /// The run stands there: breakpoints write their messages and don't stop it again.
+    Standing,
+    /// Everything.
+    Reached,
+}
+
 /// Run under a debugger.
 pub(crate) struct Debuggee {
     run: ReversibleRun,
@@ -50,8 +61,7 @@ pub(crate) struct Debuggee {
     bad_holes: Option<(u64, BadHoles)>,
     /// Position and number of changes of the alarm at which the run stands.
     raised: Option<(u64, u64)>,
-    /// The breakpoints on the next block have not been reached yet.
-    is_block_new: bool,
+    next_block: NextBlock,
     /// A program has begun, and none of its blocks has been executed but comments.
     has_entered: bool,
     ignores_stops: bool,
@@ -67,7 +77,7 @@ impl Debuggee {
             filters: Filters::default(),
             bad_holes: None,
             raised: None,
-            is_block_new: true,
+            next_block: NextBlock::New,
             has_entered: true,
             ignores_stops: false,
             canonical,
@@ -86,8 +96,9 @@ impl Debuggee {
         self.run.control()
     }
 
-    /// Returns the next block.
-    pub(crate) fn next_block(&self) -> Option<Span> {
+    /// Returns the span of the next block.
+    #[cfg(test)]
+    pub(crate) fn next_span(&self) -> Option<Span> {
         self.run.next_block()
     }
 
@@ -125,9 +136,8 @@ impl Debuggee {
         self.raised = None;
         self.breakpoints.forget_hits_behind(self.run.position());
         if matches!(change, Change::Jump { .. }) {
-            self.is_block_new = false;
             self.has_entered = false;
-            self.pass_empty_blocks();
+            self.stand_here();
         }
         Ok(())
     }
@@ -144,14 +154,16 @@ impl Debuggee {
             return self.go_back_a_stretch(end);
         }
         for _ in 0..blocks {
-            if self.is_block_new
-                && let Some(stop) = self.reach_block(*goal, output)
-            {
-                self.is_block_new = false;
-                return Some(stop);
+            let stop = match self.next_block {
+                NextBlock::New => self.reach_block(Some(*goal), output),
+                NextBlock::Standing => self.reach_block(None, output),
+                NextBlock::Reached => None,
+            };
+            if stop.is_some() {
+                self.next_block = NextBlock::Reached;
+                return stop;
             }
             if let Some(stop) = self.execute_block(output) {
-                self.is_block_new = false;
                 self.pass_empty_blocks();
                 return Some(stop);
             }
@@ -159,8 +171,15 @@ impl Debuggee {
         None
     }
 
-    /// Decides whether the run stops in front of the next block.
-    fn reach_block(&mut self, goal: Goal, output: &mut Vec<OutputLine>) -> Option<Stop> {
+    /// Prepares for a goal: a step executes at least one block.
+    pub(crate) fn set_off(&mut self, goal: Goal) {
+        if goal != Goal::Continue && self.next_block == NextBlock::New {
+            self.next_block = NextBlock::Standing;
+        }
+    }
+
+    /// Decides whether the run stops in front of the next block; without a goal it stands there.
+    fn reach_block(&mut self, goal: Option<Goal>, output: &mut Vec<OutputLine>) -> Option<Stop> {
         let control = self.run.control();
         if control.is_next_empty() {
             return None;
@@ -179,18 +198,18 @@ impl Debuggee {
             if !self.breakpoints.is_empty() {
                 let site = (site.source, site.start);
                 let hits = self.breakpoints.reach_block(control, site, position);
-                if let Some(ids) = tell(hits, self.run.next_block(), output) {
+                if let Some(ids) = tell(hits, self.run.next_block(), output).filter(|_| goal.is_some()) {
                     return Some(Stop::Breakpoint(ids));
                 }
                 let arrival = Arrival { control, has_entered: self.has_entered };
                 let hits = self.breakpoints.reach_programs(&arrival, position);
-                if let Some(ids) = tell(hits, self.run.next_block(), output) {
+                if let Some(ids) = tell(hits, self.run.next_block(), output).filter(|_| goal.is_some()) {
                     return Some(Stop::ProgramBreakpoint(ids));
                 }
             }
         }
         let depth = control.call_depth();
-        let is_done = match goal {
+        let is_done = match goal? {
             Goal::Continue | Goal::ReverseContinue { .. } => false,
             Goal::StepIn => true,
             Goal::Next { depth: from } => depth <= from,
@@ -225,7 +244,7 @@ impl Debuggee {
         if let Some(outcome) = outcome {
             return Some(self.end(&outcome, position, output));
         }
-        self.is_block_new = true;
+        self.next_block = NextBlock::New;
         self.has_entered = self.run.has_entered() || was_empty && self.has_entered;
         if self.breakpoints.located_for_fewer(self.run.control()) {
             self.breakpoints.locate(self.run.control(), &*self.canonical);
@@ -268,13 +287,19 @@ impl Debuggee {
         }
         self.run.go_back_to(position);
         self.raised = Some(here);
+        self.next_block = NextBlock::Reached;
         Stop::Exception(exception)
     }
 
-    /// Stands here: what is on the next block does not stop the run again.
+    /// Stands here, at the start or behind a jump: breakpoints on the next block don't stop the run again.
+    pub(crate) fn stand_here(&mut self) {
+        self.pass_empty_blocks();
+        self.next_block = NextBlock::Standing;
+    }
+
+    /// Interrupts the run.
     pub(crate) fn pause(&mut self) {
         self.pass_empty_blocks();
-        self.is_block_new = false;
     }
 
     /// Passes comments and empty lines in front of the next block.
@@ -305,7 +330,7 @@ impl Debuggee {
 
     fn stand(&mut self) {
         self.raised = None;
-        self.is_block_new = false;
+        self.next_block = NextBlock::Reached;
         self.has_entered = self.run.has_entered();
         self.pass_empty_blocks();
     }

@@ -33,7 +33,7 @@ fn run(text: &str, library: &[(u32, &str)]) -> ReversibleRun {
 
 fn debuggee(text: &str) -> Debuggee {
     let mut debuggee = Debuggee::new(run(text, &[]), Rc::new(str::to_owned));
-    debuggee.pause();
+    debuggee.stand_here();
     debuggee
 }
 
@@ -50,12 +50,13 @@ fn shown(control: &Control) -> String {
 /// The next block of a run.
 fn next(debuggee: &Debuggee) -> String {
     let sources = debuggee.control().memory().sources();
-    debuggee.next_block().map_or_else(String::new, |block| sources.text(block))
+    debuggee.next_span().map_or_else(String::new, |block| sources.text(block))
 }
 
 /// Runs to the next stop.
 fn advance(debuggee: &mut Debuggee, mut goal: Goal) -> Stop {
     let mut output = Vec::new();
+    debuggee.set_off(goal);
     loop {
         if let Some(stop) = debuggee.advance(&mut goal, 7, &mut output) {
             return stop;
@@ -228,6 +229,32 @@ fn operator_stops_pause_and_messages_are_output() {
     // Three digits before the point and two behind it, with spaces for leading zeros.
     assert_eq!(output.len(), 1);
     assert_eq!(output[0].text.replace(' ', ""), "X5.00");
+}
+
+#[test]
+fn what_is_on_the_block_behind_a_stop_counts() {
+    let text = "O1\nM00\n#1=#5\n#2=2\nM30\n";
+    let with = |breakpoint: Conditions, filters: &[&str]| {
+        let mut debuggee = debuggee(text);
+        debuggee.breakpoints_mut().replace_lines("O1.nc", vec![at_block(text, "#1=#5", breakpoint)]);
+        debuggee.set_filters(Filters::of(filters.iter().copied()));
+        assert_eq!(advance(&mut debuggee, Goal::Continue), Stop::Pause("M00".to_owned()));
+        debuggee
+    };
+    let mut on_line = with(Conditions::default(), &[]);
+    assert_eq!(advance(&mut on_line, Goal::Continue), Stop::Breakpoint(vec![1]));
+    assert_eq!(advance(&mut on_line, Goal::Continue), Stop::End(End::Program));
+    let mut stepped = with(Conditions::default(), &[]);
+    assert_eq!(advance(&mut stepped, Goal::StepIn), Stop::Step);
+    assert_eq!(next(&stepped), "#2=2");
+    let mut vacant = with(Conditions::default(), &["vacant"]);
+    assert!(matches!(advance(&mut vacant, Goal::Continue), Stop::Exception(_)));
+    let log = Some(LogMessage::parse("here").unwrap());
+    let mut logged = with(Conditions { log, ..Conditions::default() }, &[]);
+    let mut output = Vec::new();
+    logged.set_off(Goal::StepIn);
+    assert_eq!(logged.advance(&mut Goal::StepIn, 9, &mut output), Some(Stop::Step));
+    assert_eq!(output.len(), 1);
 }
 
 #[test]

@@ -5,11 +5,18 @@ use gcode_lang::alarm::Alarm;
 /// Text of a vacant value.
 pub(crate) const VACANT: &str = "vacant";
 
+/// Numbers below this are written with an exponent.
+const SMALLEST_DECIMAL: f64 = 1e-7;
+
 /// Returns a number with at most 15 significant digits: the sixteenth is the noise of binary fractions.
 pub(crate) fn number(value: f64) -> String {
-    let rounded = format!("{value:.14e}").parse().unwrap_or(value);
-    // −0 is 0 on every screen.
-    if rounded == 0.0 { "0".to_owned() } else { format!("{rounded}") }
+    let rounded: f64 = format!("{value:.14e}").parse().unwrap_or(value);
+    match rounded.abs() {
+        // −0 is 0 on every screen.
+        0.0 => "0".to_owned(),
+        small if small < SMALLEST_DECIMAL => format!("{rounded:e}"),
+        _ => rounded.to_string(),
+    }
 }
 
 /// Returns a value, or `vacant`.
@@ -44,6 +51,7 @@ mod tests {
             (-0.0, "0"),
             (1158.8, "1158.8"),
             (0.000_1, "0.0001"),
+            (-6.5e-17, "-6.5e-17"),
             (123_456_789.25, "123456789.25"),
         ] {
             assert_eq!(number(given), text);

@@ -32,7 +32,7 @@ pub(crate) struct ExceptionFilter {
     pub(crate) default: bool,
 }
 
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Source {
     pub(crate) name: String,
@@ -42,7 +42,7 @@ pub(crate) struct Source {
     pub(crate) source_reference: Option<i64>,
 }
 
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Breakpoint {
     pub(crate) id: i64,
     pub(crate) verified: bool,
@@ -260,6 +260,12 @@ pub(crate) struct Output {
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Exited {
     pub(crate) exit_code: i64,
+}
+
+#[derive(Debug, Serialize)]
+pub(crate) struct BreakpointChange {
+    pub(crate) reason: &'static str,
+    pub(crate) breakpoint: Breakpoint,
 }
 
 #[derive(Debug, Serialize)]
