@@ -12,7 +12,7 @@ use tempfile::TempDir;
 use super::conditions::RunConditions;
 use super::disk_files::DiskFiles;
 use super::project::Project;
-use super::{ExitStatus, UsageError, framing, input, options, page};
+use super::{ExitStatus, UsageError, framing, input, options, output, page};
 use crate::report::run::RunReport;
 use gcode_inspect::verify::Tolerances;
 use gcode_lang::program::Library;
@@ -128,9 +128,22 @@ impl Host for EditorHost {
     fn write_page(
         &self,
         request: &Request,
-        mut library: &mut dyn Library,
+        library: &mut dyn Library,
         reference: Option<&Path>,
     ) -> Result<PathBuf, String> {
+        let html = self.page(request, library, reference)?;
+        let stem = Path::new(&request.name).file_stem().unwrap_or_default().to_string_lossy();
+        let path = self.pages.path().join(format!("{stem}.html"));
+        sentence(output::write(&path, html.as_bytes()))?;
+        Ok(path)
+    }
+
+    fn page(
+        &self,
+        request: &Request,
+        mut library: &mut dyn Library,
+        reference: Option<&Path>,
+    ) -> Result<String, String> {
         let nominal = reference.map(|path| options::read_nominal(path, request, &mut library)).transpose();
         let nominal = sentence(nominal)?.and_then(NominalPart::into_holes);
         let metal = nominal.as_ref().map(|nominal| request.metal(nominal)).unwrap_or_default();
@@ -150,10 +163,7 @@ impl Host for EditorHost {
             ..RunConditions::default()
         };
         let (conditions, _) = sentence(Project::of(program))?.complete(program, &given);
-        let stem = program.file_stem().unwrap_or_default().to_string_lossy();
-        let path = self.pages.path().join(format!("{stem}.html"));
-        sentence(page::write_alone(&request, &(revision, trace), judged, &conditions, &path))?;
-        Ok(path)
+        sentence(page::alone(&request, &(revision, trace), judged, &conditions))
     }
 }
 

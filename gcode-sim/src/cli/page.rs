@@ -26,11 +26,21 @@ pub(super) fn simulate_traced(
 /// Writes the page of one program, with its verdict if there is a reference.
 pub(super) fn write_alone(
     request: &Request,
-    (revision, trace): &(Revision, Trace),
+    traced: &(Revision, Trace),
     judged: Option<(&Path, &Reference, &Verdict)>,
     conditions: &RunConditions,
     path: &Path,
 ) -> Result<(), UsageError> {
+    output::write(path, alone(request, traced, judged, conditions)?.as_bytes())
+}
+
+/// Returns the page of one program as HTML.
+pub(super) fn alone(
+    request: &Request,
+    (revision, trace): &(Revision, Trace),
+    judged: Option<(&Path, &Reference, &Verdict)>,
+    conditions: &RunConditions,
+) -> Result<String, UsageError> {
     let page = Page {
         old: None,
         new: ObservedProgram { request, revision, trace, verdict: judged.map(|(_, _, verdict)| verdict) },
@@ -39,7 +49,7 @@ pub(super) fn write_alone(
         conditions: &flags(conditions),
         documents: &documents(conditions, judged.map(|(path, ..)| path))?,
     };
-    write(&page, path)
+    html(&page)
 }
 
 /// Refuses a file name with another extension than .html or .htm: it could be that of a program.
@@ -56,9 +66,11 @@ pub(super) fn check_is_html(path: &Path) -> Result<(), UsageError> {
 
 /// Writes a page to its file.
 pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), UsageError> {
-    let html =
-        page.html().map_err(|error| UsageError::new(format!("the page cannot be written: {error}")))?;
-    output::write(path, html.as_bytes())
+    output::write(path, html(page)?.as_bytes())
+}
+
+fn html(page: &Page<'_>) -> Result<String, UsageError> {
+    page.html().map_err(|error| UsageError::new(format!("the page cannot be written: {error}")))
 }
 
 /// Reads the input files besides the programs.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use gcode_control::Progress;
 use gcode_ide::{FileId, ProgramKey};
+use gcode_lang::source::Bytes;
 use gcode_lang::syntax::ast::ProgramPath;
 use gcode_session::Request;
 use lsp_types::{
@@ -23,11 +24,12 @@ use crate::snapshot::Snapshot;
 const RUN: &str = "gcode-sim.run";
 const VERIFY: &str = "gcode-sim.verify";
 const SHOW: &str = "gcode-sim.show";
+const PAGE: &str = "gcode-sim.page";
 const DEBUG: &str = "gcode-sim.debug";
 const RENUMBER: &str = "gcode-sim.renumber";
 
 /// All commands, as the server announces them.
-pub(crate) const ALL: [&str; 5] = [RUN, VERIFY, SHOW, DEBUG, RENUMBER];
+pub(crate) const ALL: [&str; 6] = [RUN, VERIFY, SHOW, PAGE, DEBUG, RENUMBER];
 
 /// Argument of each command: a program of a document.
 #[derive(Debug, Serialize, Deserialize)]
@@ -36,6 +38,9 @@ struct Target {
     /// `O1234`; the main program of the document without it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     program: Option<String>,
+    /// Text to run instead of the document's: the arguments of a call are tried without an edit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    text: Option<String>,
 }
 
 /// Result of a command, and what the client is told beside it.
@@ -66,7 +71,7 @@ pub(crate) fn code_lenses(
         let range = text.range(outline.name_range.start, outline.name_range.end);
         let is_named = !outline.name_range.is_empty();
         let label = snapshot.project.label(key);
-        let target = Target { uri: params.text_document.uri.clone(), program: is_named.then_some(label) };
+        let target = Target { uri: params.text_document.uri.clone(), program: is_named.then_some(label), text: None };
         let commands = [("Run", RUN), ("Verify", VERIFY), ("Show", SHOW), ("Debug", DEBUG)];
         for (title, command) in commands {
             let arguments = Some(vec![json!(target)]);
@@ -96,6 +101,7 @@ pub(crate) fn execute(
         RUN => run(snapshot, &setup, &request),
         VERIFY => verify(snapshot, &setup, &request),
         SHOW => show(snapshot, &setup, &request),
+        PAGE => page(snapshot, &setup, &request),
         DEBUG => Ok(CommandResult::new(launch(&setup, &target))),
         _ => renumber(snapshot, file, &target, progress),
     }
@@ -108,7 +114,7 @@ fn target(params: &ExecuteCommandParams) -> Result<Target, Failure> {
     let target = match argument {
         Value::String(_) => Uri::deserialize(argument).map(|uri| {
             let program = params.arguments.get(1).and_then(Value::as_str).map(str::to_owned);
-            Target { uri, program }
+            Target { uri, program, text: None }
         }),
         _ => Target::deserialize(argument),
     };
@@ -124,7 +130,10 @@ fn request(
     if let Some(fault) = setup.faults.first() {
         return Err(Failure::refused(fault.clone()));
     }
-    let text = snapshot.text_of(file)?.bytes().clone();
+    let text = match &target.text {
+        Some(text) => Bytes::from(text.clone().into_bytes()),
+        None => snapshot.text_of(file)?.bytes().clone(),
+    };
     let mut request = setup.request(text);
     if let Some(name) = &target.program {
         let path = ProgramPath::parse(name);
@@ -190,6 +199,14 @@ fn show(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<
     let message = (!snapshot.client.has_show_document)
         .then(|| (MessageType::INFO, format!("page: {}", page.display())));
     Ok(CommandResult { shown: uri, message, ..CommandResult::new(value) })
+}
+
+/// Returns the page of a program as HTML, for a panel beside the text.
+fn page(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<CommandResult, Failure> {
+    let mut library = setup.library(&snapshot.files);
+    let reference = setup.paths.reference.as_deref();
+    let html = snapshot.files.host().page(request, &mut library, reference).map_err(Failure::refused)?;
+    Ok(CommandResult::new(json!({ "html": html })))
 }
 
 /// Returns a launch configuration for `gcode-sim dap`.

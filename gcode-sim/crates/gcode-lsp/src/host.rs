@@ -47,4 +47,15 @@ pub trait Host: FileAccess + Send + Sync {
         library: &mut dyn Library,
         reference: Option<&Path>,
     ) -> Result<PathBuf, String>;
+
+    /// Returns the page of a program as HTML, with its verdict if there is a reference.
+    ///
+    /// # Errors
+    /// The run cannot begin, or the reference cannot be used.
+    fn page(
+        &self,
+        request: &Request,
+        library: &mut dyn Library,
+        reference: Option<&Path>,
+    ) -> Result<String, String>;
 }

@@ -58,6 +58,9 @@
 //!     fn write_page(&self, _: &Request, _: &mut dyn Library, _: Option<&Path>) -> Result<PathBuf, String> {
 //!         Err("no pages".to_owned())
 //!     }
+//!     fn page(&self, _: &Request, _: &mut dyn Library, _: Option<&Path>) -> Result<String, String> {
+//!         Err("no pages".to_owned())
+//!     }
 //! }
 //!
 //! let (server, client) = Connection::memory();

@@ -63,6 +63,9 @@ impl Host for NoFiles {
     fn write_page(&self, _: &Request, _: &mut dyn Library, _: Option<&Path>) -> Result<PathBuf, String> {
         Err("no pages".to_owned())
     }
+    fn page(&self, _: &Request, _: &mut dyn Library, _: Option<&Path>) -> Result<String, String> {
+        Err("no pages".to_owned())
+    }
 }
 
 /// Returns the state in which documents are open: names in one folder with their texts.
