@@ -12,6 +12,8 @@ export class PartPanel implements vscode.Disposable {
   private panel: vscode.WebviewPanel | undefined;
   private document: vscode.TextDocument | undefined;
   private timer: NodeJS.Timeout | undefined;
+  // Files of the drawn run: that of the program, and those of the programs that it calls.
+  private files: string[] = [];
   // Number of the last request: an answer to an older one is dropped.
   private request = 0;
   private readonly arguments: ArgumentView;
@@ -45,19 +47,25 @@ export class PartPanel implements vscode.Disposable {
         this.panel = undefined;
         void vscode.commands.executeCommand("setContext", "gcode-sim.partIsOpen", false);
       });
-      this.panel.webview.onDidReceiveMessage(({ file, line }) => this.reveal(file, line));
+      this.panel.webview.onDidReceiveMessage((message: { files?: string[]; file?: string; line?: number }) => {
+        if (message.files) this.files = message.files;
+        if (message.files && vscode.window.activeTextEditor) this.select(vscode.window.activeTextEditor);
+        if (message.file && message.line) void this.reveal(message.file, message.line);
+      });
       void vscode.commands.executeCommand("setContext", "gcode-sim.partIsOpen", true);
     }
     this.change(editor);
   }
 
+  // Returns whether a change of a document may change the drawing: a called program counts.
   private follows(document: vscode.TextDocument): boolean {
     return this.panel !== undefined && document.languageId === "nc" && this.document !== undefined;
   }
 
   private change(editor: vscode.TextEditor): void {
     if (editor.document.languageId !== "nc") return;
-    if (this.document !== editor.document) {
+    // A macro of the drawn run is followed there.
+    if (this.document !== editor.document && !this.files.includes(editor.document.uri.fsPath)) {
       this.document = editor.document;
       void this.draw();
     }

@@ -169,6 +169,11 @@ const steps = {
     const call = saved("O8100.nc").split(/\r?\n/).findIndex((text) => text.includes("(HOLE 5)")) + 1;
     await goToLine(call);
     await until("the moves of the call", async () => /O8100:\d+ .*HOLE 5/.test(await partText()));
+    // A macro of the run is followed in the same drawing.
+    await open("O8101.nc");
+    const feed = saved("O8101.nc").split(/\r?\n/).findIndex((text) => text.startsWith("G01 X[")) + 1;
+    await goToLine(feed);
+    await until("the moves of a block of the macro", async () => /^10 moves\. .*O8101:/.test(await partText()));
     await shot("4-part");
   },
   async "a breakpoint in O8101 stops, and a step goes in and back"() {

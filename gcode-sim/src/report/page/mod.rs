@@ -124,7 +124,10 @@ impl Page<'_> {
         let name = |seen: &ObservedProgram<'_>| words::shown(&seen.request.name);
         match &self.old {
             Some((old, _)) => format!("Review of {} against {}", name(&self.new), name(old)),
-            None => format!("Program {}", name(&self.new)),
+            None => {
+                let name = name(&self.new);
+                format!("Program {}", name.rsplit(['/', '\\']).next().unwrap_or(&name))
+            }
         }
     }
 

@@ -5,7 +5,11 @@
   const viewer = new Viewer(data, sides);
   // The editor in whose panel the page is shown. It draws the page again after a change: the view stays.
   const editor = typeof acquireVsCodeApi === "function" ? acquireVsCodeApi() : null;
-  Object.assign(viewer.camera, editor?.getState());
+  if (editor) {
+    document.documentElement.classList.add("panel");
+    Object.assign(viewer.camera, editor.getState());
+    editor.postMessage({ files: sides.flatMap((side) => Object.values(side.files)) });
+  }
   const picked = document.getElementById("picked");
   const table = holeTable((row) => pickRow(row));
 
@@ -97,8 +101,7 @@
   function show(anchor) {
     const half = document.getElementById(anchor);
     if (!half?.classList.contains("half")) return;
-    if (editor) half.scrollIntoView({ block: "nearest" });
-    else half.focus({ preventScroll: true });
+    if (!editor) half.focus({ preventScroll: true });
     if (viewer.pick.side && anchorsOf(viewer.pick).includes(anchor)) {
       mark(anchor, anchorsOf(viewer.pick).filter((other) => other !== anchor));
       return;
