@@ -11,7 +11,7 @@
 //! - `-> METHOD {…}` and `<- {…}` or `<- error -32602 ~words`: a request and its answer. `$O1.nc` is the URI of a file. In an
 //!   answer, objects may have further keys, lists that begin with `"..."` further items, and a text `~words` contains
 //!   these words.
-//! - `notify METHOD {…}`; `server METHOD ~words`: waits for a message of the server.
+//! - `notify METHOD {…}`; `server METHOD ~words`: waits for a message of the server; `reply METHOD {…}`: answers its request.
 //! - `eol crlf`: lines behind `|` end with CR LF from here on.
 use std::collections::VecDeque;
 use std::path::Path;
@@ -150,6 +150,14 @@ impl<'a> Session<'a> {
             "notify" => {
                 let params = self.json_of(rest.strip_prefix(name).unwrap(), body);
                 self.notify(name, params);
+            }
+            "reply" => {
+                let answer = self.json_of(rest.strip_prefix(name).unwrap(), body);
+                let message = self.await_message(
+                    |message| matches!(message, Message::Request(request) if request.method == name),
+                );
+                let Message::Request(request) = message else { unreachable!() };
+                self.client.sender.send(Response::new_ok(request.id, answer).into()).unwrap();
             }
             "server" => {
                 let words = rest.split_once('~').map_or("", |(_, words)| words).to_owned();

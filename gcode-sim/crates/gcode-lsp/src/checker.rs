@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use gcode_ide::FileId;
+use gcode_lint::CheckResult;
 use lsp_types::Uri;
 
 use crate::findings::{self, CheckedDocument};
@@ -48,18 +49,20 @@ fn work(receiver: &Receiver<CheckJob>, answers: impl Fn(CheckAnswer)) {
         let edited = jobs.values().find(|job| job.is_edited).or_else(|| jobs.values().next());
         let Some(file) = edited.map(|job| job.file) else { continue };
         let answer = jobs.remove(&file).and_then(|job| check(&job));
-        answer.into_iter().for_each(&answers);
+        let Some((answer, rest)) = answer else { continue };
+        answers(answer);
+        drop(rest);
     }
 }
 
-fn check(job: &CheckJob) -> Option<CheckAnswer> {
+fn check(job: &CheckJob) -> Option<(CheckAnswer, CheckResult)> {
     let CheckJob { snapshot, file, .. } = job;
     let (text, uri) = (snapshot.text(*file)?, snapshot.uri(*file)?);
     let check = || {
         let setup = snapshot.setup(*file);
         Ok(findings::check(uri, &text, &setup, &snapshot.files, &snapshot.client))
     };
-    let checked = guarded("check", check).ok()?;
+    let (checked, rest) = guarded("check", check).ok()?;
     let version = snapshot.documents.get(file).map(|document| document.version);
-    Some(CheckAnswer { file: *file, uri: uri.clone(), version, checked })
+    Some((CheckAnswer { file: *file, uri: uri.clone(), version, checked }, rest))
 }

@@ -6,6 +6,7 @@ use gcode_lang::diag::{Diagnostic as Finding, Severity};
 use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::program::Memory;
 use gcode_lang::source::{SourceId, Sources, Span};
+use gcode_lint::CheckResult;
 use lsp_types::{
     Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString,
     Range, Uri,
@@ -37,14 +38,15 @@ pub(crate) struct CheckedDocument {
     pub is_in_project: bool,
 }
 
-/// Checks a document with the programs that it calls.
+/// Checks a document with the programs that it calls. The second part of the result is to be dropped once the first is used:
+/// that takes as long as some rules.
 pub(crate) fn check(
     uri: &Uri,
     document: &TextDocument,
     setup: &ProgramSetup,
     files: &Overlay,
     client: &Client,
-) -> CheckedDocument {
+) -> (CheckedDocument, CheckResult) {
     let mut memory = Memory::default();
     memory.load(setup.path.display().to_string(), document.bytes().clone());
     let mut library = setup.library(files);
@@ -65,13 +67,14 @@ pub(crate) fn check(
         diagnostics.push(Diagnostic { message, source, ..Diagnostic::default() });
     }
     let called = sources.iter().skip(1).map(|(_, source)| PathBuf::from(&source.name));
-    CheckedDocument {
+    let document = CheckedDocument {
         diagnostics,
         called: called.collect(),
         surroundings: setup.dependencies().chain(setup.folders()).collect(),
         faults: setup.faults.clone(),
         is_in_project: setup.project.folder().is_some(),
-    }
+    };
+    (document, checked)
 }
 
 /// Returns the exact place of a finding; the block for one that lies between two characters, where an editor marks nothing.

@@ -2,7 +2,8 @@
 use std::sync::Arc;
 
 use gcode_control::Progress;
-use gcode_ide::TextRange;
+use gcode_ide::{TextRange, VariableScope};
+use gcode_lang::control::Settings;
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::ast::{Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::block_at;
@@ -32,7 +33,7 @@ pub(crate) fn inlay_hints(
     }
     let (start, end) = text.offsets(params.range);
     let range = TextRange::new(start, end);
-    let mut hints = value_hints(&text, &facts, range);
+    let mut hints = value_hints(&text, &facts, range, snapshot.project.settings());
     let first = params.range.start.line + 1;
     let last = params.range.end.line + 1;
     for (line, deviation) in facts.holes.range(first..=last.max(first)) {
@@ -47,19 +48,24 @@ pub(crate) fn inlay_hints(
     Ok(Some(hints))
 }
 
-fn value_hints(text: &TextDocument, facts: &RunFacts, range: TextRange) -> Vec<InlayHint> {
+fn value_hints(
+    text: &TextDocument,
+    facts: &RunFacts,
+    range: TextRange,
+    settings: &Settings,
+) -> Vec<InlayHint> {
     let is_in =
         |executed: &&ExecutedBlock| range.start <= executed.block.start && executed.block.start <= range.end;
     let hints = facts.blocks.iter().filter(is_in).filter_map(|executed| {
-        let label = values_of_block(text, executed)?;
+        let label = values_of_block(text, executed, settings)?;
         let line = text.position(executed.block.start).line + 1;
         Some(hint(text, line, label, "Value in the run, the same at each execution"))
     });
     hints.collect()
 }
 
-/// Returns the hint of a block: each variable that has one value in all its executions; an assigned one alone.
-fn values_of_block(text: &TextDocument, executed: &ExecutedBlock) -> Option<String> {
+/// Returns the hint of a block: each variable of the program that has one value in all its executions; an assigned one alone.
+fn values_of_block(text: &TextDocument, executed: &ExecutedBlock, settings: &Settings) -> Option<String> {
     let assigned: Vec<_> = of_role(executed, VariableRole::Assigned).collect();
     let block = &text.bytes()[executed.block.start as usize..executed.block.end as usize];
     if !assigned.is_empty() && assigns_literal(block) {
@@ -69,12 +75,17 @@ fn values_of_block(text: &TextDocument, executed: &ExecutedBlock) -> Option<Stri
         true => of_role(executed, VariableRole::Read).collect(),
         false => assigned,
     };
-    let single = shown.into_iter().filter(|values| has_one_value(values));
-    let labels: Vec<_> = single
-        .map(|values| format!("#{} = {}", values.number, value_text(values.last)))
-        .take(MAX_VALUES)
-        .collect();
+    let is_own = |values: &&VariableValues| {
+        matches!(VariableScope::of(values.number, settings), VariableScope::Local | VariableScope::Common)
+    };
+    let single = shown.into_iter().filter(is_own).filter(|values| has_one_value(values));
+    let labels: Vec<_> = single.map(label).take(MAX_VALUES).collect();
     (!labels.is_empty()).then(|| labels.join(", "))
+}
+
+fn label(values: &VariableValues) -> String {
+    let VariableValues { number, last, .. } = values;
+    if last.is_vacant() { format!("#{number} vacant") } else { format!("#{number} = {}", value_text(*last)) }
 }
 
 fn of_role(executed: &ExecutedBlock, role: VariableRole) -> impl Iterator<Item = &VariableValues> {
@@ -83,7 +94,7 @@ fn of_role(executed: &ExecutedBlock, role: VariableRole) -> impl Iterator<Item =
 
 fn has_one_value(values: &VariableValues) -> bool {
     match values.range {
-        Some((low, high)) => low == high && !values.first.is_vacant() && !values.last.is_vacant(),
+        Some((low, high)) => low == high && !values.has_been_vacant,
         None => true,
     }
 }

@@ -59,6 +59,8 @@ pub struct VariableValues {
     pub last: Value,
     /// Least and greatest numeric value; `None` if it was never a number.
     pub range: Option<(f64, f64)>,
+    /// True if it was vacant at least once.
+    pub has_been_vacant: bool,
 }
 
 /// Use of a variable in a block.
@@ -144,12 +146,15 @@ impl ExecutedBlock {
         }
         let at = at.unwrap_or_else(|| {
             let (first, last) = (value, value);
-            self.values.push(VariableValues { number, role, count: 0, first, last, range: None });
+            let values =
+                VariableValues { number, role, count: 0, first, last, range: None, has_been_vacant: false };
+            self.values.push(values);
             self.values.len() - 1
         });
         let values = &mut self.values[at];
         values.count += 1;
         values.last = value;
+        values.has_been_vacant |= value.is_vacant();
         if let Some(number) = value.as_number() {
             let (low, high) = values.range.unwrap_or((number, number));
             values.range = Some((low.min(number), high.max(number)));
@@ -196,6 +201,7 @@ mod tests {
             first: number(3.0),
             last: number(1.0),
             range: Some((1.0, 3.0)),
+            has_been_vacant: false,
         };
         let assigned = VariableValues {
             role: VariableRole::Assigned,

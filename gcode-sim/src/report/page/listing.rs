@@ -305,6 +305,7 @@ mod tests {
             first: number(2.5),
             last: number(2.5),
             range: Some((2.5, 2.5)),
+            has_been_vacant: false,
         };
         assert_eq!(describe_values(&one), "#7 2.5");
         assert_eq!(describe_values(&VariableValues { role: VariableRole::Assigned, ..one }), "#7 ← 2.5");
