@@ -16,6 +16,7 @@ const COMMANDS: &[(&str, &str, &[&str])] = &[
     ("gcode-sim", "new", &[]),
     ("gcode-sim", "budget", &["text", "json"]),
     ("gcode-sim", "settings", &["text", "json"]),
+    ("gcode-sim", "dap", &[]),
     ("gcode-sim", "explain", &["text", "json"]),
     ("gcode-sim", "lsp", &[]),
     ("gcode-sim", "schema", &[]),
