@@ -31,6 +31,8 @@ pub struct HoleExtraction {
     pub(crate) is_metal_known: bool,
     /// Rapids whose paths are not searched to the end.
     pub(crate) unsearched_rapids: UnsearchedMotions,
+    /// Rapids that are free only if the tool change before them retracts the tool.
+    pub(crate) rapids_behind_change: UnsearchedMotions,
     /// Feeds beside which the metal is not compared with all of the tool.
     pub(crate) unsearched_feeds: UnsearchedMotions,
     /// Probing moves through metal.

@@ -305,18 +305,23 @@ impl CuttingLine {
         None
     }
 
-    /// Applies a rapid along the line. Returns a repeated pass that ends with it, and true if the rapid is deeper than the
-    /// cut.
-    pub(super) fn rapid_to(&mut self, to: &Point3<f64>) -> (Option<DrillPass>, bool) {
+    /// Returns true if a point on the line is deeper than the cut, by more than rounding.
+    pub(super) fn is_beyond_cut(&self, to: &Point3<f64>) -> bool {
+        self.cut_depth() + 2.0 * self.half_increment + MIN_DEPTH_GAIN < self.depth_of(to)
+    }
+
+    /// Applies a rapid along the line, which deepens the hole if it `cuts`. Returns a repeated pass that ends with it.
+    pub(super) fn rapid_to(&mut self, to: &Point3<f64>, cuts: bool) -> Option<DrillPass> {
         let depth = self.depth_of(to);
         if depth <= self.depth {
-            return (self.retract_to(depth), false);
+            return self.retract_to(depth);
         }
         let again = self.end_stroke();
-        let uncut = depth > self.deepest.depth + 2.0 * self.half_increment + MIN_DEPTH_GAIN;
-        self.deepest.depth = self.deepest.depth.max(depth);
+        if cuts {
+            self.deepest.depth = self.deepest.depth.max(depth);
+        }
         self.depth = depth;
-        (again, uncut)
+        again
     }
 
     fn retract_to(&mut self, depth: f64) -> Option<DrillPass> {

@@ -158,13 +158,15 @@ impl HoleExtractor<'_> {
                 engagement.push_point(*from);
             }
         }
-        // An arc that rises leads out above the approach: the feed may begin at the bottom of a thread.
-        let exit = if arc.is_some() { top.max(engagement.approach_level) } else { top };
+        let is_arc = arc.is_some();
+        let mut is_next_chord = false;
         let place = || (event.backtrace(), self.axis_position);
         match arc {
             None if is_across => {
                 engagement.rings.extend(engagement.run.take().and_then(ArcRun::finish));
-                if !engagement.chords.as_mut().is_some_and(|chords| chords.extend(to, &out, place)) {
+                is_next_chord =
+                    engagement.chords.as_mut().is_some_and(|chords| chords.extend(to, &out, place));
+                if !is_next_chord {
                     engagement.end_run();
                     engagement.chords = Some(ChordRun::new(*from, to, out));
                 }
@@ -194,6 +196,8 @@ impl HoleExtractor<'_> {
         self.note_slug();
         let engagement = &mut self.engagement;
         engagement.has_descended |= end < top - LEVEL_TOLERANCE;
+        // An arc that rises leads out above the approach, and so do chords: the feed may begin at the bottom of a thread.
+        let exit = if is_arc || is_next_chord { top.max(engagement.approach_level) } else { top };
         let is_out =
             end > exit + LEVEL_TOLERANCE || engagement.has_descended && end >= exit - LEVEL_TOLERANCE;
         // A feed out of a circle ends it as a rapid does.

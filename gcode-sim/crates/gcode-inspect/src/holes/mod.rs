@@ -43,6 +43,8 @@ mod swept_tool;
 #[cfg(test)]
 mod tests;
 mod thread_walls;
+mod tool_change;
+mod turning_feed;
 pub(crate) mod unknown_axes;
 mod wall_cut;
 
@@ -75,6 +77,7 @@ use self::milling::MillingRates;
 use self::per_block::Findings;
 use self::profile::Profile;
 use self::strokes::{MilledStrokes, Strokes};
+use self::tool_change::ChangeRetract;
 use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
 use gcode_lang::alarm::kinds::LIMIT;
@@ -149,6 +152,7 @@ pub struct HoleExtractor<'m> {
     /// The search for the current feed was given up.
     is_feed_unsearched: Cell<bool>,
     bar_shift: BarShift,
+    change_retract: ChangeRetract,
 }
 
 /// Kind of a motion.
@@ -204,6 +208,7 @@ impl<'m> HoleExtractor<'m> {
             probes_in_metal: UnsearchedMotions::default(),
             is_feed_unsearched: Cell::default(),
             bar_shift: BarShift::default(),
+            change_retract: ChangeRetract::default(),
         }
     }
 
@@ -275,6 +280,7 @@ impl<'m> HoleExtractor<'m> {
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
             unsearched_rapids: self.unsearched_rapids,
+            rapids_behind_change: self.change_retract.rapids,
             unsearched_feeds: self.unsearched_feeds,
             probes_in_metal: self.probes_in_metal,
             unsized_mills: self.unsized_mills,
@@ -301,6 +307,9 @@ impl<'m> HoleExtractor<'m> {
         self.check_idle_axes(event, &from, to);
         self.check_clamp_released(event, &from, to);
         let last_motion = self.last_motion.replace((kind, event.block));
+        if kind != MotionKind::Rapid {
+            self.change_retract.end();
+        }
         let before = self.pose;
         let travel = AxisMotion { from: &from, to, arc };
         let is_rotating = !self.machine.is_straight(&AxisMotion { arc: None, ..travel });
@@ -320,6 +329,7 @@ impl<'m> HoleExtractor<'m> {
             kind => kind,
         };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
+            self.change_retract.end();
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             // With the same axes unknown the motion itself is known.
             match was == is && !is_rotating {
@@ -331,12 +341,14 @@ impl<'m> HoleExtractor<'m> {
         if is_rotating || arc.is_some() {
             self.end_line(Some(kind));
             match kind {
-                MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
+                MotionKind::Rapid => self.check_rapid_motion(event, (&from, to), None, &before.tip),
                 MotionKind::Feed => {
+                    let is_known = was.union(is).is_none();
                     if !is_rotating {
-                        self.remove_by_arc(event, &travel, was.union(is).is_none());
+                        self.remove_by_arc(event, &travel, is_known);
                     }
-                    if !self.check_curved(event, &travel, kind) && is_rotating {
+                    let is_allowed = is_rotating && self.remove_while_turning(&travel, is_known);
+                    if !is_allowed && !self.check_curved(event, &travel, kind) && is_rotating {
                         self.check_turning_feed(event, (&from, to));
                     }
                     let arc = self.part_arc(&travel, &before.tip);
@@ -358,7 +370,7 @@ impl<'m> HoleExtractor<'m> {
         let free_from = self.update_line(event, kind, before.tip);
         self.follow_bar_shift(event, kind, &before.tip);
         match (kind, free_from) {
-            (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
+            (MotionKind::Rapid, start) => self.check_rapid_motion(event, (&from, to), start, &before.tip),
             (MotionKind::Feed, start) => {
                 // What a feed cuts is recorded before it is removed.
                 if let Some(start) = start {
@@ -422,6 +434,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::ToolChange { number } => {
                 self.check_tool_known(event, *number);
                 self.update_setup(|setup| setup.tool = Some(*number));
+                self.change_retract.begin(self.has_left_start && self.positions.is_known(self.machine));
                 self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
             }
             EventKind::ToolLength { offset, compensation } => {

@@ -104,6 +104,12 @@ pub(super) fn list(
             "an axis rotates near the metal, or the metal beside them is cut too finely",
         ),
         (
+            &extraction.rapids_behind_change,
+            "the retract of the tool change before some rapids",
+            "rapid",
+            "free if the tool change moves the tool away from the part, as on most machines; retract before it by G28 or G53",
+        ),
+        (
             &extraction.probes_in_metal,
             "what probing moves touch",
             "move",
