@@ -45,6 +45,8 @@ pub struct HoleExtraction {
     pub(crate) milled_strokes: u64,
     /// Ends of the first feeds along the tool that go beside the part.
     pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
+    /// Warnings about drilling cycles that cut nothing.
+    pub(crate) cycles_in_air: Vec<Diagnostic>,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }

@@ -304,6 +304,10 @@ impl HoleExtractor<'_> {
         // Below the entry of a nominal hole its outline decides on strokes in it: a part that it excludes has its own finding.
         let is_stroke = is_along(axis, &(travel[1] - travel[0]));
         let hole = if is_stroke { self.metal.hole_of_stroke(travel, axis) } else { None };
+        // The entry of the hole decides on the spindle.
+        if hole.is_some() && self.machine.tool_length(&self.setup) <= part.from {
+            return None;
+        }
         self.contact_in_feed(part, axis, travel, Judged::Uncut(hole)).or_else(|| {
             hole.filter(|_| self.metal.is_allowed(travel, axis, part))?;
             // A cut that gives the outline its width may come later in the program.

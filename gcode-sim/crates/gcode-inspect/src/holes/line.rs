@@ -8,7 +8,7 @@ use super::{HoleExtractor, MotionKind};
 use crate::machine::TOUCH_DEPTH;
 use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
-use gcode_lang::units::MmPerMin;
+use gcode_lang::units::{MmPerMin, Rpm};
 
 /// Least additional depth of a stroke that cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
@@ -54,6 +54,8 @@ pub(super) struct CuttingLine {
     pub length_excess: Option<f64>,
     /// Slowest and fastest feed that cuts.
     feed_range: Option<[MmPerMin; 2]>,
+    /// Feed that cuts most in a revolution, and its speed.
+    steepest: Option<(MmPerMin, Rpm)>,
     /// Last feed that cuts.
     last_feed: Option<MmPerMin>,
     /// Depth at which the part begins; `None` if its surface is unknown.
@@ -136,6 +138,7 @@ impl CuttingLine {
             unknown_axes: UnknownAxes::default(),
             length_excess: None,
             feed_range: None,
+            steepest: None,
             last_feed: None,
             surface_depth: None,
             pecks: PeckExtent::default(),
@@ -158,11 +161,15 @@ impl CuttingLine {
         self.is_tapping = false;
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
         self.last_feed = Some(feed);
+        if self.steepest.is_none_or(|(most, speed)| most.0 * state.speed.0 < feed.0 * speed.0) {
+            self.steepest = Some((feed, state.speed));
+        }
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
     }
 
-    pub(super) fn cutting_feeds(&self) -> Option<[MmPerMin; 2]> {
-        self.feed_range
+    /// Returns the slowest and the fastest feed that cuts, and the one that cuts most in a revolution with its speed.
+    pub(super) fn cutting_feeds(&self) -> Option<([MmPerMin; 2], (MmPerMin, Rpm))> {
+        self.feed_range.zip(self.steepest)
     }
 
     /// Returns the extent of all strokes, the current one included.

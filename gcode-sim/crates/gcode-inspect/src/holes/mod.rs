@@ -20,6 +20,7 @@ mod length_mismatch;
 mod line;
 mod line_findings;
 mod line_motion;
+mod low_rapid;
 mod machine_requests;
 mod metal;
 mod milled;
@@ -71,6 +72,7 @@ use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
 use self::feed_law::Plunge;
 use self::line::CuttingLine;
+use self::low_rapid::LowRapid;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
 use self::milling::MillingRates;
@@ -112,6 +114,8 @@ pub struct HoleExtractor<'m> {
     gouge_count: u32,
     /// Ends of the first feeds along the tool that go beside the part.
     feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
+    /// Cycles that cut nothing.
+    cycles_in_air: Findings,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -153,6 +157,7 @@ pub struct HoleExtractor<'m> {
     is_feed_unsearched: Cell<bool>,
     bar_shift: BarShift,
     change_retract: ChangeRetract,
+    low_rapid: Option<LowRapid>,
 }
 
 /// Kind of a motion.
@@ -181,6 +186,7 @@ impl<'m> HoleExtractor<'m> {
             plunge: None,
             gouge_count: 0,
             feeds_in_air: Vec::new(),
+            cycles_in_air: Findings::default(),
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
@@ -209,6 +215,7 @@ impl<'m> HoleExtractor<'m> {
             is_feed_unsearched: Cell::default(),
             bar_shift: BarShift::default(),
             change_retract: ChangeRetract::default(),
+            low_rapid: None,
         }
     }
 
@@ -248,6 +255,7 @@ impl<'m> HoleExtractor<'m> {
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
         let last_block = self.last_block.clone();
+        self.report_low_rapid();
         self.end_in_metal();
         self.end_line(None);
         let unsearched = last_block.filter(|_| self.is_feed_unsearched.get());
@@ -287,6 +295,7 @@ impl<'m> HoleExtractor<'m> {
             covered_entries,
             milled_strokes,
             feeds_in_air: self.feeds_in_air,
+            cycles_in_air: self.cycles_in_air.finish(),
             is_removal_cut_short: self.metal.removed.is_full,
         }
     }
@@ -330,6 +339,7 @@ impl<'m> HoleExtractor<'m> {
         };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.change_retract.end();
+            self.report_low_rapid();
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             // With the same axes unknown the motion itself is known.
             match was == is && !is_rotating {
@@ -367,6 +377,7 @@ impl<'m> HoleExtractor<'m> {
         if kind == MotionKind::Rapid {
             self.check_rapid_into_thread(event, &before.tip);
         }
+        self.follow_low_rapid(event, kind, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);
         self.follow_bar_shift(event, kind, &before.tip);
         match (kind, free_from) {
@@ -432,9 +443,10 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
+                self.report_low_rapid();
                 self.check_tool_known(event, *number);
+                self.begin_change(event);
                 self.update_setup(|setup| setup.tool = Some(*number));
-                self.change_retract.begin(self.has_left_start && self.positions.is_known(self.machine));
                 self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
             }
             EventKind::ToolLength { offset, compensation } => {

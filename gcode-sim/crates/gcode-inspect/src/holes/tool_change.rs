@@ -1,12 +1,22 @@
 //! Rapids behind a tool change: most machines retract the tool for it, and the program doesn't say so.
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use super::HoleExtractor;
+use super::metal::PointInMetal;
 use super::rapid_paths::UnsearchedMotions;
-use crate::findings::RAPID_INTO_PART;
+use super::rapids::format_point;
+use super::swept_tool::ring;
+use crate::findings::{RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
 use crate::machine::TOUCH_DEPTH;
 use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::{Event, Position};
+
+/// Least radius at which metal round a tool is looked for, mm, and its distance from the tool.
+const MIN_RADIUS: f64 = 0.5;
+const WALL_DISTANCE: f64 = 0.5;
+
+/// Number of points round a tool.
+const RING_POINTS: u32 = 8;
 
 /// Rapids that are free only if the tool change has retracted the tool.
 #[derive(Debug, Default)]
@@ -19,11 +29,6 @@ pub(super) struct ChangeRetract {
 }
 
 impl ChangeRetract {
-    /// Applies a tool change at a known position.
-    pub(super) fn begin(&mut self, is_known: bool) {
-        self.is_open = is_known;
-    }
-
     /// Applies a feed, which cuts where the program has left the tool, or a motion from or to an unknown position.
     pub(super) fn end(&mut self) {
         self.is_open = false;
@@ -36,6 +41,25 @@ impl ChangeRetract {
 }
 
 impl HoleExtractor<'_> {
+    /// Applies a tool change: in a hole, or between walls, the tool can't be changed.
+    pub(super) fn begin_change(&mut self, event: &Event<'_>) {
+        let is_known = self.positions.is_known(self.machine);
+        self.change_retract.is_open = is_known && self.has_left_start;
+        let Some(axis) = self.tool_direction().filter(|_| is_known && self.metal.is_known()) else { return };
+        let tip = self.pose.tip;
+        let radius = self.body_radius().max(MIN_RADIUS) + WALL_DISTANCE;
+        let up = axis.into_inner() * self.metal.removed.height_of_metal(&tip, &axis);
+        let ring = ring(&axis, &Vector3::zeros(), radius, RING_POINTS).into_iter().map(|offset| tip + offset);
+        let walls = ring.chain([tip]).filter_map(|p| self.metal.uncut(&[p, p + up]));
+        let Some(wall) = walls.reduce(PointInMetal::deeper) else { return };
+        let (depth, level) = (wall.depth, self.metal.level_at(&wall.point));
+        self.findings.add(&TOOL_LEFT_IN_HOLE, &event.backtrace(), 1, |kind| {
+            let point = format_point(&tip);
+            let message = format!("the tool is changed beside metal {depth:.3} mm below {level}, with its tip at {point}");
+            Diagnostic::new(kind, message).help("retract above the surface before the tool change")
+        });
+    }
+
     /// Checks a rapid on all its paths. Behind a tool change it is free if the change retracts the tool and the rapid ends
     /// outside the metal.
     pub(super) fn check_rapid_motion(

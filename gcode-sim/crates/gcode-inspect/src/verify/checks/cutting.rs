@@ -18,6 +18,12 @@ const MAX_CUTTING_SPEED: f64 = 1800.0;
 /// Largest feed of a tool of unknown diameter, mm per revolution.
 const MAX_FEED_PER_TURN: f64 = 5.0;
 
+/// Share of its diameter that no drill feeds in a revolution: tables give up to 0.05.
+const MAX_DRILL_FEED_SHARE: f64 = 0.25;
+
+/// Feed that no drill stands, mm/min: coated drills in aluminium reach some 6000.
+const MAX_DRILL_FEED: f64 = 15_000.0;
+
 /// Pecks up to this length, mm, and up to this share of the drill's diameter are none: the drill only rubs.
 const LEAST_PECK: f64 = 0.01;
 const LEAST_PECK_SHARE: f64 = 0.005;
@@ -114,23 +120,31 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     Some(finding.help("correct F, or the tool's feed in the job; check that G94 and G21 are in force"))
 }
 
-/// Reports a feed per revolution of several times what tables of cutting data give; an error above the diameter.
+/// Reports a feed per revolution of several times what tables of cutting data give; an error above the diameter, of a drill above
+/// a quarter of it.
 fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
     let kind = machine.kind_of(cut.tool);
-    let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < cut.speed.0;
+    let (feed, speed) = cut.steepest;
+    let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < speed.0;
     if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
         return None;
     }
-    let [_, feed] = cut.feed_range;
-    let per_turn = feed.0 / cut.speed.0;
+    let per_turn = feed.0 / speed.0;
     let diameter = machine.diameter_of(cut.tool);
     let limit = match (diameter, kind) {
         (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.2),
         (Some(diameter), _) => (0.2 * diameter).max(0.5),
         (None, _) => MAX_FEED_PER_TURN,
     };
-    let is_impossible = exceeds(per_turn, diameter.unwrap_or(limit).max(limit));
-    if !exceeds(per_turn, limit) {
+    let is_drill = kind == Some(ToolKind::Drill);
+    let most = match diameter {
+        Some(diameter) if is_drill => MAX_DRILL_FEED_SHARE * diameter,
+        Some(diameter) => diameter,
+        None => limit,
+    };
+    let is_too_fast = is_drill && exceeds(feed.0, MAX_DRILL_FEED);
+    let is_impossible = is_too_fast || exceeds(per_turn, most.max(limit));
+    if !is_impossible && !exceeds(per_turn, limit) {
         return None;
     }
     let message = format!(
@@ -138,7 +152,7 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
         tool_name(cut.tool),
         round_thousandth(per_turn),
         round_thousandth(feed.0),
-        cut.speed.0
+        speed.0
     );
     let severity = if is_impossible { Severity::Error } else { Severity::Warning };
     Some(Diagnostic::new(&DRILL_FEED, message).with_severity(severity).help(

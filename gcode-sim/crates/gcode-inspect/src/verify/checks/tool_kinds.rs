@@ -6,9 +6,9 @@ use crate::holes::PassCut;
 use crate::machine::{PointShape, Tool, ToolKind};
 use crate::verify::hole_cuts::Cut;
 
-/// Largest amount that a reamer takes off the diameter, mm, and its share of a large diameter: more than any reamer is made for.
-const MAX_REAMING: f64 = 0.5;
+/// Largest share of its diameter that a reamer takes off, and the bounds of that amount, mm: more than reamers are made for.
 const MAX_REAMING_SHARE: f64 = 0.1;
+const MAX_REAMING: [f64; 2] = [0.5, 1.0];
 
 /// Largest share of its diameter that a boring bar takes off: the bar itself goes into the hole before it.
 const MAX_BORING_SHARE: f64 = 1.0 / 3.0;
@@ -80,6 +80,15 @@ fn sideways(id: &str, cut: &Cut<'_>) -> Option<Diagnostic> {
         .then(|| finding.help("use an end mill, or correct the kind of the tool in the machine file"))
 }
 
+/// Returns the largest amount that a reamer or a boring bar takes off the diameter, mm; `None` for other tools.
+fn allowance(kind: ToolKind, own: f64) -> Option<f64> {
+    match kind {
+        ToolKind::Reamer => Some((MAX_REAMING_SHARE * own).clamp(MAX_REAMING[0], MAX_REAMING[1])),
+        ToolKind::BoringBar => Some(MAX_BORING_SHARE * own),
+        _ => None,
+    }
+}
+
 /// Reports a reamer or a boring bar that widens a hole by more than its edges can cut.
 fn too_narrow(
     judged: &Judgement<'_>,
@@ -88,10 +97,7 @@ fn too_narrow(
     others: &[Cut<'_>],
 ) -> Option<Diagnostic> {
     let (kind, own) = cut.kind.zip(cut.pass.diameter)?;
-    let limit = match kind {
-        ToolKind::Reamer => MAX_REAMING.max(MAX_REAMING_SHARE * own),
-        _ => MAX_BORING_SHARE * own,
-    };
+    let limit = allowance(kind, own)?;
     let mut widest = 0.0f64;
     for other in before.iter().chain(others).filter(|other| !other.is_thread()) {
         // A cone is as wide as the tool only above its point.
@@ -136,7 +142,14 @@ fn in_solid(
         let wide_enough = |end: f64| Some(drill.tip - drill.point.length(end)?);
         end.and_then(wide_enough).map_or(full, |depth| depth.max(full))
     };
-    let drilled = before.iter().filter(|other| !needs_hole(other.kind)).map(depth).fold(0.0, f64::max);
+    // A narrower pilot leaves it metal to cut.
+    let is_wide = |other: &&Cut<'_>| {
+        let (own, limit) = (cut.pass.diameter, cut.kind.and_then(|kind| allowance(kind, cut.pass.diameter?)));
+        let missing = own.zip(other.pass.diameter).map(|(own, other)| own - other);
+        missing.zip(limit).is_none_or(|(missing, limit)| !exceeds(missing, limit))
+    };
+    let makes_hole = before.iter().filter(|other| !other.is_thread()).filter(is_wide);
+    let drilled = makes_hole.map(depth).fold(0.0, f64::max);
     let slack = judged.comparison.tolerances.depth;
     let is_open =
         judged.nominal.through && (!others.is_empty() || !exceeds(judged.nominal.depth - drilled, slack));
