@@ -439,8 +439,13 @@ impl HoleExtractor<'_> {
             (None, None) => false,
         };
         // A tool may enter a hole that is cut with the spindle stopped or turning backwards.
-        let is_forward = self.cutting_state.spindle_direction == SpindleDirection::Clockwise;
-        if is_in_air || !is_forward && self.cuts_known_metal(from, &tip) == Some(false) {
+        // One of unknown diameter may be a tap of the other hand.
+        let may_turn_idle = match self.cutting_state.spindle_direction {
+            SpindleDirection::Clockwise => false,
+            SpindleDirection::Counterclockwise => self.machine.diameter_of(self.setup.tool).is_some(),
+            SpindleDirection::Off => true,
+        };
+        if is_in_air || may_turn_idle && self.cuts_known_metal(from, &tip) == Some(false) {
             return;
         }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };

@@ -156,7 +156,12 @@ impl HoleExtractor<'_> {
         self.surface.is_some()
             && self.metal.holes.is_some()
             && without_assumed(line.unknown_axes, self.machine).is_none()
-            && (line.is_across_tool() || self.is_pocketing(line))
+            && (line.is_across_tool() || self.is_pocketing(line) && !self.is_nominal_cycle(line))
+    }
+
+    /// Returns true if a cycle drills at a nominal hole: it makes the hole, also where a pocket removes it later.
+    fn is_nominal_cycle(&self, line: &CuttingLine) -> bool {
+        line.is_cycle && self.strokes.nominal_of_line(line).is_some()
     }
 
     /// Records a feed without retract, unless it belongs to a milled hole: an error `inside` the part, by its depth, or at an

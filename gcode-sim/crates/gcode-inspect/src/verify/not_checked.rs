@@ -191,7 +191,7 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<NotChecked> 
     };
     let unspecified = (!unspecified.is_empty()).then(|| {
         let reason = "the reference has none, and the sides of the tools in it are not compared either";
-        NotChecked::aside(format!("the diameter of {}", hole_names(&unspecified)), reason)
+        NotChecked::gap(format!("the diameter of {}", hole_names(&unspecified)), reason)
     });
     by_tool.into_iter().map(gap).chain(unspecified).collect()
 }

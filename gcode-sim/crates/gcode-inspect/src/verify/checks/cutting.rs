@@ -32,6 +32,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let (conditions, limits) = (&inspection.extraction.cut_conditions, &inspection.reference.process_limits);
     let mut reported: Vec<(Diagnostic, u64)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
+    let mut report = |finding: Diagnostic, cut: &CutConditions| {
+        let index = *known.entry(finding.message.clone()).or_insert(reported.len());
+        if index == reported.len() {
+            reported.push((finding.with_backtrace(cut.backtrace.clone()), 0));
+        }
+        reported[index].1 += cut.count;
+    };
     for check in [reversed, speed, feed, feed_per_turn, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
@@ -41,11 +48,12 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                     .note(format!("T{owner} cuts with it too: two tools have two lengths")),
                 None => finding,
             };
-            let index = *known.entry(finding.message.clone()).or_insert(reported.len());
-            if index == reported.len() {
-                reported.push((finding.with_backtrace(cut.backtrace.clone()), 0));
-            }
-            reported[index].1 += cut.count;
+            report(finding, cut);
+        }
+    }
+    for cut in conditions {
+        if let Some(finding) = without_offset(cut, conditions, limits, inspection.machine) {
+            report(finding, cut);
         }
     }
     for (finding, count) in reported {
@@ -227,8 +235,8 @@ pub(in crate::verify) fn severity(actual: f64, nominal: f64) -> Option<Severity>
 /// Reports the number of a length offset that cannot be the tool's. If the machine file gives the tool's length, the
 /// depth of the holes shows whether the offset is right.
 fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
-    if machine.length_of(cut.tool).is_some() {
-        return None;
+    if let Some(length) = machine.length_of(cut.tool) {
+        return same_length(cut, length, machine);
     }
     let specified = limits.tool_process(cut.tool).and_then(|tool| tool.offset);
     let tool = tool_name(cut.tool);
@@ -264,6 +272,43 @@ fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Opt
     let note = "the machine file does not give the tool's length, so the simulated holes do not depend on \
                 the length offset";
     Some(Diagnostic::new(&LENGTH_OFFSET, message).with_severity(severity).note(note).help(help))
+}
+
+/// Reports the length offset of another tool that is as long in the machine file: on the machine they differ.
+fn same_length(cut: &CutConditions, length: f64, machine: &Machine) -> Option<Diagnostic> {
+    let LengthCompensation::Plus(h) = cut.compensation else { return None };
+    let number = cut.tool.filter(|number| *number != h)?;
+    let is_as_long = machine.find_tool(h)?.length == Some(length) && 0.0 < length;
+    let message = format!("{} cuts with H{h}, the number of another tool", tool_name(cut.tool));
+    let finding = Diagnostic::new(&LENGTH_OFFSET, message).with_severity(Severity::Warning);
+    let finding = finding.note(format!("both are {length} mm long in the machine file: on the machine they may differ"));
+    is_as_long.then(|| finding.help(format!("command H{number}, if offsets have the numbers of their tools")))
+}
+
+/// Reports a tool that cuts without a length offset where others of the program have one, if the machine file gives none of
+/// their lengths.
+fn without_offset(
+    cut: &CutConditions,
+    all: &[CutConditions],
+    limits: &ProcessLimits,
+    machine: &Machine,
+) -> Option<Diagnostic> {
+    // Where the job has the offset, another finding says so.
+    let is_specified = limits.tool_process(cut.tool).and_then(|tool| tool.offset).is_some();
+    let is_off = matches!(cut.compensation, LengthCompensation::Off | LengthCompensation::Plus(0));
+    let has_offset = |other: &&CutConditions| {
+        matches!(other.compensation, LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0)
+            && machine.length_of(other.tool).is_none()
+    };
+    let other = all.iter().find(has_offset).filter(|_| is_off && !is_specified && machine.length_of(cut.tool).is_none())?;
+    let message = format!(
+        "{} cuts without a length offset, and {} with one",
+        tool_name(cut.tool),
+        tool_name(other.tool)
+    );
+    Some(Diagnostic::new(&LENGTH_OFFSET, message).help(
+        "command G43 with the tool's H before the cut, or give the lengths of the tools in the machine file",
+    ))
 }
 
 /// Rounds to a thousandth; −0 becomes 0.
