@@ -44,7 +44,8 @@ const MEASURED_LETTERS: &[u8] = b"XYZABCUVWIJKRQ";
 /// Returns true if a program of the run has a length or an angle without a decimal point, besides 0.
 pub(super) fn may_lack_points(run: &Run) -> bool {
     let sources = run.control.memory().sources();
-    !run.control.settings().uses_calculator_input && sources.iter().any(|(_, source)| lacks_point(&source.bytes))
+    !run.control.settings().uses_calculator_input
+        && sources.iter().any(|(_, source)| lacks_point(&source.bytes))
 }
 
 /// Returns true if a text has a length or an angle without a decimal point, besides 0, outside its comments.

@@ -28,6 +28,9 @@ const MAX_RADIUS: f64 = 25.0;
 /// Number of chords of an arc beside which the shank and the holder are looked for in the metal first.
 const FEW_CHORDS: usize = 16;
 
+/// Largest radius of a hole of unknown diameter that is milled, mm.
+const MAX_OPEN_RADIUS: f64 = 50.0;
+
 /// Number of feeds with a gouge after which no more are compared.
 const MAX_GOUGES: u32 = 1000;
 
@@ -446,7 +449,24 @@ impl HoleExtractor<'_> {
                 (format!("{what} cuts {place}, {depth:.3} mm below {level} at {point}"), help)
             }
         };
-        self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
+        // A hole of unknown diameter may be as wide as the circle that mills it.
+        let findings = match self.is_at_open_hole(&at.point) {
+            true => &mut self.engagement.errors,
+            false => &mut self.findings,
+        };
+        findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
+    }
+
+    /// Returns true if a point is beside a nominal hole without a diameter, and no deeper than that.
+    fn is_at_open_hole(&self, p: &Point3<f64>) -> bool {
+        let mut is_open = false;
+        if let Some(holes) = self.metal.holes.as_deref().filter(|_| self.surface.is_some()) {
+            holes.below(p, p, (MAX_OPEN_RADIUS, 0.0), &mut |hole| {
+                let collar = holes.collar(hole);
+                is_open |= !collar.has_diameter && collar.depth(p) <= collar.max_depth() + TOUCH_DEPTH;
+            });
+        }
+        is_open
     }
 }
 

@@ -29,7 +29,8 @@ impl HoleExtractor<'_> {
         if kind != MotionKind::Rapid {
             return;
         }
-        let beyond = if self.low_rapid.is_some() || rise < 0.0 { self.metal.beyond_hole(&tip, &axis) } else { None };
+        let beyond =
+            if self.low_rapid.is_some() || rise < 0.0 { self.metal.beyond_hole(&tip, &axis) } else { None };
         match (&mut self.low_rapid, beyond) {
             (Some(_), None) => self.report_low_rapid(),
             (Some(low), Some((hole, at))) if low.at.depth < at.depth => {

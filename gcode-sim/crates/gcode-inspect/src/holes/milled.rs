@@ -15,6 +15,9 @@ use gcode_lang::motion::{Backtrace, Event, SpindleDirection, UnknownAxes};
 /// Largest number of points of an engagement; with more the tool mills something larger than a hole.
 const MAX_POINTS: usize = 50_000;
 
+/// Largest rise of a chord along a thread, by its length across the tool.
+const MAX_SLOPE: f64 = 0.5;
+
 /// Cosine of the largest angle between a circle's axis and the tool: 0.05°.
 pub(super) const MIN_AXIS_COSINE: f64 = 0.999_999_6;
 
@@ -158,15 +161,14 @@ impl HoleExtractor<'_> {
                 engagement.push_point(*from);
             }
         }
-        let is_arc = arc.is_some();
-        let mut is_next_chord = false;
+        // An arc that rises leads out above the approach, and so do chords: the feed may begin at the bottom of a thread.
+        let is_flat = is_across && rise <= MAX_SLOPE * aside;
+        let exit = if arc.is_some() || is_flat { top.max(engagement.approach_level) } else { top };
         let place = || (event.backtrace(), self.axis_position);
         match arc {
             None if is_across => {
                 engagement.rings.extend(engagement.run.take().and_then(ArcRun::finish));
-                is_next_chord =
-                    engagement.chords.as_mut().is_some_and(|chords| chords.extend(to, &out, place));
-                if !is_next_chord {
+                if !engagement.chords.as_mut().is_some_and(|chords| chords.extend(to, &out, place)) {
                     engagement.end_run();
                     engagement.chords = Some(ChordRun::new(*from, to, out));
                 }
@@ -196,8 +198,6 @@ impl HoleExtractor<'_> {
         self.note_slug();
         let engagement = &mut self.engagement;
         engagement.has_descended |= end < top - LEVEL_TOLERANCE;
-        // An arc that rises leads out above the approach, and so do chords: the feed may begin at the bottom of a thread.
-        let exit = if is_arc || is_next_chord { top.max(engagement.approach_level) } else { top };
         let is_out =
             end > exit + LEVEL_TOLERANCE || engagement.has_descended && end >= exit - LEVEL_TOLERANCE;
         // A feed out of a circle ends it as a rapid does.

@@ -55,7 +55,9 @@ impl HoleExtractor<'_> {
         let (depth, level) = (wall.depth, self.metal.level_at(&wall.point));
         self.findings.add(&TOOL_LEFT_IN_HOLE, &event.backtrace(), 1, |kind| {
             let point = format_point(&tip);
-            let message = format!("the tool is changed beside metal {depth:.3} mm below {level}, with its tip at {point}");
+            let message = format!(
+                "the tool is changed beside metal {depth:.3} mm below {level}, with its tip at {point}"
+            );
             Diagnostic::new(kind, message).help("retract above the surface before the tool change")
         });
     }

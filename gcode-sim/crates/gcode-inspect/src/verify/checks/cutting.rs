@@ -42,7 +42,9 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     for check in [reversed, speed, feed, feed_per_turn, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
-            let finding = match owner_of_length(cut, conditions).filter(|_| finding.kind == &LENGTH_OFFSET) {
+            // Lengths that the machine file states are compared.
+            let is_open = finding.kind == &LENGTH_OFFSET && inspection.machine.length_of(cut.tool).is_none();
+            let finding = match owner_of_length(cut, conditions).filter(|_| is_open) {
                 Some(owner) => finding
                     .with_severity(Severity::Error)
                     .note(format!("T{owner} cuts with it too: two tools have two lengths")),
@@ -281,7 +283,8 @@ fn same_length(cut: &CutConditions, length: f64, machine: &Machine) -> Option<Di
     let is_as_long = machine.find_tool(h)?.length == Some(length) && 0.0 < length;
     let message = format!("{} cuts with H{h}, the number of another tool", tool_name(cut.tool));
     let finding = Diagnostic::new(&LENGTH_OFFSET, message).with_severity(Severity::Warning);
-    let finding = finding.note(format!("both are {length} mm long in the machine file: on the machine they may differ"));
+    let finding = finding
+        .note(format!("both are {length} mm long in the machine file: on the machine they may differ"));
     is_as_long.then(|| finding.help(format!("command H{number}, if offsets have the numbers of their tools")))
 }
 
@@ -299,8 +302,12 @@ fn without_offset(
     let has_offset = |other: &&CutConditions| {
         matches!(other.compensation, LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0)
             && machine.length_of(other.tool).is_none()
+            && other.tool != cut.tool
     };
-    let other = all.iter().find(has_offset).filter(|_| is_off && !is_specified && machine.length_of(cut.tool).is_none())?;
+    let other = all
+        .iter()
+        .find(has_offset)
+        .filter(|_| is_off && !is_specified && machine.length_of(cut.tool).is_none())?;
     let message = format!(
         "{} cuts without a length offset, and {} with one",
         tool_name(cut.tool),
