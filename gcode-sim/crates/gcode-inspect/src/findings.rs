@@ -8,6 +8,7 @@ gcode_lang::finding_kinds! {
     BACK_BORED = "back-bored", Warning, "a bore from the back is not among the holes";
     BALL_INTO_PART = "ball-into-part", Error, "an edge finder's ball is fed into the part";
     BURR_OFFSET = "burr-offset", Error, "the job and the machine file give the burr different positions";
+    CYCLE_IN_AIR = "cycle-in-air", Warning, "a drilling cycle cuts nothing";
     DRILL_FEED = "drill-feed", Error, "a tool cuts at a wrong feed";
     DRILL_PECK = "drill-peck", Error, "a hole is drilled with wrong pecks";
     DRILL_SPEED = "drill-speed", Error, "a tool cuts at another speed than specified";
@@ -75,7 +76,7 @@ gcode_lang::finding_kinds! {
     TAP_HAND = "tap-hand", Error, "the spindle turns against the hand of the thread";
     TAP_PITCH = "tap-pitch", Error, "feed and speed do not give the pitch of the thread";
     TOOL_KIND = "tool-kind", Error, "a tool makes a cut that its kind can't make";
-    TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends with the tool in the metal";
+    TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends, or the tool is changed, in the metal";
     TOOL_NOT_CHANGED = "tool-not-changed", Error, "the tool that is selected is not in the spindle";
     TOOL_SHORT = "tool-short", Error, "the shank, the holder or the spindle goes into the part";
     TOOL_UNKNOWN = "tool-unknown", Warning, "a tool that is missing in the tool table";

@@ -97,12 +97,10 @@ impl EntryPlanes {
     /// Returns the metal round these holes; their depths have a tolerance.
     pub fn of(holes: &[Hole], depth_tolerance: f64) -> Self {
         let collars: Vec<Collar> = holes.iter().map(|hole| Collar::of(hole, depth_tolerance)).collect();
-        let middle =
-            |collar: &Collar| collar.rod.base + collar.rod.axis.into_inner() * (collar.rod.length / 2.0);
         let reach =
             |collar: &Collar| libm::hypot(collar.rod.length / 2.0 + collar.floor(), collar.rod.radius);
         Self {
-            middles: PointTree::new(collars.iter().map(middle)),
+            middles: PointTree::new(collars.iter().map(Collar::middle)),
             reach: collars.iter().map(reach).fold(0.0, f64::max),
             room: collars.iter().map(|collar| collar.max_depth() - collar.rod.length).fold(WALL, f64::max),
             extent: collars.iter().map(extent).fold(Vector3::zeros(), |a, b| a.sup(&b)),
@@ -146,9 +144,15 @@ impl EntryPlanes {
         })
     }
 
-    /// Returns the largest distance of a point of the metal round a hole from its middle, mm.
-    pub fn reach(&self) -> f64 {
-        self.reach
+    /// Returns two corners of the box that holds the metal round all holes; the origin without any.
+    pub fn bounds(&self) -> [Point3<f64>; 2] {
+        let of_collar = |collar: &Collar| {
+            let (middle, extent) = (collar.middle(), extent(collar));
+            [middle - extent, middle + extent]
+        };
+        let boxes = self.collars.iter().map(of_collar);
+        let all = boxes.reduce(|[low, high], [p, q]| [low.inf(&p), high.sup(&q)]);
+        all.unwrap_or([Point3::origin(); 2])
     }
 
     /// Returns a lower bound of the distance from the metal round any hole, mm.
@@ -208,6 +212,11 @@ impl Collar {
             has_diameter: radius.is_some(),
             is_through: hole.through,
         }
+    }
+
+    /// Returns the middle of the rod.
+    fn middle(&self) -> Point3<f64> {
+        self.rod.base + self.rod.axis.into_inner() * (self.rod.length / 2.0)
     }
 
     /// Returns the depth of a point below the entry plane, mm.

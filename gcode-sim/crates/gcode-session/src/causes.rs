@@ -38,6 +38,37 @@ pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
     found
 }
 
+/// Letters of lengths and angles.
+const MEASURED_LETTERS: &[u8] = b"XYZABCUVWIJKRQ";
+
+/// Returns true if a program of the run has a length or an angle without a decimal point, besides 0.
+pub(super) fn may_lack_points(run: &Run) -> bool {
+    let sources = run.control.memory().sources();
+    !run.control.settings().uses_calculator_input
+        && sources.iter().any(|(_, source)| lacks_point(&source.bytes))
+}
+
+/// Returns true if a text has a length or an angle without a decimal point, besides 0, outside its comments.
+fn lacks_point(text: &[u8]) -> bool {
+    let mut rest = text;
+    while let Some((first, after)) = rest.split_first() {
+        rest = after;
+        if *first == b'(' {
+            let end = rest.iter().position(|byte| matches!(byte, b')' | b'\n')).unwrap_or(rest.len());
+            rest = &rest[end..];
+        } else if MEASURED_LETTERS.contains(&first.to_ascii_uppercase()) {
+            let number = rest.trim_ascii_start();
+            let number = number.strip_prefix(b"-").or(number.strip_prefix(b"+")).unwrap_or(number);
+            let digits = number.iter().take_while(|byte| byte.is_ascii_digit()).count();
+            let is_nonzero = number[..digits].iter().any(|digit| *digit != b'0');
+            if is_nonzero && number.get(digits) != Some(&b'.') {
+                return true;
+            }
+        }
+    }
+    false
+}
+
 /// Chooses the main program of a file with several programs and returns the note that names the choice, if there is one: the
 /// first program, or the only main program if that one is called by another.
 pub(super) fn choose_main(memory: &mut Memory, request: &Request) -> Option<Diagnostic> {

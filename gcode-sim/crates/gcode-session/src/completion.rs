@@ -20,7 +20,8 @@ pub(super) fn complete(
     if let Some(error) = missing_end(run) {
         verdict.add_error(error, &locate);
     }
-    if verdict.has_findings() {
+    // Without a finding only a number without its point is looked for, where the text has one.
+    if verdict.has_findings() || causes::may_lack_points(run) {
         causes.extend(causes::text_findings(run, verdict.answer() == Answer::Fail));
     }
     verdict.add_likely_causes(causes, &locate);

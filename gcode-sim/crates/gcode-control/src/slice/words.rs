@@ -134,16 +134,18 @@ impl Slice {
             one_shot: None,
         };
         for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'G') {
-            let Some(row) = row_of(block, words, word) else { continue };
+            let Some(row) = row_of(block, words, word) else {
+                // A vacant code is none; another value is any code.
+                self.follow_other_code(marked.marks);
+                continue;
+            };
             // G#5 with a code that #4003 had before is one of the same group.
             let is_restored = matches!(word.value, WordOperand::Variable { .. })
                 && marked.marks.is_within(self.power_on_modes)
                 && !matches!(row.effect, Effect::Motion(_) | Effect::Cycle(_));
             if !marked.marks.is_none() && !is_restored {
                 // Another value is another code.
-                self.machine.add_to_all(marked.marks);
-                self.machine.rest |= marked.marks;
-                self.further |= marked.marks;
+                self.follow_other_code(marked.marks);
             }
             if let Some(group) = row.effect.group() {
                 self.machine.settle_group(group, control | marked.marks);
@@ -196,6 +198,15 @@ impl Slice {
         modes
     }
 
+    /// Applies the marks of the number of a code, of which another one may change anything.
+    fn follow_other_code(&mut self, marks: Marks) {
+        if !marks.is_none() {
+            self.machine.add_to_all(marks);
+            self.machine.rest |= marks;
+            self.further |= marks;
+        }
+    }
+
     /// Follows F, S, T, H and D.
     fn follow_codes(&mut self, list: &[MarkedWord], guard: Marks) {
         let control = self.branches.marks() | guard;
@@ -209,11 +220,7 @@ impl Slice {
         let settings = &block.registers.data.settings;
         let control = self.branches.marks();
         for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'M') {
-            if !marked.marks.is_none() {
-                self.machine.add_to_all(marked.marks);
-                self.machine.rest |= marked.marks;
-                self.further |= marked.marks;
-            }
+            self.follow_other_code(marked.marks);
             let raw = block.registers.without_side_effects(|registers| registers.evaluate_word(words, word));
             let Some(code) = raw.ok().flatten().and_then(|raw| count(raw, b'M').ok()) else { continue };
             match m_codes::find(code, settings.codes) {

@@ -26,6 +26,9 @@ const SAME_TURN: f64 = 0.01;
 /// Largest difference of two circles that are one, mm.
 const SAME_CIRCLE: f64 = 1e-9;
 
+/// Number of full turns whose circles are kept.
+const MAX_CIRCLES: usize = 1000;
+
 /// Number of kinds of slope that are kept.
 const MAX_SLOPES: usize = 4;
 
@@ -115,6 +118,8 @@ pub(super) struct ArcRun {
     helix_turn: Option<FullTurn>,
     /// Kinds of slope among the arcs, in the order of the run.
     slopes: Vec<Slope>,
+    /// Centres and radii of the first full turns.
+    circles: Vec<(Point3<f64>, f64)>,
     /// Diameter of the slug that a turn has cut loose; `None` without any.
     pub slug: Option<f64>,
     /// True until the slug of the deepest turn is looked for.
@@ -216,9 +221,12 @@ impl Ring {
 impl ArcRun {
     pub(super) fn new(arc: PartArc, place: impl Fn() -> (Backtrace, Position)) -> Self {
         let top = arc.from.coords.dot(&arc.out);
-        let (arcs, heights, slopes) = (VecDeque::new(), HeightRange::default(), Vec::new());
+        let (arcs, heights, slopes, circles) =
+            (VecDeque::new(), HeightRange::default(), Vec::new(), Vec::new());
         let (turn, helix_turn, slug, has_new_turn) = (None, None, None, false);
-        let mut run = Self { arcs, swept: 0.0, top, heights, turn, helix_turn, slopes, slug, has_new_turn };
+        let swept = 0.0;
+        let mut run =
+            Self { arcs, swept, top, heights, turn, helix_turn, slopes, circles, slug, has_new_turn };
         run.push(arc, place);
         run
     }
@@ -251,6 +259,7 @@ impl ArcRun {
         while self.arcs.get(1).is_some_and(|(before, _)| *before <= begin) {
             self.arcs.pop_front();
         }
+        self.note_circle();
         let start = self.height_at(begin);
         let [level, lowest] = self.heights.since(begin, start);
         // A turn that rises follows a thread. A single turn that falls does so too, or begins a helix.
@@ -265,6 +274,24 @@ impl ArcRun {
             let (first, last) = (self.top, end);
             self.helix_turn = Some(FullTurn { level: first.min(last), backtrace, axis_position });
         }
+    }
+
+    /// Records the circle of a full turn that is complete.
+    fn note_circle(&mut self) {
+        let turns = self.circles.len() as f64;
+        if self.circles.len() < MAX_CIRCLES && 360.0 * turns + self.full_turn() <= self.swept {
+            let (centre, radius, _) = self.fit();
+            self.circles.push((centre, radius));
+        }
+    }
+
+    /// Returns the largest distance of the turns' circles from this one, in radius.
+    fn wander(&self, centre: &Point3<f64>, radius: f64, out: &Unit<Vector3<f64>>) -> f64 {
+        let distance = |(other, own): &(Point3<f64>, f64)| {
+            let aside = other - centre;
+            (aside - out.into_inner() * aside.dot(out)).norm() + (own - radius).abs()
+        };
+        self.circles.iter().map(distance).fold(0.0, f64::max)
     }
 
     fn add_slope(&mut self, rise: f64, swept: f64, place: impl FnOnce() -> Backtrace) {
@@ -316,6 +343,7 @@ impl ArcRun {
         let (centre, radius, roundness) = self.fit();
         if let Some(helix) = &mut helix {
             helix.phase = phase(helix.lead, &(last.to - centre), &out, end);
+            helix.wander = self.wander(&centre, radius, &out);
         }
         let FullTurn { level, backtrace, axis_position } = self.turn.or(self.helix_turn)?;
         let centre = centre + out.into_inner() * (level - centre.coords.dot(&out));
@@ -335,8 +363,8 @@ impl ArcRun {
         // The whole run gives the lead of even turns to the last digit.
         let lead = if uneven.is_some() { main.rise } else { rise / self.swept } * sense * 360.0;
         let uneven_lead = uneven.map(|slope| slope.rise * sense * 360.0);
-        let helix =
-            Helix { lead, uneven_lead, phase: 0.0, height: rise.abs(), is_thread: self.turn.is_none() };
+        let (phase, wander, is_thread) = (0.0, 0.0, self.turn.is_none());
+        let helix = Helix { lead, uneven_lead, phase, height: rise.abs(), wander, is_thread };
         Some((helix, uneven.map(|slope| slope.backtrace.clone())))
     }
 

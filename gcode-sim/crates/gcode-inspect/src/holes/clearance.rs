@@ -92,7 +92,8 @@ impl HoleExtractor<'_> {
         to: &Point3<f64>,
     ) {
         let approach = self.process_limits.approach;
-        if approach.unwrap_or(0.0).max(CONTACT_CLEARANCE) <= surface.clearance(from, to) {
+        let is_near = surface.clearance(from, to) < approach.unwrap_or(0.0).max(CONTACT_CLEARANCE);
+        if !is_near || self.change_retract.is_checked() {
             return;
         }
         let along = to - from;

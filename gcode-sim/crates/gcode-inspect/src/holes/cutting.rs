@@ -28,6 +28,8 @@ pub(crate) struct CutConditions {
     pub speed: Rpm,
     /// Slowest and fastest feed.
     pub feed_range: [MmPerMin; 2],
+    /// Feed that cuts most in a revolution, and its speed.
+    pub steepest: (MmPerMin, Rpm),
     /// Largest depth of cut without a retract, mm.
     pub max_cut: f64,
     /// Least peck of the cuts in several strokes, each by its longest stroke, mm; `None` without pecks.
@@ -81,7 +83,7 @@ impl CutConditionsByBlock {
         backtrace: &Backtrace,
         state: &CuttingState,
         is_tapping: bool,
-        feed_range: [MmPerMin; 2],
+        (feed_range, steepest): ([MmPerMin; 2], (MmPerMin, Rpm)),
         pecks: PeckExtent,
     ) {
         let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;
@@ -94,11 +96,15 @@ impl CutConditionsByBlock {
             is_tapping,
             speed,
             feed_range,
+            steepest,
             max_cut: 0.0,
             min_peck: None,
             count: 0,
         });
         let cut = &mut entry.value;
+        if cut.steepest.0.0 * steepest.1.0 < steepest.0.0 * cut.steepest.1.0 {
+            cut.steepest = steepest;
+        }
         cut.max_cut = cut.max_cut.max(pecks.max_cut);
         if 1 < pecks.strokes {
             cut.min_peck = Some(cut.min_peck.map_or(pecks.max_fed, |least| least.min(pecks.max_fed)));

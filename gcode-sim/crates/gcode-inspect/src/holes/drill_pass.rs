@@ -52,6 +52,8 @@ pub struct Helix {
     pub phase: f64,
     /// Height of the whole helix, mm.
     pub height: f64,
+    /// Largest distance of a turn's circle from the last one, in radius, mm.
+    pub wander: f64,
     /// True if it makes no hole: the mill comes up along it, or goes round once.
     pub is_thread: bool,
 }

@@ -31,6 +31,8 @@ pub struct HoleExtraction {
     pub(crate) is_metal_known: bool,
     /// Rapids whose paths are not searched to the end.
     pub(crate) unsearched_rapids: UnsearchedMotions,
+    /// Rapids that are free only if the tool change before them retracts the tool.
+    pub(crate) rapids_behind_change: UnsearchedMotions,
     /// Feeds beside which the metal is not compared with all of the tool.
     pub(crate) unsearched_feeds: UnsearchedMotions,
     /// Probing moves through metal.
@@ -43,6 +45,8 @@ pub struct HoleExtraction {
     pub(crate) milled_strokes: u64,
     /// Ends of the first feeds along the tool that go beside the part.
     pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
+    /// Warnings about drilling cycles that cut nothing.
+    pub(crate) cycles_in_air: Vec<Diagnostic>,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }

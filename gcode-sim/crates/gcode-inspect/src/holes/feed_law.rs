@@ -28,8 +28,14 @@ const MAX_RADIUS: f64 = 25.0;
 /// Number of chords of an arc beside which the shank and the holder are looked for in the metal first.
 const FEW_CHORDS: usize = 16;
 
+/// Largest radius of a hole of unknown diameter that is milled, mm.
+const MAX_OPEN_RADIUS: f64 = 50.0;
+
 /// Number of feeds with a gouge after which no more are compared.
 const MAX_GOUGES: u32 = 1000;
+
+/// Largest excess of a shank or a holder over the hole in which it goes, mm in radius: half the tolerance of the diameter.
+const FIT: f64 = 0.025;
 
 /// Largest distance by which a plunge leads aside, mm.
 const MAX_ASIDE: f64 = 0.2;
@@ -181,7 +187,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Adds what a straight feed removes.
-    fn remove(&mut self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) {
+    pub(super) fn remove(&mut self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) {
         let [from, to] = *travel;
         if let Some(profile) = &self.profile {
             // A stopped bar is shifted off the wall and cuts nothing.
@@ -213,7 +219,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the gouge that a feed makes in what is left of the metal by the first sweeps.
-    fn gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
+    pub(super) fn gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
         if self.surface.is_some() && !self.has_left_start {
             return None;
         }
@@ -246,7 +252,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the deepest metal that a part of the tool meets in a feed; a search that is given up is counted with the feed.
-    fn contact_in_feed(
+    pub(super) fn contact_in_feed(
         &self,
         part: &ToolPart,
         axis: &Unit<Vector3<f64>>,
@@ -298,10 +304,19 @@ impl HoleExtractor<'_> {
         if !self.may_cut(part, travel, axis) {
             return None;
         }
-        // Below the entry of a nominal hole its outline decides on strokes in it.
+        // Below the entry of a nominal hole its outline decides on strokes in it: a part that it excludes has its own finding.
         let is_stroke = is_along(axis, &(travel[1] - travel[0]));
         let hole = if is_stroke { self.metal.hole_of_stroke(travel, axis) } else { None };
-        self.contact_in_feed(part, axis, travel, Judged::Uncut(hole))
+        // The entry of the hole decides on the spindle.
+        if hole.is_some() && self.machine.tool_length(&self.setup) <= part.from {
+            return None;
+        }
+        self.contact_in_feed(part, axis, travel, Judged::Uncut(hole)).or_else(|| {
+            hole.filter(|_| self.metal.is_allowed(travel, axis, part))?;
+            // A cut that gives the outline its width may come later in the program.
+            let part = ToolPart { taper: part.taper.grown(-FIT), ..*part };
+            self.contact_in_feed(&part, axis, travel, Judged::Uncut(None))
+        })
     }
 
     /// Returns false if a part of the tool stays outside the metal that is known.
@@ -434,7 +449,24 @@ impl HoleExtractor<'_> {
                 (format!("{what} cuts {place}, {depth:.3} mm below {level} at {point}"), help)
             }
         };
-        self.findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
+        // A hole of unknown diameter may be as wide as the circle that mills it.
+        let findings = match self.is_at_open_hole(&at.point) {
+            true => &mut self.engagement.errors,
+            false => &mut self.findings,
+        };
+        findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
+    }
+
+    /// Returns true if a point is beside a nominal hole without a diameter, and no deeper than that.
+    fn is_at_open_hole(&self, p: &Point3<f64>) -> bool {
+        let mut is_open = false;
+        if let Some(holes) = self.metal.holes.as_deref().filter(|_| self.surface.is_some()) {
+            holes.below(p, p, (MAX_OPEN_RADIUS, 0.0), &mut |hole| {
+                let collar = holes.collar(hole);
+                is_open |= !collar.has_diameter && collar.depth(p) <= collar.max_depth() + TOUCH_DEPTH;
+            });
+        }
+        is_open
     }
 }
 

@@ -8,7 +8,7 @@ use super::{HoleExtractor, MotionKind};
 use crate::machine::TOUCH_DEPTH;
 use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
-use gcode_lang::units::MmPerMin;
+use gcode_lang::units::{MmPerMin, Rpm};
 
 /// Least additional depth of a stroke that cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
@@ -54,6 +54,8 @@ pub(super) struct CuttingLine {
     pub length_excess: Option<f64>,
     /// Slowest and fastest feed that cuts.
     feed_range: Option<[MmPerMin; 2]>,
+    /// Feed that cuts most in a revolution, and its speed.
+    steepest: Option<(MmPerMin, Rpm)>,
     /// Last feed that cuts.
     last_feed: Option<MmPerMin>,
     /// Depth at which the part begins; `None` if its surface is unknown.
@@ -136,6 +138,7 @@ impl CuttingLine {
             unknown_axes: UnknownAxes::default(),
             length_excess: None,
             feed_range: None,
+            steepest: None,
             last_feed: None,
             surface_depth: None,
             pecks: PeckExtent::default(),
@@ -158,11 +161,15 @@ impl CuttingLine {
         self.is_tapping = false;
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
         self.last_feed = Some(feed);
+        if self.steepest.is_none_or(|(most, speed)| most.0 * state.speed.0 < feed.0 * speed.0) {
+            self.steepest = Some((feed, state.speed));
+        }
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
     }
 
-    pub(super) fn cutting_feeds(&self) -> Option<[MmPerMin; 2]> {
-        self.feed_range
+    /// Returns the slowest and the fastest feed that cuts, and the one that cuts most in a revolution with its speed.
+    pub(super) fn cutting_feeds(&self) -> Option<([MmPerMin; 2], (MmPerMin, Rpm))> {
+        self.feed_range.zip(self.steepest)
     }
 
     /// Returns the extent of all strokes, the current one included.
@@ -305,18 +312,23 @@ impl CuttingLine {
         None
     }
 
-    /// Applies a rapid along the line. Returns a repeated pass that ends with it, and true if the rapid is deeper than the
-    /// cut.
-    pub(super) fn rapid_to(&mut self, to: &Point3<f64>) -> (Option<DrillPass>, bool) {
+    /// Returns true if a point on the line is deeper than the cut, by more than rounding.
+    pub(super) fn is_beyond_cut(&self, to: &Point3<f64>) -> bool {
+        self.cut_depth() + 2.0 * self.half_increment + MIN_DEPTH_GAIN < self.depth_of(to)
+    }
+
+    /// Applies a rapid along the line, which deepens the hole if it `cuts`. Returns a repeated pass that ends with it.
+    pub(super) fn rapid_to(&mut self, to: &Point3<f64>, cuts: bool) -> Option<DrillPass> {
         let depth = self.depth_of(to);
         if depth <= self.depth {
-            return (self.retract_to(depth), false);
+            return self.retract_to(depth);
         }
         let again = self.end_stroke();
-        let uncut = depth > self.deepest.depth + 2.0 * self.half_increment + MIN_DEPTH_GAIN;
-        self.deepest.depth = self.deepest.depth.max(depth);
+        if cuts {
+            self.deepest.depth = self.deepest.depth.max(depth);
+        }
         self.depth = depth;
-        (again, uncut)
+        again
     }
 
     fn retract_to(&mut self, depth: f64) -> Option<DrillPass> {
@@ -427,8 +439,13 @@ impl HoleExtractor<'_> {
             (None, None) => false,
         };
         // A tool may enter a hole that is cut with the spindle stopped or turning backwards.
-        let is_forward = self.cutting_state.spindle_direction == SpindleDirection::Clockwise;
-        if is_in_air || !is_forward && self.cuts_known_metal(from, &tip) == Some(false) {
+        // One of unknown diameter may be a tap of the other hand.
+        let may_turn_idle = match self.cutting_state.spindle_direction {
+            SpindleDirection::Clockwise => false,
+            SpindleDirection::Counterclockwise => self.machine.diameter_of(self.setup.tool).is_some(),
+            SpindleDirection::Off => true,
+        };
+        if is_in_air || may_turn_idle && self.cuts_known_metal(from, &tip) == Some(false) {
             return;
         }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };

@@ -10,13 +10,14 @@ use super::swept_tool::rim;
 use super::unknown_axes::{unknown_position_finding, without_assumed};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{
-    BACK_BORED, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
+    BACK_BORED, CYCLE_IN_AIR, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
     RAPID_INTO_PART, START_UNKNOWN, TOOL_NOT_CHANGED,
 };
 use crate::machine::{HeadKind, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, LengthCompensation};
 use gcode_lang::units::Deg;
+use gcode_part::Surface;
 
 /// Largest angle between feed and tool, besides rounding.
 const MAX_FEED_TILT: Deg = Deg(0.05);
@@ -37,6 +38,7 @@ impl HoleExtractor<'_> {
     pub(super) fn report_line(&mut self, line: Box<CuttingLine>, exit: ToolExit, next: Option<MotionKind>) {
         let is_feeding = next == Some(MotionKind::Feed);
         self.record_length_mismatch(&line);
+        self.note_cycle_in_air(&line);
         let tilt = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
         // Depth in the part, computed only where it decides.
         // A feed at an unknown position may be in the part.
@@ -120,6 +122,27 @@ impl HoleExtractor<'_> {
         }
     }
 
+    /// Records a drilling cycle that cuts nothing of a known body.
+    fn note_cycle_in_air(&mut self, line: &CuttingLine) {
+        let is_known = without_assumed(line.unknown_axes, self.machine).is_none();
+        let (start, bottom) = (line.start, line.bottom());
+        let is_in_body = |surface: Surface| surface.is_deeper(&bottom, TOUCH_DEPTH);
+        if !line.is_cycle || !is_known || !line.is_inward() || self.surface.is_none_or(is_in_body) {
+            return;
+        }
+        let axis = line.tool_axis.unwrap_or(line.out);
+        let radius = self.machine.diameter_of(line.cutting_state.tool).unwrap_or(0.0) / 2.0;
+        if self.metal.is_touched(&start, &bottom, &axis, radius) {
+            return;
+        }
+        self.cycles_in_air.add(&CYCLE_IN_AIR, line.backtrace(), 0, |kind| {
+            let message =
+                format!("a drilling cycle cuts nothing: the part has no metal at {}", format_point(&bottom));
+            Diagnostic::new(kind, message)
+                .help("check X, Y and Z of the cycle; remove it if it is not meant to cut")
+        });
+    }
+
     /// Records a tool of unknown diameter that mills the part: it may cut more than its path shows.
     pub(super) fn note_unsized_mill(&mut self, tool: Option<u32>) {
         if self.machine.diameter_of(tool).is_none() && !self.unsized_mills.contains(&tool) {
@@ -133,7 +156,12 @@ impl HoleExtractor<'_> {
         self.surface.is_some()
             && self.metal.holes.is_some()
             && without_assumed(line.unknown_axes, self.machine).is_none()
-            && (line.is_across_tool() || self.is_pocketing(line))
+            && (line.is_across_tool() || self.is_pocketing(line) && !self.is_nominal_cycle(line))
+    }
+
+    /// Returns true if a cycle drills at a nominal hole: it makes the hole, also where a pocket removes it later.
+    fn is_nominal_cycle(&self, line: &CuttingLine) -> bool {
+        line.is_cycle && self.strokes.nominal_of_line(line).is_some()
     }
 
     /// Records a feed without retract, unless it belongs to a milled hole: an error `inside` the part, by its depth, or at an

@@ -34,7 +34,7 @@ impl HoleExtractor<'_> {
                 // Beyond the start of the feed the tool moves freely.
                 let (before, after) = (line.depth_of(&from), line.depth_of(&tip));
                 let is_beyond = kind == MotionKind::Rapid && after < 0.0 && after < before;
-                let free_from = is_beyond.then_some(if before > 0.0 { line.start } else { from });
+                let mut free_from = is_beyond.then_some(if before > 0.0 { line.start } else { from });
                 let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {
@@ -44,9 +44,14 @@ impl HoleExtractor<'_> {
                     }
                     MotionKind::Rapid | MotionKind::Probe => {
                         line.is_cycle |= event.block == line.first_block;
-                        let (again, uncut) = line.rapid_to(&tip);
-                        if uncut {
-                            self.report_rapid_beyond_cut(event, &line, &from);
+                        let is_deeper = line.is_beyond_cut(&tip);
+                        // Through a hole that is finished the tool moves freely, as far as its body fits.
+                        let is_free = is_deeper && self.metal.cuts(&from, &tip) == Some(false);
+                        let again = line.rapid_to(&tip, !is_free);
+                        if is_free {
+                            free_from = Some(from).filter(|_| kind == MotionKind::Rapid);
+                        } else if is_deeper {
+                            self.report_rapid_beyond_cut(event, &line);
                         }
                         again
                     }

@@ -59,17 +59,17 @@ impl KnownMetal {
     pub(super) fn new(metal: Metal) -> Self {
         let bounds = match (&metal.body, &metal.entries) {
             (Some(body), _) => body.bounds(),
-            (None, _) => [
+            (None, Some(holes)) => holes.bounds(),
+            (None, None) => [
                 Point3::from(Vector3::repeat(f64::NEG_INFINITY)),
                 Point3::from(Vector3::repeat(f64::INFINITY)),
             ],
         };
-        let height = metal.entries.as_ref().filter(|_| metal.body.is_none()).map(|holes| 2.0 * holes.reach());
         Self {
             body: metal.body,
             holes: metal.entries,
             pockets: metal.pockets,
-            removed: RemovedMetal::new(bounds, height.unwrap_or(f64::INFINITY)),
+            removed: RemovedMetal::new(bounds),
         }
     }
 

@@ -15,6 +15,9 @@ use gcode_lang::motion::{Backtrace, Event, SpindleDirection, UnknownAxes};
 /// Largest number of points of an engagement; with more the tool mills something larger than a hole.
 const MAX_POINTS: usize = 50_000;
 
+/// Largest rise of a chord along a thread, by its length across the tool.
+const MAX_SLOPE: f64 = 0.5;
+
 /// Cosine of the largest angle between a circle's axis and the tool: 0.05°.
 pub(super) const MIN_AXIS_COSINE: f64 = 0.999_999_6;
 
@@ -158,8 +161,9 @@ impl HoleExtractor<'_> {
                 engagement.push_point(*from);
             }
         }
-        // An arc that rises leads out above the approach: the feed may begin at the bottom of a thread.
-        let exit = if arc.is_some() { top.max(engagement.approach_level) } else { top };
+        // An arc that rises leads out above the approach, and so do chords: the feed may begin at the bottom of a thread.
+        let is_flat = is_across && rise <= MAX_SLOPE * aside;
+        let exit = if arc.is_some() || is_flat { top.max(engagement.approach_level) } else { top };
         let place = || (event.backtrace(), self.axis_position);
         match arc {
             None if is_across => {

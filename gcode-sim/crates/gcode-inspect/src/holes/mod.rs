@@ -20,6 +20,7 @@ mod length_mismatch;
 mod line;
 mod line_findings;
 mod line_motion;
+mod low_rapid;
 mod machine_requests;
 mod metal;
 mod milled;
@@ -43,6 +44,8 @@ mod swept_tool;
 #[cfg(test)]
 mod tests;
 mod thread_walls;
+mod tool_change;
+mod turning_feed;
 pub(crate) mod unknown_axes;
 mod wall_cut;
 
@@ -69,12 +72,14 @@ use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
 use self::feed_law::Plunge;
 use self::line::CuttingLine;
+use self::low_rapid::LowRapid;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
 use self::milling::MillingRates;
 use self::per_block::Findings;
 use self::profile::Profile;
 use self::strokes::{MilledStrokes, Strokes};
+use self::tool_change::ChangeRetract;
 use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
 use gcode_lang::alarm::kinds::LIMIT;
@@ -109,6 +114,8 @@ pub struct HoleExtractor<'m> {
     gouge_count: u32,
     /// Ends of the first feeds along the tool that go beside the part.
     feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
+    /// Cycles that cut nothing.
+    cycles_in_air: Findings,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -149,6 +156,8 @@ pub struct HoleExtractor<'m> {
     /// The search for the current feed was given up.
     is_feed_unsearched: Cell<bool>,
     bar_shift: BarShift,
+    change_retract: ChangeRetract,
+    low_rapid: Option<LowRapid>,
 }
 
 /// Kind of a motion.
@@ -177,6 +186,7 @@ impl<'m> HoleExtractor<'m> {
             plunge: None,
             gouge_count: 0,
             feeds_in_air: Vec::new(),
+            cycles_in_air: Findings::default(),
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
@@ -204,6 +214,8 @@ impl<'m> HoleExtractor<'m> {
             probes_in_metal: UnsearchedMotions::default(),
             is_feed_unsearched: Cell::default(),
             bar_shift: BarShift::default(),
+            change_retract: ChangeRetract::default(),
+            low_rapid: None,
         }
     }
 
@@ -243,6 +255,7 @@ impl<'m> HoleExtractor<'m> {
     /// Ends the run and returns its holes and findings.
     pub fn finish(mut self) -> HoleExtraction {
         let last_block = self.last_block.clone();
+        self.report_low_rapid();
         self.end_in_metal();
         self.end_line(None);
         let unsearched = last_block.filter(|_| self.is_feed_unsearched.get());
@@ -275,12 +288,14 @@ impl<'m> HoleExtractor<'m> {
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
             unsearched_rapids: self.unsearched_rapids,
+            rapids_behind_change: self.change_retract.rapids,
             unsearched_feeds: self.unsearched_feeds,
             probes_in_metal: self.probes_in_metal,
             unsized_mills: self.unsized_mills,
             covered_entries,
             milled_strokes,
             feeds_in_air: self.feeds_in_air,
+            cycles_in_air: self.cycles_in_air.finish(),
             is_removal_cut_short: self.metal.removed.is_full,
         }
     }
@@ -301,6 +316,9 @@ impl<'m> HoleExtractor<'m> {
         self.check_idle_axes(event, &from, to);
         self.check_clamp_released(event, &from, to);
         let last_motion = self.last_motion.replace((kind, event.block));
+        if kind != MotionKind::Rapid {
+            self.change_retract.end();
+        }
         let before = self.pose;
         let travel = AxisMotion { from: &from, to, arc };
         let is_rotating = !self.machine.is_straight(&AxisMotion { arc: None, ..travel });
@@ -320,6 +338,8 @@ impl<'m> HoleExtractor<'m> {
             kind => kind,
         };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
+            self.change_retract.end();
+            self.report_low_rapid();
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             // With the same axes unknown the motion itself is known.
             match was == is && !is_rotating {
@@ -331,12 +351,14 @@ impl<'m> HoleExtractor<'m> {
         if is_rotating || arc.is_some() {
             self.end_line(Some(kind));
             match kind {
-                MotionKind::Rapid => self.check_rapid_paths(event, (&from, to), None),
+                MotionKind::Rapid => self.check_rapid_motion(event, (&from, to), None, &before.tip),
                 MotionKind::Feed => {
+                    let is_known = was.union(is).is_none();
                     if !is_rotating {
-                        self.remove_by_arc(event, &travel, was.union(is).is_none());
+                        self.remove_by_arc(event, &travel, is_known);
                     }
-                    if !self.check_curved(event, &travel, kind) && is_rotating {
+                    let is_allowed = is_rotating && self.remove_while_turning(&travel, is_known);
+                    if !is_allowed && !self.check_curved(event, &travel, kind) && is_rotating {
                         self.check_turning_feed(event, (&from, to));
                     }
                     let arc = self.part_arc(&travel, &before.tip);
@@ -355,10 +377,11 @@ impl<'m> HoleExtractor<'m> {
         if kind == MotionKind::Rapid {
             self.check_rapid_into_thread(event, &before.tip);
         }
+        self.follow_low_rapid(event, kind, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);
         self.follow_bar_shift(event, kind, &before.tip);
         match (kind, free_from) {
-            (MotionKind::Rapid, start) => self.check_rapid_paths(event, (&from, to), start),
+            (MotionKind::Rapid, start) => self.check_rapid_motion(event, (&from, to), start, &before.tip),
             (MotionKind::Feed, start) => {
                 // What a feed cuts is recorded before it is removed.
                 if let Some(start) = start {
@@ -420,7 +443,9 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
+                self.report_low_rapid();
                 self.check_tool_known(event, *number);
+                self.begin_change(event);
                 self.update_setup(|setup| setup.tool = Some(*number));
                 self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
             }

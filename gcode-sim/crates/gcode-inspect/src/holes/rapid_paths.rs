@@ -7,7 +7,6 @@ use super::near_metal::{Contact, Judged, NearMetal};
 use super::rapids::{error_if, format_point};
 use super::swept_tool::{TipPaths, contact, faces};
 use super::{HoleExtractor, MotionKind};
-use crate::findings::RAPID_INTO_PART;
 use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolPart, arrivals};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
@@ -21,6 +20,11 @@ impl UnsearchedMotions {
     /// Counts a motion whose search was given up.
     pub(super) fn count(&mut self, backtrace: impl FnOnce() -> Backtrace) {
         self.0.get_or_insert_with(|| (backtrace(), 0)).1 += 1;
+    }
+
+    /// Returns the number of all.
+    pub(super) fn number(&self) -> u64 {
+        self.0.as_ref().map_or(0, |(_, count)| *count)
     }
 
     /// Returns the block of the first and the number of all; `None` without one.
@@ -132,7 +136,7 @@ impl HoleExtractor<'_> {
         let order = self.arrival_order(&found, all);
         let start = self.machine.forward(from, &self.setup).tip;
         let starts_inside = self.metal.depth(&start).is_some_and(|depth| TOUCH_DEPTH < depth);
-        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+        self.add_rapid_into_part(event, |kind| {
             let point = format_point(&found.point);
             let message = format!("rapid into the part{order}: {depth:.3} mm below {level} at {point}");
             let help = match starts_inside {
@@ -267,7 +271,7 @@ impl HoleExtractor<'_> {
 
     fn report_side(&mut self, event: &Event<'_>, cut: PointInMetal, severity: Severity, orders: &str) {
         let level = self.metal.level_at(&cut.point);
-        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+        self.add_rapid_into_part(event, |kind| {
             let (depth, point) = (cut.depth, format_point(&cut.point));
             let message = format!(
                 "the side of the tool cuts the part in a rapid{orders}, {depth:.3} mm below {level} at {point}"

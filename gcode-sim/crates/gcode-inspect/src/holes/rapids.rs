@@ -4,7 +4,7 @@ use nalgebra::Point3;
 use super::line::{CuttingLine, ToolExit};
 use super::metal::PointInMetal;
 use super::{HoleExtractor, MotionKind};
-use crate::findings::{FEED_NO_HOLE, RAPID_BEYOND_CUT, RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
+use crate::findings::{FEED_NO_HOLE, RAPID_BEYOND_CUT, TOOL_LEFT_IN_HOLE};
 use crate::machine::{AxisMotion, TOUCH_DEPTH};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Event;
@@ -15,23 +15,15 @@ pub(super) const PLUNGE_COSINE: f64 = 0.995;
 
 impl HoleExtractor<'_> {
     /// Reports a rapid that returns along the line deeper than it was cut.
-    pub(super) fn report_rapid_beyond_cut(
-        &mut self,
-        event: &Event<'_>,
-        line: &CuttingLine,
-        from: &Point3<f64>,
-    ) {
-        let cuts = self.metal.cuts(from, &line.bottom());
-        if cuts == Some(false) {
-            return;
-        }
+    pub(super) fn report_rapid_beyond_cut(&mut self, event: &Event<'_>, line: &CuttingLine) {
+        let is_known = self.metal.cuts(&line.start, &line.bottom()).is_some();
         self.findings.add(&RAPID_BEYOND_CUT, &event.backtrace(), 0, |kind| {
             let message = format!(
                 "rapid along the hole beyond the drilled depth, to {:.3} mm from the start of the feed",
                 line.cut_depth()
             );
             Diagnostic::new(kind, message)
-                .with_severity(error_if(cuts.is_some()))
+                .with_severity(error_if(is_known))
                 .help("end the rapid above the depth already drilled")
         });
     }
@@ -71,7 +63,7 @@ impl HoleExtractor<'_> {
         let Some(PointInMetal { point, depth }) = self.metal.uncut(&[*from, *to]) else {
             return false;
         };
-        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+        self.add_rapid_into_part(event, |kind| {
             let point = format_point(&point);
             let message = format!("rapid through the part, {depth:.3} mm below the surface at {point}");
             Diagnostic::new(kind, message)
@@ -125,7 +117,7 @@ impl HoleExtractor<'_> {
         if depth <= TOUCH_DEPTH {
             return;
         }
-        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+        self.add_rapid_into_part(event, |kind| {
             let message = format!("the rapid ends {depth:.3} mm below the surface, at {}", format_point(to));
             Diagnostic::new(kind, message)
                 .with_severity(severity)
@@ -140,7 +132,7 @@ impl HoleExtractor<'_> {
             return false;
         };
         let id = self.metal.hole_at(&point).unwrap_or_default().to_owned();
-        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+        self.add_rapid_into_part(event, |kind| {
             let point = format_point(&point);
             let message = format!(
                 "rapid into the metal at hole {id}, {depth:.3} mm below its nominal entry, at {point}"
@@ -178,26 +170,26 @@ impl HoleExtractor<'_> {
             true => self.max_depth_along(&surface, travel),
             false => f64::NEG_INFINITY,
         };
-        let straight = "drill along a straight line, or mill full circles, with the table stationary";
-        let (findings, kind, message, help) = match is_rapid {
-            _ if depth <= 2.0 * TOUCH_DEPTH => {
-                if self.has_left_start {
-                    self.record_close_turn(event, &surface, travel);
-                }
-                return false;
+        if depth <= 2.0 * TOUCH_DEPTH {
+            if is_rapid && self.has_left_start && !self.change_retract.is_checked() {
+                self.record_close_turn(event, &surface, travel);
             }
-            true => (
-                &mut self.findings,
-                &RAPID_INTO_PART,
-                format!("rapid through the part while an axis rotates, {depth:.3} mm below the surface"),
-                "retract until the tool is outside the part before the table or the head rotates",
-            ),
-            false => {
+            return false;
+        }
+        if is_rapid {
+            self.add_rapid_into_part(event, |kind| {
+                let message =
+                    format!("rapid through the part while an axis rotates, {depth:.3} mm below the surface");
+                let help = "retract until the tool is outside the part before the table or the head rotates";
+                Diagnostic::new(kind, message).help(help)
+            });
+        } else {
+            self.engagement.errors.add(&FEED_NO_HOLE, &event.backtrace(), 0, |kind| {
                 let message = format!("a curved feed cuts {depth:.3} mm into the part: not a hole");
-                (&mut self.engagement.errors, &FEED_NO_HOLE, message, straight)
-            }
-        };
-        findings.add(kind, &event.backtrace(), 0, |kind| Diagnostic::new(kind, message).help(help));
+                let help = "drill along a straight line, or mill full circles, with the table stationary";
+                Diagnostic::new(kind, message).help(help)
+            });
+        }
         true
     }
 

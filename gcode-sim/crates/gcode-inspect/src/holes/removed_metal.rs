@@ -58,16 +58,13 @@ pub(super) struct RemovedMetal {
     common_axis: Option<Option<Unit<Vector3<f64>>>>,
     /// Corners of a box that holds all metal.
     bounds: [Point3<f64>; 2],
-    /// Largest height above the tip at which there is metal, mm.
-    max_height: f64,
     /// True once sweeps are missing.
     pub is_full: bool,
 }
 
 impl RemovedMetal {
-    /// Returns no removed metal; `bounds` are corners of a box that holds all metal, and above the tip it ends at
-    /// `max_height`.
-    pub(super) fn new(bounds: [Point3<f64>; 2], max_height: f64) -> Self {
+    /// Returns no removed metal; `bounds` are corners of a box that holds all metal.
+    pub(super) fn new(bounds: [Point3<f64>; 2]) -> Self {
         Self {
             sweeps: Vec::new(),
             profiles: Vec::new(),
@@ -76,7 +73,6 @@ impl RemovedMetal {
             heading: None,
             common_axis: None,
             bounds,
-            max_height: max_height.min(MAX_HEIGHT),
             is_full: false,
         }
     }
@@ -145,7 +141,7 @@ impl RemovedMetal {
             let margin = radius * (1.0 - out[i] * out[i]).max(0.0).sqrt();
             self.exit(p, out, i).map_or(f64::INFINITY, |exit| exit + margin / out[i].abs())
         };
-        (0..3).map(exit).fold(self.max_height, f64::min).max(0.0)
+        (0..3).map(exit).fold(MAX_HEIGHT, f64::min).max(0.0)
     }
 
     /// Returns the distance along a direction to the face of the bounds on an axis; `None` without one.
@@ -165,7 +161,7 @@ impl RemovedMetal {
         let middle = f64::midpoint(shares[0], shares[1]);
         let at = |share: f64| move |(start, gain): &(f64, f64)| start + gain * share;
         let nearest = all.iter().min_by(|a, b| at(middle)(a).total_cmp(&at(middle)(b)));
-        let height = |share: f64| nearest.map_or(f64::INFINITY, at(share)).min(self.max_height);
+        let height = |share: f64| nearest.map_or(f64::INFINITY, at(share)).min(MAX_HEIGHT);
         Some((shares, shares.map(height)))
     }
 
@@ -388,7 +384,7 @@ mod tests {
     /// from −SQRT[5.01² − 9] = −4.0125; at z −5.02 it is below.
     #[test]
     fn a_slot_covers_its_width_and_all_above_it() {
-        let mut removed = RemovedMetal::new([p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)], 1000.0);
+        let mut removed = RemovedMetal::new([p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)]);
         removed.add(p(0.0, 0.0, -5.0), p(40.0, 0.0, -5.0), Vector3::z_axis(), &Profile::flat(5.0, true));
         for is_closed in [false, true] {
             if is_closed {
@@ -406,7 +402,7 @@ mod tests {
     /// Pecks along one line are one sweep, and a feed back adds none.
     #[test]
     fn pecks_are_one_sweep() {
-        let mut removed = RemovedMetal::new([p(-9.0, -9.0, -50.0), p(9.0, 9.0, 0.0)], 1000.0);
+        let mut removed = RemovedMetal::new([p(-9.0, -9.0, -50.0), p(9.0, 9.0, 0.0)]);
         for depth in 1..=1000 {
             let bottom = f64::from(depth) / -50.0;
             let profile = Profile::flat(3.0, true);
@@ -422,7 +418,7 @@ mod tests {
     fn small_steps_along_a_line_are_one_sweep() {
         let profile = Profile::flat(3.0, true);
         let bounds = [p(-99.0, -99.0, -50.0), p(99.0, 99.0, 0.0)];
-        let (mut line, mut circle) = (RemovedMetal::new(bounds, 1000.0), RemovedMetal::new(bounds, 1000.0));
+        let (mut line, mut circle) = (RemovedMetal::new(bounds), RemovedMetal::new(bounds));
         for step in 0..1000 {
             let at = |step: i32| p(f64::from(step) * 0.05, 0.0, -5.0);
             line.add(at(step), at(step + 1), Vector3::z_axis(), &profile);

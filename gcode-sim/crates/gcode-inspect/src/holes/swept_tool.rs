@@ -10,12 +10,16 @@ use super::near_metal::{Contact, Judged, NearMetal};
 use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
 use gcode_lang::units::Deg;
+use gcode_part::Taper;
 
 /// Deviation of a direction along the tool, or square to it, over a whole travel, mm.
 const SQUARE: f64 = 0.1 * TOUCH_DEPTH;
 
 /// Number of strips across the lower end of a part.
 const DISC_STRIPS: i32 = 16;
+
+/// Depth of the middle of a hole's known wall below its outside, mm.
+const WALL_MIDDLE: f64 = 0.5;
 
 /// All paths of the tip: straight ones, or those in a prism about the tool.
 #[derive(Clone, Copy, Debug)]
@@ -222,6 +226,50 @@ fn disc(centre: &Point3<f64>, axis: &Unit<Vector3<f64>>, radius: f64) -> impl It
 
 /// Finds the metal that a part of the tool meets on the paths of its tip.
 pub(super) fn contact(
+    part: &ToolPart,
+    axis: &Unit<Vector3<f64>>,
+    paths: &TipPaths,
+    metal: &KnownMetal,
+    judged: Judged<'_>,
+) -> Contact {
+    match contact_at_surface(part, axis, paths, metal, judged) {
+        Contact::Clear => {
+            let inner = inside_walls(part, axis, paths, metal).into_iter();
+            let mut contacts = inner.map(|inner| contact_at_surface(&inner, axis, paths, metal, judged));
+            contacts.find(|contact| !matches!(contact, Contact::Clear)).unwrap_or(Contact::Clear)
+        }
+        found => found,
+    }
+}
+
+/// Returns the cylinders inside a part that end in the walls of the holes which it covers whole: without a body the metal ends
+/// at their outside.
+fn inside_walls(
+    part: &ToolPart,
+    axis: &Unit<Vector3<f64>>,
+    paths: &TipPaths,
+    metal: &KnownMetal,
+) -> Vec<ToolPart> {
+    let mut inner = Vec::new();
+    if metal.body.is_some() || part.taper.slope != 0.0 {
+        return inner;
+    }
+    let (radius, up) = (part.radius(), axis.into_inner() * part.from);
+    let (start, end) = (paths.start + up, paths.end() + up);
+    let margin = Vector3::repeat(radius);
+    metal.around(&[start.inf(&end) - margin, start.sup(&end) + margin], &mut |collar| {
+        let own = collar.from_axis(&end) + collar.rod.radius - WALL_MIDDLE;
+        if collar.is_parallel(axis) && own + WALL_MIDDLE <= radius + TOUCH_DEPTH {
+            inner.push(ToolPart { taper: Taper::cylinder(own), ..*part });
+        }
+    });
+    inner.sort_by(|a, b| a.taper.radius.total_cmp(&b.taper.radius));
+    inner.dedup_by(|a, b| (a.taper.radius - b.taper.radius).abs() < TOUCH_DEPTH);
+    inner
+}
+
+/// Finds the metal that the surface of a part meets.
+fn contact_at_surface(
     part: &ToolPart,
     axis: &Unit<Vector3<f64>>,
     paths: &TipPaths,

@@ -4,9 +4,9 @@ use nalgebra::Point3;
 
 use super::group::DrilledHole;
 use super::line::{CuttingLine, ToolExit};
-use super::{HoleExtractor, MotionKind};
+use super::{CONTACT_CLEARANCE, HoleExtractor, MotionKind};
 use crate::findings::START_UNKNOWN;
-use crate::machine::{AxisMotion, Machine};
+use crate::machine::{AxisMotion, Machine, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Axes, AxisIndex, Backtrace, Event, UnknownAxes};
 
@@ -15,6 +15,9 @@ const MAX_SINE: f64 = 1e-3;
 
 /// Detail of the finding about a rapid; above those of holes, which are axes as bits.
 const RAPID_DETAIL: u32 = 1 << 8;
+
+/// Detail of the finding about a rapid below the top of the part.
+const LOW_RAPID_DETAIL: u32 = 1 << 9;
 
 /// Largest displacement of a hole by an axis that has no effect on it, mm.
 const MAX_DISPLACEMENT: f64 = 1e-6;
@@ -148,6 +151,7 @@ impl HoleExtractor<'_> {
         }
         if kind == MotionKind::Rapid {
             self.report_rapid_at_unknown_level(event, travel, (was, is));
+            self.report_rapid_below_top(event, is);
         }
         self.update_start();
     }
@@ -183,6 +187,50 @@ impl HoleExtractor<'_> {
             Diagnostic::new(kind, message)
                 .note("G98 returns to the level at which the cycle began")
                 .help(format!("command {letters} in G90 before the first hole"))
+        });
+    }
+
+    /// Reports a rapid that ends below the top of the body while nothing has commanded the axes across the tool: it may be in
+    /// the part.
+    fn report_rapid_below_top(&mut self, event: &Event<'_>, is: UnknownAxes) {
+        let axes = without_assumed(is, self.machine);
+        let Some((surface, out)) = self.surface.zip(self.tool_direction()) else { return };
+        if axes.uncommanded == 0 || axes.at_machine_position | axes.shifted != 0 {
+            return;
+        }
+        let mut open = Vec::new();
+        for (axis, _) in self.machine.axes.iter().filter(|(axis, _)| axes.uncommanded >> axis & 1 == 1) {
+            let mut beside = self.axis_position;
+            beside[axis] += 1.0;
+            let by = self.machine.forward(&beside, &self.setup).tip - self.pose.tip;
+            if self.machine.axes.is_rotary(axis) || MAX_SINE < by.dot(&out).abs() {
+                return;
+            }
+            open.push(by);
+        }
+        let (tip, reach) = (self.pose.tip, self.body_radius());
+        let [low, high] = surface.bounds();
+        let is_over = (0..3).all(|i| {
+            let is_open = open.iter().any(|by| MAX_SINE < by[i].abs());
+            let margin = reach * (1.0 - out[i] * out[i]).max(0.0).sqrt();
+            is_open || MAX_SINE < out[i].abs() || (low[i] - margin..=high[i] + margin).contains(&tip[i])
+        });
+        let top: f64 = (0..3).map(|i| (out[i] * low[i]).max(out[i] * high[i])).sum();
+        let below = top - tip.coords.dot(&out);
+        if !is_over || below <= -CONTACT_CLEARANCE {
+            return;
+        }
+        let letters = self.machine.axes.names(axes.uncommanded);
+        self.findings.add_in_program(&START_UNKNOWN, &event.backtrace(), LOW_RAPID_DETAIL, 1, |kind| {
+            let place = match below {
+                _ if TOUCH_DEPTH < below => format!("{below:.3} mm below the top of the part"),
+                _ => "on the top of the part".to_owned(),
+            };
+            let message = format!(
+                "a rapid ends {place} with {letters} at an unknown position: it may be over the part"
+            );
+            Diagnostic::new(kind, message)
+                .help(format!("command {letters} in G90 before it, or end it above the part"))
         });
     }
 

@@ -20,6 +20,10 @@ pub(crate) struct ToolPart {
     pub is_cutter: bool,
 }
 
+/// Least diameter of a spindle's nose, and the length of it that counts, mm.
+const MIN_SPINDLE: f64 = 20.0;
+const SPINDLE_LENGTH: f64 = 50.0;
+
 impl ToolPart {
     /// Returns a cylinder that cuts.
     pub(crate) fn flutes(from: f64, to: f64, radius: f64) -> Self {
@@ -73,6 +77,12 @@ impl Machine {
         body.extend(shank.map(|(shank, _)| behind(end_of_flutes, length, shank)));
         let holder = holder(tool).filter(|(_, height)| *height <= length);
         body.extend(holder.map(|(holder, height)| behind(length - height, length, holder)));
+        // A length of 0 means that the tip is programmed.
+        let spindle = tool.length.filter(|length| 0.0 < *length).map(|length| {
+            let widest = [Some(MIN_SPINDLE), Some(diameter), tool.holder_diameter].into_iter().flatten();
+            behind(length, length + SPINDLE_LENGTH, widest.fold(0.0, f64::max))
+        });
+        body.extend(spindle);
         body.retain(|part| part.from <= part.to);
         body
     }

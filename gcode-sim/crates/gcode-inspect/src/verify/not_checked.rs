@@ -104,6 +104,12 @@ pub(super) fn list(
             "an axis rotates near the metal, or the metal beside them is cut too finely",
         ),
         (
+            &extraction.rapids_behind_change,
+            "the retract of the tool change before some rapids",
+            "rapid",
+            "free if the tool change moves the tool away from the part, as on most machines; retract before it by G28 or G53",
+        ),
+        (
             &extraction.probes_in_metal,
             "what probing moves touch",
             "move",
@@ -185,7 +191,7 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<NotChecked> 
     };
     let unspecified = (!unspecified.is_empty()).then(|| {
         let reason = "the reference has none, and the sides of the tools in it are not compared either";
-        NotChecked::aside(format!("the diameter of {}", hole_names(&unspecified)), reason)
+        NotChecked::gap(format!("the diameter of {}", hole_names(&unspecified)), reason)
     });
     by_tool.into_iter().map(gap).chain(unspecified).collect()
 }

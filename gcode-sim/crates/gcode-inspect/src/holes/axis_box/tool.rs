@@ -80,7 +80,9 @@ impl AxisBox<'_> {
             let travel = corners.iter().map(|corner| (corner - p).dot(&normal)).fold(0.0, f64::min);
             parts.iter().all(|part| {
                 let end = |height: f64| along * height - part.taper.at(height) * most;
-                0.0 <= distance + travel + end(part.from).min(end(part.to))
+                // A tool of unknown length reaches as high as the metal.
+                let is_endless = part.is_cutter && part.to <= part.from;
+                (!is_endless || 0.0 <= along) && 0.0 <= distance + travel + end(part.from).min(end(part.to))
             })
         };
         corners.first().into_iter().chain(corners.last()).any(is_outside)

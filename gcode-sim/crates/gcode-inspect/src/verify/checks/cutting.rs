@@ -18,6 +18,12 @@ const MAX_CUTTING_SPEED: f64 = 1800.0;
 /// Largest feed of a tool of unknown diameter, mm per revolution.
 const MAX_FEED_PER_TURN: f64 = 5.0;
 
+/// Share of its diameter that no drill feeds in a revolution: tables give up to 0.05.
+const MAX_DRILL_FEED_SHARE: f64 = 0.25;
+
+/// Feed that no drill stands, mm/min: coated drills in aluminium reach some 6000.
+const MAX_DRILL_FEED: f64 = 15_000.0;
+
 /// Pecks up to this length, mm, and up to this share of the drill's diameter are none: the drill only rubs.
 const LEAST_PECK: f64 = 0.01;
 const LEAST_PECK_SHARE: f64 = 0.005;
@@ -26,20 +32,30 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let (conditions, limits) = (&inspection.extraction.cut_conditions, &inspection.reference.process_limits);
     let mut reported: Vec<(Diagnostic, u64)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
+    let mut report = |finding: Diagnostic, cut: &CutConditions| {
+        let index = *known.entry(finding.message.clone()).or_insert(reported.len());
+        if index == reported.len() {
+            reported.push((finding.with_backtrace(cut.backtrace.clone()), 0));
+        }
+        reported[index].1 += cut.count;
+    };
     for check in [reversed, speed, feed, feed_per_turn, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
-            let finding = match owner_of_length(cut, conditions).filter(|_| finding.kind == &LENGTH_OFFSET) {
+            // Lengths that the machine file states are compared.
+            let is_open = finding.kind == &LENGTH_OFFSET && inspection.machine.length_of(cut.tool).is_none();
+            let finding = match owner_of_length(cut, conditions).filter(|_| is_open) {
                 Some(owner) => finding
                     .with_severity(Severity::Error)
                     .note(format!("T{owner} cuts with it too: two tools have two lengths")),
                 None => finding,
             };
-            let index = *known.entry(finding.message.clone()).or_insert(reported.len());
-            if index == reported.len() {
-                reported.push((finding.with_backtrace(cut.backtrace.clone()), 0));
-            }
-            reported[index].1 += cut.count;
+            report(finding, cut);
+        }
+    }
+    for cut in conditions {
+        if let Some(finding) = without_offset(cut, conditions, limits, inspection.machine) {
+            report(finding, cut);
         }
     }
     for (finding, count) in reported {
@@ -114,23 +130,31 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
     Some(finding.help("correct F, or the tool's feed in the job; check that G94 and G21 are in force"))
 }
 
-/// Reports a feed per revolution of several times what tables of cutting data give; an error above the diameter.
+/// Reports a feed per revolution of several times what tables of cutting data give; an error above the diameter, of a drill above
+/// a quarter of it.
 fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
     let kind = machine.kind_of(cut.tool);
-    let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < cut.speed.0;
+    let (feed, speed) = cut.steepest;
+    let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < speed.0;
     if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
         return None;
     }
-    let [_, feed] = cut.feed_range;
-    let per_turn = feed.0 / cut.speed.0;
+    let per_turn = feed.0 / speed.0;
     let diameter = machine.diameter_of(cut.tool);
     let limit = match (diameter, kind) {
         (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.2),
         (Some(diameter), _) => (0.2 * diameter).max(0.5),
         (None, _) => MAX_FEED_PER_TURN,
     };
-    let is_impossible = exceeds(per_turn, diameter.unwrap_or(limit).max(limit));
-    if !exceeds(per_turn, limit) {
+    let is_drill = kind == Some(ToolKind::Drill);
+    let most = match diameter {
+        Some(diameter) if is_drill => MAX_DRILL_FEED_SHARE * diameter,
+        Some(diameter) => diameter,
+        None => limit,
+    };
+    let is_too_fast = is_drill && exceeds(feed.0, MAX_DRILL_FEED);
+    let is_impossible = is_too_fast || exceeds(per_turn, most.max(limit));
+    if !is_impossible && !exceeds(per_turn, limit) {
         return None;
     }
     let message = format!(
@@ -138,7 +162,7 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
         tool_name(cut.tool),
         round_thousandth(per_turn),
         round_thousandth(feed.0),
-        cut.speed.0
+        speed.0
     );
     let severity = if is_impossible { Severity::Error } else { Severity::Warning };
     Some(Diagnostic::new(&DRILL_FEED, message).with_severity(severity).help(
@@ -213,8 +237,8 @@ pub(in crate::verify) fn severity(actual: f64, nominal: f64) -> Option<Severity>
 /// Reports the number of a length offset that cannot be the tool's. If the machine file gives the tool's length, the
 /// depth of the holes shows whether the offset is right.
 fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
-    if machine.length_of(cut.tool).is_some() {
-        return None;
+    if let Some(length) = machine.length_of(cut.tool) {
+        return same_length(cut, length, machine);
     }
     let specified = limits.tool_process(cut.tool).and_then(|tool| tool.offset);
     let tool = tool_name(cut.tool);
@@ -250,6 +274,48 @@ fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Opt
     let note = "the machine file does not give the tool's length, so the simulated holes do not depend on \
                 the length offset";
     Some(Diagnostic::new(&LENGTH_OFFSET, message).with_severity(severity).note(note).help(help))
+}
+
+/// Reports the length offset of another tool that is as long in the machine file: on the machine they differ.
+fn same_length(cut: &CutConditions, length: f64, machine: &Machine) -> Option<Diagnostic> {
+    let LengthCompensation::Plus(h) = cut.compensation else { return None };
+    let number = cut.tool.filter(|number| *number != h)?;
+    let is_as_long = machine.find_tool(h)?.length == Some(length) && 0.0 < length;
+    let message = format!("{} cuts with H{h}, the number of another tool", tool_name(cut.tool));
+    let finding = Diagnostic::new(&LENGTH_OFFSET, message).with_severity(Severity::Warning);
+    let finding = finding
+        .note(format!("both are {length} mm long in the machine file: on the machine they may differ"));
+    is_as_long.then(|| finding.help(format!("command H{number}, if offsets have the numbers of their tools")))
+}
+
+/// Reports a tool that cuts without a length offset where others of the program have one, if the machine file gives none of
+/// their lengths.
+fn without_offset(
+    cut: &CutConditions,
+    all: &[CutConditions],
+    limits: &ProcessLimits,
+    machine: &Machine,
+) -> Option<Diagnostic> {
+    // Where the job has the offset, another finding says so.
+    let is_specified = limits.tool_process(cut.tool).and_then(|tool| tool.offset).is_some();
+    let is_off = matches!(cut.compensation, LengthCompensation::Off | LengthCompensation::Plus(0));
+    let has_offset = |other: &&CutConditions| {
+        matches!(other.compensation, LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0)
+            && machine.length_of(other.tool).is_none()
+            && other.tool != cut.tool
+    };
+    let other = all
+        .iter()
+        .find(has_offset)
+        .filter(|_| is_off && !is_specified && machine.length_of(cut.tool).is_none())?;
+    let message = format!(
+        "{} cuts without a length offset, and {} with one",
+        tool_name(cut.tool),
+        tool_name(other.tool)
+    );
+    Some(Diagnostic::new(&LENGTH_OFFSET, message).help(
+        "command G43 with the tool's H before the cut, or give the lengths of the tools in the machine file",
+    ))
 }
 
 /// Rounds to a thousandth; −0 becomes 0.

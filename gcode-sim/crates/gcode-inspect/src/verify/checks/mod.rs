@@ -4,6 +4,7 @@ mod clearance;
 mod common_shift;
 mod cut_outside;
 pub(super) mod cutting;
+mod cycle_in_air;
 mod depth;
 mod diameter;
 mod explained_by_rows;
@@ -71,6 +72,7 @@ pub(super) const ALL: &[Check] = &[
     row_short::check,     // row-short
     row_missing::check,   // row-missing
     air::check,           // hole-in-air
+    cycle_in_air::check,  // cycle-in-air
     through::check,       // hole-through
     tool_short::check,    // tool-short
     stopped::check,       // hole-missing

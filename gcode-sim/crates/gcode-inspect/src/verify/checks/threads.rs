@@ -2,7 +2,7 @@
 //! give the pitch, and the spindle the hand.
 use super::features::{Judgement, ShapeGap};
 use super::*;
-use crate::findings::{FEATURE_DEPTH, TAP_DRILL, TAP_HAND, TAP_PITCH};
+use crate::findings::{FEATURE_DEPTH, HOLE_ROUNDNESS, TAP_DRILL, TAP_HAND, TAP_PITCH};
 use crate::holes::Helix;
 use crate::machine::PointShape;
 use crate::verify::hole_cuts::{Cut, assign};
@@ -55,6 +55,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         let faults = [
             turns.iter().find_map(|cut| pitch(id, feature, cut)),
             turns.iter().find_map(|cut| hand(id, feature, cut)),
+            turns.iter().find_map(|cut| tapered(id, cut, width)),
         ];
         let is_even = faults.iter().all(Option::is_none);
         findings.extend(faults.into_iter().flatten());
@@ -275,6 +276,19 @@ fn milled_pitch(id: &str, nominal: f64, cut: &Cut<'_>, helix: &Helix) -> Option<
     );
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help(format!("command a turn of {nominal} mm, or correct the pitch")))
+}
+
+/// Reports a milled thread whose turns are not as wide as its last one, or not in its place.
+fn tapered(id: &str, cut: &Cut<'_>, limit: f64) -> Option<Diagnostic> {
+    let wander = cut.thread?.wander;
+    let message = format!(
+        "hole {id}: {} mills turns that are up to {wander:.3} mm off the circle of the last one, limit {limit}",
+        cut.name()
+    );
+    let finding = Diagnostic::new(&HOLE_ROUNDNESS, message).with_backtrace(cut.pass.backtrace.clone());
+    exceeds(wander, limit).then(|| {
+        finding.help("mill all turns of a thread on one circle: check I and J, and the ends of the arcs")
+    })
 }
 
 /// Reports passes along a thread that cut beside each other.

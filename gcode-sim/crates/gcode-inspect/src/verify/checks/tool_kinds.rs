@@ -6,6 +6,13 @@ use crate::holes::PassCut;
 use crate::machine::{PointShape, Tool, ToolKind};
 use crate::verify::hole_cuts::Cut;
 
+/// Largest share of its diameter that a reamer takes off, and the bounds of that amount, mm: more than reamers are made for.
+const MAX_REAMING_SHARE: f64 = 0.1;
+const MAX_REAMING: [f64; 2] = [0.5, 1.0];
+
+/// Largest share of its diameter that a boring bar takes off: the bar itself goes into the hole before it.
+const MAX_BORING_SHARE: f64 = 1.0 / 3.0;
+
 /// Returns true for a tool that only widens or threads a hole.
 pub(super) fn needs_hole(kind: Option<ToolKind>) -> bool {
     matches!(kind, Some(ToolKind::Reamer | ToolKind::BoringBar | ToolKind::Tap))
@@ -42,7 +49,8 @@ pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool) {
                     None => gaps.push(ShapeGap::Undrilled(cut.pass.tool)),
                 }
             } else if cut.kind.is_some_and(|kind| kind != ToolKind::Tap) {
-                findings.extend(in_solid(judged, cut, &cuts[..index], others));
+                let finding = too_narrow(judged, cut, &cuts[..index], others);
+                findings.extend(finding.or_else(|| in_solid(judged, cut, &cuts[..index], others)));
             }
             findings.extend(torn(judged, cut));
         }
@@ -72,6 +80,53 @@ fn sideways(id: &str, cut: &Cut<'_>) -> Option<Diagnostic> {
         .then(|| finding.help("use an end mill, or correct the kind of the tool in the machine file"))
 }
 
+/// Returns the largest amount that a reamer or a boring bar takes off the diameter, mm; `None` for other tools.
+fn allowance(kind: ToolKind, own: f64) -> Option<f64> {
+    match kind {
+        ToolKind::Reamer => Some((MAX_REAMING_SHARE * own).clamp(MAX_REAMING[0], MAX_REAMING[1])),
+        ToolKind::BoringBar => Some(MAX_BORING_SHARE * own),
+        _ => None,
+    }
+}
+
+/// Reports a reamer or a boring bar that widens a hole by more than its edges can cut.
+fn too_narrow(
+    judged: &Judgement<'_>,
+    cut: &Cut<'_>,
+    before: &[Cut<'_>],
+    others: &[Cut<'_>],
+) -> Option<Diagnostic> {
+    let (kind, own) = cut.kind.zip(cut.pass.diameter)?;
+    let limit = allowance(kind, own)?;
+    let mut widest = 0.0f64;
+    for other in before.iter().chain(others).filter(|other| !other.is_thread()) {
+        // A cone is as wide as the tool only above its point.
+        let is_cone = matches!(other.kind, Some(ToolKind::SpotDrill | ToolKind::Countersink));
+        if !is_cone && is_as_deep(judged, cut, other) {
+            widest = widest.max(other.pass.diameter?);
+        }
+    }
+    // Where nothing is as deep, its depth is the fault.
+    if widest == 0.0 || !exceeds(own - widest, limit) {
+        return None;
+    }
+    let (id, name, kind) = (judged.id, cut.name(), kind.name());
+    let message = format!(
+        "hole {id}: {name} is a {kind} and takes {:.3} mm off the diameter, where the hole is Φ{widest}: limit {limit:.3}",
+        own - widest
+    );
+    let finding = Diagnostic::new(&TOOL_KIND, message).with_backtrace(cut.pass.backtrace.clone());
+    Some(finding.help("drill or bore the hole nearly to its diameter before it"))
+}
+
+/// Returns true if another cut is as deep as that of a reamer or a boring bar, or ends by no more than its point above it.
+fn is_as_deep(judged: &Judgement<'_>, cut: &Cut<'_>, other: &Cut<'_>) -> bool {
+    let point = other.pass.diameter.map_or(0.0, |own| other.point.length(own).unwrap_or(0.0));
+    let reached = other.tip + point + judged.comparison.tolerances.depth;
+    let depth = if judged.nominal.through { cut.tip.min(judged.nominal.depth) } else { cut.tip };
+    !exceeds(depth, reached)
+}
+
 /// Reports a reamer or a boring bar that goes deeper than the hole before it is as wide as its end: a reamer than its full
 /// diameter, a bar than half its own, because its edge cuts the cone of the drill at the wall.
 fn in_solid(
@@ -87,7 +142,14 @@ fn in_solid(
         let wide_enough = |end: f64| Some(drill.tip - drill.point.length(end)?);
         end.and_then(wide_enough).map_or(full, |depth| depth.max(full))
     };
-    let drilled = before.iter().filter(|other| !needs_hole(other.kind)).map(depth).fold(0.0, f64::max);
+    // A narrower pilot leaves it metal to cut.
+    let is_wide = |other: &&Cut<'_>| {
+        let (own, limit) = (cut.pass.diameter, cut.kind.and_then(|kind| allowance(kind, cut.pass.diameter?)));
+        let missing = own.zip(other.pass.diameter).map(|(own, other)| own - other);
+        missing.zip(limit).is_none_or(|(missing, limit)| !exceeds(missing, limit))
+    };
+    let makes_hole = before.iter().filter(|other| !other.is_thread()).filter(is_wide);
+    let drilled = makes_hole.map(depth).fold(0.0, f64::max);
     let slack = judged.comparison.tolerances.depth;
     let is_open =
         judged.nominal.through && (!others.is_empty() || !exceeds(judged.nominal.depth - drilled, slack));

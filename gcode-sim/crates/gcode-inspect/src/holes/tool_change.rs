@@ -1,0 +1,103 @@
+//! Rapids behind a tool change: most machines retract the tool for it, and the program doesn't say so.
+use nalgebra::{Point3, Vector3};
+
+use super::HoleExtractor;
+use super::metal::PointInMetal;
+use super::rapid_paths::UnsearchedMotions;
+use super::rapids::format_point;
+use super::swept_tool::ring;
+use crate::findings::{RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
+use crate::machine::TOUCH_DEPTH;
+use gcode_lang::diag::{Diagnostic, FindingKind};
+use gcode_lang::motion::{Event, Position};
+
+/// Least radius at which metal round a tool is looked for, mm, and its distance from the tool.
+const MIN_RADIUS: f64 = 0.5;
+const WALL_DISTANCE: f64 = 0.5;
+
+/// Number of points round a tool.
+const RING_POINTS: u32 = 8;
+
+/// Rapids that are free only if the tool change has retracted the tool.
+#[derive(Debug, Default)]
+pub(super) struct ChangeRetract {
+    /// No rapid has moved the tool along its axis since the last tool change.
+    is_open: bool,
+    /// The rapid that is checked leads from the place of a tool change.
+    is_checked: bool,
+    pub rapids: UnsearchedMotions,
+}
+
+impl ChangeRetract {
+    /// Applies a feed, which cuts where the program has left the tool, or a motion from or to an unknown position.
+    pub(super) fn end(&mut self) {
+        self.is_open = false;
+    }
+
+    /// Returns true while a rapid from the place of a tool change is checked.
+    pub(super) fn is_checked(&self) -> bool {
+        self.is_checked
+    }
+}
+
+impl HoleExtractor<'_> {
+    /// Applies a tool change: in a hole, or between walls, the tool can't be changed.
+    pub(super) fn begin_change(&mut self, event: &Event<'_>) {
+        let is_known = self.positions.is_known(self.machine);
+        self.change_retract.is_open = is_known && self.has_left_start;
+        let Some(axis) = self.tool_direction().filter(|_| is_known && self.metal.is_known()) else { return };
+        let tip = self.pose.tip;
+        let radius = self.body_radius().max(MIN_RADIUS) + WALL_DISTANCE;
+        let up = axis.into_inner() * self.metal.removed.height_of_metal(&tip, &axis);
+        let ring = ring(&axis, &Vector3::zeros(), radius, RING_POINTS).into_iter().map(|offset| tip + offset);
+        let walls = ring.chain([tip]).filter_map(|p| self.metal.uncut(&[p, p + up]));
+        let Some(wall) = walls.reduce(PointInMetal::deeper) else { return };
+        let (depth, level) = (wall.depth, self.metal.level_at(&wall.point));
+        self.findings.add(&TOOL_LEFT_IN_HOLE, &event.backtrace(), 1, |kind| {
+            let point = format_point(&tip);
+            let message = format!(
+                "the tool is changed beside metal {depth:.3} mm below {level}, with its tip at {point}"
+            );
+            Diagnostic::new(kind, message).help("retract above the surface before the tool change")
+        });
+    }
+
+    /// Checks a rapid on all its paths. Behind a tool change it is free if the change retracts the tool and the rapid ends
+    /// outside the metal.
+    pub(super) fn check_rapid_motion(
+        &mut self,
+        event: &Event<'_>,
+        travel: (&Position, &Position),
+        start: Option<Point3<f64>>,
+        before: &Point3<f64>,
+    ) {
+        let counted = self.change_retract.rapids.number();
+        let way = self.pose.tip - before;
+        let along = self.tool_direction().map_or(0.0, |axis| way.dot(&axis));
+        // Down along the tool it is part of the way from any retract.
+        let is_down = way.norm() <= -along + TOUCH_DEPTH;
+        self.change_retract.is_checked = self.change_retract.is_open && !is_down;
+        self.check_rapid_paths(event, travel, start);
+        self.change_retract.is_checked = false;
+        if !self.change_retract.is_open || along.abs() <= TOUCH_DEPTH {
+            return;
+        }
+        self.change_retract.is_open = false;
+        if counted < self.change_retract.rapids.number() {
+            self.check_known_end(event, &self.pose.tip.clone());
+        }
+    }
+
+    /// Adds the finding on a rapid that cuts; behind a tool change the rapid is counted.
+    pub(super) fn add_rapid_into_part(
+        &mut self,
+        event: &Event<'_>,
+        make: impl FnOnce(&'static FindingKind) -> Diagnostic,
+    ) {
+        if self.change_retract.is_checked {
+            self.change_retract.rapids.count(|| event.backtrace());
+        } else {
+            self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, make);
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Feeds while an axis rotates: they may remove the nominal holes and the stated pockets.
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::HoleExtractor;
+use super::near_metal::Judged;
+use super::strip::Line;
+use crate::machine::{AxisMotion, Pose};
+
+/// Largest deviation of a curved path from its chords, mm.
+const CHORD_TOLERANCE: f64 = 0.005;
+
+/// Deviation of the chords that show whether a path is near the metal, mm.
+const COARSE_TOLERANCE: f64 = 5.0;
+
+/// Largest number of chords of a feed that is followed.
+const MAX_CHORDS: usize = 5000;
+
+impl HoleExtractor<'_> {
+    /// Removes what a feed cuts while an axis rotates. Returns false, and removes nothing, if the feed removes what has to stay
+    /// or can't be followed.
+    pub(super) fn remove_while_turning(&mut self, travel: &AxisMotion<'_>, is_known: bool) -> bool {
+        let is_followed = is_known
+            && self.surface.is_some()
+            && self.has_left_start
+            && self.metal.holes.is_some()
+            && self.tool_radius().is_some();
+        if !is_followed {
+            return false;
+        }
+        let Some(coarse) = self.turning_chords(travel, COARSE_TOLERANCE) else { return false };
+        let reach = self.body_radius() + COARSE_TOLERANCE;
+        let is_near = |(chord, axis): &(Line, Unit<Vector3<f64>>)| {
+            let [from, to] = chord.map(|tip| tip - axis.into_inner() * COARSE_TOLERANCE);
+            self.metal.is_touched(&from, &to, axis, reach)
+        };
+        if !coarse.iter().any(is_near) {
+            return true;
+        }
+        let Some(chords) = self.turning_chords(travel, CHORD_TOLERANCE) else { return false };
+        if !chords.iter().all(|(chord, axis)| self.is_turning_allowed(chord, axis)) {
+            self.is_feed_unsearched.take();
+            return false;
+        }
+        // The search for one of them may have been given up.
+        if self.is_feed_unsearched.take() {
+            return false;
+        }
+        for (chord, axis) in &chords {
+            self.remove(chord, axis);
+        }
+        true
+    }
+
+    /// Returns the chords of a path on the part, each with the tool's direction at its middle, and their ends with the direction
+    /// there; `None` if it is unknown or the chords are too many.
+    fn turning_chords(
+        &self,
+        travel: &AxisMotion<'_>,
+        tolerance: f64,
+    ) -> Option<Vec<(Line, Unit<Vector3<f64>>)>> {
+        let mut poses: Vec<Pose> = Vec::new();
+        self.machine.for_each_pose(travel, &self.setup, tolerance, |pose| {
+            if poses.len() <= MAX_CHORDS {
+                poses.push(pose);
+            }
+        });
+        if MAX_CHORDS < poses.len() {
+            return None;
+        }
+        let stand = |pose: &Pose| Some(([pose.tip, pose.tip], pose.axis?));
+        let chord = |pair: &[Pose]| {
+            let axis = pair[0].axis?.into_inner() + pair[1].axis?.into_inner();
+            Some(([pair[0].tip, pair[1].tip], Unit::try_new(axis, 0.1)?))
+        };
+        poses.windows(2).flat_map(|pair| [chord(pair), stand(&pair[1])]).collect()
+    }
+
+    /// Returns true if the tool removes nothing that has to stay on a chord.
+    fn is_turning_allowed(&self, chord: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> bool {
+        let has_gouge = self.metal.is_touched(&chord[0], &chord[1], axis, self.body_radius())
+            && self.gouge(chord, axis, u32::MAX).is_some();
+        let is_touching = || {
+            let mut parts = self.tool_body.iter().filter(|part| !part.is_cutter);
+            parts.any(|part| self.contact_in_feed(part, axis, chord, Judged::Uncut(None)).is_some())
+        };
+        !has_gouge && !is_touching()
+    }
+}
