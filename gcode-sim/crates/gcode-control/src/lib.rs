@@ -73,6 +73,7 @@ pub mod static_eval;
 
 mod planner;
 
+mod askew_tapping;
 mod block_codes;
 mod calls;
 mod circle_pocket;
@@ -85,6 +86,7 @@ mod moves;
 mod one_shot_codes;
 mod plane_codes;
 mod plane_moves;
+mod pocket;
 mod probing;
 mod tip_control;
 mod tool_axis;

@@ -339,7 +339,7 @@ impl Planner<'_> {
     }
 
     /// Emits an arc of the programmed path on the machine, with its mirror image and scaling.
-    fn push_programmed_arc(
+    pub(super) fn push_programmed_arc(
         &self,
         plan: &mut BlockPlan,
         endpoint: &Endpoint,

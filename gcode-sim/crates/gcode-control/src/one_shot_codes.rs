@@ -74,9 +74,11 @@ impl Planner<'_> {
                 | OneShot::CirclePocket(_)
                 | OneShot::BoltHoles(_)
                 | OneShot::Engraving
+                | OneShot::Pocket
+                | OneShot::AskewTapping { .. }
         );
         if is_on_path && plan.state.controls_tip() {
-            return Err(self.not_simulated("G31 or G60 in tool centre point control"));
+            return Err(self.not_simulated("G31, G60 or a pattern in tool centre point control"));
         }
         let cycle = plan.state.modal.cycle.is_some();
         match one {
@@ -126,6 +128,8 @@ impl Planner<'_> {
             OneShot::Engraving => self.plan_engraving(plan),
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
+            OneShot::Pocket => self.plan_pocket(plan),
+            OneShot::AskewTapping { is_left_handed } => self.plan_askew_tapping(is_left_handed, plan),
             OneShot::MachineCoordinateSystem => self.plan_machine_move(plan),
             OneShot::ToolAxis { keeps_tip } => self.plan_tool_axis(keeps_tip, plan),
             OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),

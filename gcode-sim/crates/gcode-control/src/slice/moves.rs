@@ -94,6 +94,8 @@ impl Slice {
                 | OneShot::CornerArc
                 | OneShot::Engraving
                 | OneShot::CirclePocket(_)
+                | OneShot::Pocket
+                | OneShot::AskewTapping { .. }
                 | OneShot::BoltHoles(_),
             ) => {
                 let all: Marks = self.machine.axes.iter().copied().collect();

@@ -327,11 +327,23 @@ pub(super) const SET_COORDINATE_SYSTEM: CodeFacts = CodeFacts {
 };
 pub(super) const CORNER_ARC: CodeFacts =
     CodeFacts { lookahead: CornerArc, coordinates: NotScaled, ..ONE_SHOT };
-/// G12, G13, G70 and G71 of a Haas.
+/// G12, G13 and G70 to G72 of a Haas.
 pub(super) const PATTERN: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     words: CodeWords { own: Letters::of(b"L"), ..CodeWords::NONE },
     coordinates: NotScaled,
+    ..ONE_SHOT
+};
+/// G174 and G184 of a Haas.
+pub(super) const ASKEW_TAPPING: CodeFacts =
+    CodeFacts { axis_words: PositionInAbsolute, lookahead: Refused, coordinates: NotScaled, ..ONE_SHOT };
+/// G150 of a Haas.
+pub(super) const POCKET: CodeFacts = CodeFacts {
+    axis_words: PositionInAbsolute,
+    words: CodeWords { without_effect: Letters::of(b"IJKQ"), ..CodeWords::NONE },
+    lookahead: Suspends,
+    coordinates: NotScaled,
+    unsimulated: Unsimulated::Code(Letters::of(b"IJKPQR")),
     ..ONE_SHOT
 };
 /// G54.2 and G54.4.

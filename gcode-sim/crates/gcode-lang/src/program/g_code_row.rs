@@ -177,8 +177,15 @@ pub enum OneShot {
     CirclePocket(Motion),
     /// G47 of a Haas.
     Engraving,
-    /// G70 and G71 of a Haas.
+    /// G70, G71 and G72 of a Haas.
     BoltHoles(HolePattern),
+    /// G150 of a Haas: its outline is the program P.
+    Pocket,
+    /// G174 and G184 of a Haas.
+    AskewTapping {
+        /// G174: the spindle turns counterclockwise on its way in.
+        is_left_handed: bool,
+    },
 }
 
 /// Arrangement of a pattern's holes.
@@ -188,6 +195,8 @@ pub enum HolePattern {
     Circle,
     /// Spaced by a specified angle.
     Arc,
+    /// Evenly spaced on a straight line.
+    Line,
 }
 
 /// Row of the table.

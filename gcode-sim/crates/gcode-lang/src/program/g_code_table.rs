@@ -43,6 +43,10 @@ const fn fanuc_cycle(of: &'static Cycle) -> GCodeRow {
     GCodeRow { dialects: Dialect::FANUC, ..cycle(of) }
 }
 
+const fn haas_cycle(of: &'static Cycle) -> GCodeRow {
+    GCodeRow { dialects: Dialect::HAAS, ..cycle(of) }
+}
+
 /// Rows of all codes that the user declares; their code is that of no table.
 pub(super) const DECLARED: GCodeRow = declared(facts::DECLARED);
 pub(super) const DECLARED_WAIT: GCodeRow = declared(facts::DECLARED_WAIT);
@@ -128,8 +132,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     row(500, Effect::Scaling(Scaling::Off), "scaling cancel").with(facts::SCALING_OFF),
     fanuc(501, Effect::Mirror(Mirror::Off), "programmable mirror image cancel"),
     fanuc(502, Effect::NoEffect, "polygon turning cancel").with(facts::WITHOUT_EFFECT),
-    fanuc(510, Effect::Scaling(Scaling::On), "scaling").with(facts::SCALING),
-    haas(510, Effect::NotSimulated, "scaling"),
+    row(510, Effect::Scaling(Scaling::On), "scaling").with(facts::SCALING),
     fanuc(511, Effect::Mirror(Mirror::On), "programmable mirror image").with(facts::MIRROR),
     fanuc(512, Effect::NotSimulated, "polygon turning"),
     row(520, Effect::OneShot(OneShot::SetLocalCoordinateSystem), "local coordinate system setting").with(facts::SET_COORDINATE_SYSTEM),
@@ -162,13 +165,13 @@ pub(super) const CODES: &[GCodeRow] = &[
     row(690, Effect::Rotation(Rotation::Off), "coordinate system rotation cancel"),
     haas(700, Effect::OneShot(OneShot::BoltHoles(HolePattern::Circle)), "bolt hole circle").with(facts::PATTERN),
     haas(710, Effect::OneShot(OneShot::BoltHoles(HolePattern::Arc)), "bolt hole arc").with(facts::PATTERN),
-    haas(720, Effect::NotSimulated, "bolt holes along an angle"),
+    haas(720, Effect::OneShot(OneShot::BoltHoles(HolePattern::Line)), "bolt holes along an angle").with(facts::PATTERN),
     fanuc(721, Effect::NotSimulated, "figure copying: rotary copy"),
     fanuc(722, Effect::NotSimulated, "figure copying: linear copy"),
     cycle(&cycles::HIGH_SPEED_PECK_DRILLING),
     cycle(&cycles::LEFT_HANDED_TAPPING),
     cycle(&cycles::FINE_BORING),
-    haas(770, Effect::NotSimulated, "back boring cycle"),
+    haas_cycle(&cycles::BACK_BORING_OF_HAAS),
     row(800, Effect::Cycle(None), "canned cycle cancel"),
     fanuc(804, Effect::NoEffect, "electronic gear box: synchronisation cancel").with(facts::WITHOUT_EFFECT),
     cycle(&cycles::DRILLING),
@@ -182,9 +185,8 @@ pub(super) const CODES: &[GCodeRow] = &[
     cycle(&cycles::BORING_FEED_RETRACT),
     cycle(&cycles::BORING_SPINDLE_STOP),
     fanuc_cycle(&cycles::BACK_BORING),
-    haas(870, Effect::NotSimulated, "boring cycle, manual retract"),
-    fanuc_cycle(&cycles::BORING_MANUAL_RETRACT),
-    haas(880, Effect::NotSimulated, "boring cycle, dwell, manual retract"),
+    haas_cycle(&cycles::BORING_STOP_OF_HAAS),
+    cycle(&cycles::BORING_MANUAL_RETRACT),
     cycle(&cycles::BORING_DWELL),
     row(900, Effect::Distance(Distance::Absolute), "absolute programming"),
     row(910, Effect::Distance(Distance::Incremental), "incremental programming"),
@@ -225,7 +227,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     haas(1410, Effect::NotSimulated, "3D+ cutter compensation"),
     haas(1430, Effect::NotSimulated, "5-axis tool length compensation +"),
     fanuc(1500, Effect::NoEffect, "normal direction control cancel mode").with(facts::WITHOUT_EFFECT),
-    haas(1500, Effect::NotSimulated, "general purpose pocket milling"),
+    haas(1500, Effect::OneShot(OneShot::Pocket), "general purpose pocket milling").with(facts::POCKET),
     fanuc(1510, Effect::NotSimulated, "normal direction control left"),
     fanuc(1520, Effect::NotSimulated, "normal direction control right"),
     haas(1540, Effect::AdditionalWork, "additional work coordinate system").with(facts::WORK),
@@ -233,8 +235,8 @@ pub(super) const CODES: &[GCodeRow] = &[
     fanuc(1600, Effect::NoEffect, "in-feed control cancel").with(facts::WITHOUT_EFFECT),
     fanuc(1610, Effect::NotSimulated, "in-feed control"),
     haas(1670, Effect::NotSimulated, "modify setting"),
-    haas(1740, Effect::NotSimulated, "counterclockwise non-vertical rigid tapping"),
-    haas(1840, Effect::NotSimulated, "clockwise non-vertical rigid tapping"),
+    haas(1740, Effect::OneShot(OneShot::AskewTapping { is_left_handed: true }), "counterclockwise non-vertical rigid tapping").with(facts::ASKEW_TAPPING),
+    haas(1840, Effect::OneShot(OneShot::AskewTapping { is_left_handed: false }), "clockwise non-vertical rigid tapping").with(facts::ASKEW_TAPPING),
     haas(1870, Effect::Smoothness, "smoothness level setting").with(facts::SMOOTHNESS),
     haas(2340, Effect::Length(Length::TipOfHaas), "tool centre point control"),
     haas(2530, Effect::OneShot(OneShot::ToolAxis { keeps_tip: false }), "orient spindle normal to feature coordinate system").with(facts::TOOL_AXIS),
