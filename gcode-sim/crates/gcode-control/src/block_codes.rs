@@ -82,6 +82,7 @@ impl Planner<'_> {
         let mut uses = AxisWordUses::default();
         let mut is_cycle_active = state.modal.cycle.is_some();
         for row in self.words.g_codes() {
+            self.check_code_in_virtual_plane(row)?;
             if let Effect::Motion(motion) = row.effect {
                 state.set_motion_mode(motion);
                 is_cycle_active = false;

@@ -19,12 +19,10 @@ impl Planner<'_> {
         let clockwise = motion == Motion::Clockwise;
         let code = if clockwise { "G12" } else { "G13" };
         let modal = &plan.state.modal;
-        let is_allowed =
-            modal.plane == Plane::Xy && modal.cycle.is_none() && modal.cutter == CutterSide::Off;
+        let is_allowed = modal.plane == Plane::Xy && modal.cycle.is_none() && modal.cutter == CutterSide::Off;
         if !is_allowed || self.words.has_any(b"XY") {
-            return Err(self.not_simulated(format!(
-                "{code} with X, Y, another plane, compensation or a canned cycle"
-            )));
+            return Err(self
+                .not_simulated(format!("{code} with X, Y, another plane, compensation or a canned cycle")));
         }
         let radii = self.radii(code, plan)?;
         let plane = self.locate(self.data.plane_axes(Plane::Xy))?;

@@ -96,7 +96,7 @@ impl Planner<'_> {
             plan.state.unknown = from.unknown;
             return Ok(());
         }
-        let first = self.data.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
+        let first = self.data.active_plane(&plan.state).map_or(0, |(first, _)| first);
         let other = self.data.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default();
         let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
         let start_state = State { machine_position: from.machine_position, ..*plan.state };
@@ -197,7 +197,7 @@ impl Planner<'_> {
     ) -> ExecResult<Vec<Position>> {
         let mut holes = vec![first];
         let is_incremental = state.modal.distance == Distance::Incremental;
-        let plane = self.data.plane_axes(state.modal.plane);
+        let plane = self.data.active_plane(state);
         let polar_plane = plane.ok().filter(|_| state.modal.polar == Polar::On && is_incremental);
         let angle_step = match polar_plane {
             Some(plane) => self.angle(self.data.axis_letter(plane.1))?.unwrap_or(0.0),

@@ -55,6 +55,8 @@ mod words;
 mod data;
 
 mod coordinates;
+mod virtual_plane;
+
 mod cycle_expansion;
 mod lookahead;
 mod quantities;
@@ -91,6 +93,7 @@ mod probing;
 mod tip_control;
 mod tool_axis;
 mod transform_codes;
+mod virtual_plane_codes;
 
 mod executor;
 

@@ -79,6 +79,9 @@ impl Planner<'_> {
             }
             return Ok(());
         }
+        if plan.state.virtual_plane.is_some() && self.names_axis() {
+            self.check_motion_in_virtual_plane(&plan.state)?;
+        }
         let motion = plan.state.modal.motion;
         let is_arc = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
         let names_axis = self.names_axis();
@@ -174,6 +177,9 @@ impl Planner<'_> {
         for axis in
             self.data.settings.rollover_axes().filter(|axis| self.words.has(self.data.axis_letter(*axis)))
         {
+            if state.is_virtual(axis) {
+                continue;
+            }
             endpoint.machine[axis] = rolled_machine[axis];
         }
         if !state.transform.is_identity() {
@@ -274,7 +280,7 @@ impl Planner<'_> {
     /// Plans an arc to an end point.
     pub(super) fn plan_arc(&self, plan: &mut BlockPlan, endpoint: &Endpoint) -> ExecResult<()> {
         let state = &plan.state;
-        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        let plane = self.locate(self.data.active_plane(state))?;
         let (first, second, stray) = match state.modal.plane {
             Plane::Xy => (b'I', b'J', b'K'),
             Plane::Zx => (b'K', b'I', b'J'),

@@ -34,6 +34,7 @@ impl Planner<'_> {
             AxisWordUse::Scale => self.plan_scaling(plan),
             AxisWordUse::Rotate => self.plan_rotation(plan),
             AxisWordUse::Tilt => self.plan_tilt(plan),
+            AxisWordUse::PolarInterpolation { is_on } => self.plan_polar_interpolation(is_on, plan),
             AxisWordUse::Mirror { is_on } => self.plan_mirror(is_on, plan),
         }
     }
@@ -132,6 +133,8 @@ impl Planner<'_> {
             OneShot::AskewTapping { is_left_handed } => self.plan_askew_tapping(is_left_handed, plan),
             OneShot::MachineCoordinateSystem => self.plan_machine_move(plan),
             OneShot::ToolAxis { keeps_tip } => self.plan_tool_axis(keeps_tip, plan),
+            OneShot::Cylinder => self.plan_cylinder(plan),
+            OneShot::WrappedAxis => self.plan_wrapped_axis(plan),
             OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),
             OneShot::CornerArc => Err(self.not_simulated("G39 without cutter compensation")),
         }

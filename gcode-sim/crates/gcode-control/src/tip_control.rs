@@ -31,10 +31,13 @@ impl State {
         matches!(self.modal.length, Length::TipByAngles | Length::TipByVector | Length::TipOfHaas)
     }
 
-    /// Returns true if X, Y and Z depend on the angles of the rotary axes.
+    /// Returns true if X, Y and Z depend on the angles of the rotary axes, or an angle on lengths.
     #[inline]
     pub(super) fn is_turned(&self) -> bool {
-        self.controls_tip() || self.alignment().is_some() || self.modal.dynamic == DynamicOffset::On
+        self.controls_tip()
+            || self.alignment().is_some()
+            || self.modal.dynamic == DynamicOffset::On
+            || self.virtual_plane.is_some()
     }
 }
 

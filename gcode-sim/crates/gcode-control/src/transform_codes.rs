@@ -20,7 +20,7 @@ impl Planner<'_> {
             return self.plan_rotation_in_space(plan);
         }
         let state = &mut plan.state;
-        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        let plane = self.locate(self.data.active_plane(state))?;
         let first = self.axis_dimension(plane.0, state)?.unwrap_or(state.programmed_position[plane.0]);
         let second = self.axis_dimension(plane.1, state)?.unwrap_or(state.programmed_position[plane.1]);
         let angle = self.angle(b'R')?;
@@ -51,7 +51,8 @@ impl Planner<'_> {
             true => 1000.0,
             false => 100_000.0,
         };
-        let common = if is_haas { self.scale_factor_of_haas()? } else { self.words.count(b'P')?.map(f64::from) };
+        let common =
+            if is_haas { self.scale_factor_of_haas()? } else { self.words.count(b'P')?.map(f64::from) };
         let mut scale = Scale { centre: plan.state.programmed_position, factor: Position([1.0; MAX_AXES]) };
         for (axis, letter) in self.data.settings.axes.iter() {
             match self.axis_dimension(axis, &plan.state)? {

@@ -346,6 +346,16 @@ pub(super) const POCKET: CodeFacts = CodeFacts {
     unsimulated: Unsimulated::Code(Letters::of(b"IJKPQR")),
     ..ONE_SHOT
 };
+/// G12.1 and G13.1.
+pub(super) const VIRTUAL_PLANE: CodeFacts = CodeFacts { lookahead: Refused, timing: Waits, ..MODAL };
+/// G07.1, and G107 of a Haas.
+pub(super) const CYLINDER: CodeFacts = CodeFacts {
+    axis_words: Tables,
+    lookahead: Refused,
+    coordinates: NotTransformed,
+    timing: Waits,
+    ..ONE_SHOT
+};
 /// G54.2 and G54.4.
 pub(super) const UNSTATED_OFFSET: CodeFacts = CodeFacts { coordinates: NotTransformed, ..MODAL };
 /// G47 of a Haas.

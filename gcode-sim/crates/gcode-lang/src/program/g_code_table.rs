@@ -4,7 +4,7 @@ use super::cycles::{self, Cycle};
 use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot};
 use super::modes::{
     CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, Motion, Plane, Polar,
-    ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
+    PolarInterpolation, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
 };
 use crate::control::Dialect;
 
@@ -68,16 +68,16 @@ pub(super) const CODES: &[GCodeRow] = &[
     fanuc(50, Effect::NoEffect, "AI contour control, high-speed cycle machining").with(facts::CONTOUR_CONTROL),
     fanuc(51, Effect::NoEffect, "AI contour control, smooth interpolation").with(facts::SMOOTH_CONTOUR_CONTROL),
     fanuc(54, Effect::NoEffect, "HRV3, 4 on/off").with(facts::WITHOUT_EFFECT),
-    fanuc(71, Effect::NotSimulated, "cylindrical interpolation"),
+    fanuc(71, Effect::OneShot(OneShot::Cylinder), "cylindrical interpolation").with(facts::CYLINDER),
     fanuc(80, Effect::LookAhead, "advanced preview control").with(facts::LOOK_AHEAD),
     row(90, Effect::NoEffect, "exact stop").with(facts::EXACT_STOP),
     row(100, Effect::OneShot(OneShot::DataInput), "programmable data input").with(facts::DATA_INPUT),
     fanuc(106, Effect::NotSimulated, "tool retract and recover"),
     fanuc(110, Effect::OneShot(OneShot::DataInputEnd), "programmable data input mode cancel").with(facts::DATA_INPUT_END),
     haas(120, Effect::OneShot(OneShot::CirclePocket(Motion::Clockwise)), "circular pocket milling, clockwise").with(facts::PATTERN),
-    fanuc(121, Effect::NotSimulated, "polar coordinate interpolation mode"),
+    fanuc(121, Effect::PolarInterpolation(PolarInterpolation::On), "polar coordinate interpolation mode").with(facts::VIRTUAL_PLANE),
     haas(130, Effect::OneShot(OneShot::CirclePocket(Motion::Counterclockwise)), "circular pocket milling, counterclockwise").with(facts::PATTERN),
-    fanuc(131, Effect::NoEffect, "polar coordinate interpolation cancel mode").with(facts::WITHOUT_EFFECT),
+    fanuc(131, Effect::PolarInterpolation(PolarInterpolation::Off), "polar coordinate interpolation cancel mode").with(facts::VIRTUAL_PLANE),
     fanuc(150, Effect::Polar(Polar::Off), "polar coordinates command cancel"),
     fanuc(160, Effect::Polar(Polar::On), "polar coordinates command"),
     row(170, Effect::Plane(Plane::Xy), "XpYp plane selection"),
@@ -202,7 +202,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     haas(1000, Effect::Mirror(Mirror::Off), "mirror image cancel"),
     haas(1010, Effect::Mirror(Mirror::On), "mirror image").with(facts::MIRROR),
     haas(1030, Effect::NoEffect, "limit of block lookahead").with(facts::WITHOUT_EFFECT),
-    haas(1070, Effect::NotSimulated, "cylindrical mapping"),
+    haas(1070, Effect::OneShot(OneShot::WrappedAxis), "cylindrical mapping").with(facts::CYLINDER),
     haas(1100, Effect::NumberedWork(1), "additional work coordinate system 1").with(facts::WORK),
     haas(1110, Effect::NumberedWork(2), "additional work coordinate system 2").with(facts::WORK),
     haas(1120, Effect::NumberedWork(3), "additional work coordinate system 3").with(facts::WORK),
