@@ -319,6 +319,7 @@ impl Executor {
                 DialectSyntax::LowerCase => Note::LowerCase,
                 DialectSyntax::UnclosedComment => Note::UnclosedComment,
                 DialectSyntax::NestedComment => Note::NestedComment,
+                DialectSyntax::ProgramZero => Note::ProgramZero,
                 _ => continue,
             };
             self.log.note(note, self.flow.block);

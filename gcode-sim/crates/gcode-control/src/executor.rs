@@ -96,13 +96,22 @@ impl Executor {
                 TableWrite::Tool { register, number, value } => {
                     data.offsets.tools[register as usize][number as usize] = value;
                 }
+                TableWrite::Fixture { index, axis, value } => {
+                    data.offsets.fixtures[index].get_or_insert_default()[axis] = value;
+                }
+                TableWrite::SettingError { index, item, value } => {
+                    data.offsets.setting_errors[index].get_or_insert_default()[item] = value;
+                }
                 TableWrite::Parameter { id, value, has_no_effect } => {
                     data.set_parameter(id, value, has_no_effect)
                 }
                 TableWrite::Variable { number, value } => match variables.classify(number) {
                     VariableClass::Common(index) => variables.set(index, value),
                     // An output.
-                    VariableClass::System => panel.store(number, value.number()),
+                    VariableClass::System => match number {
+                        1100..=1131 => panel.set_output(number - 1100, value.number() != 0.0),
+                        _ => panel.store(number, value.number()),
+                    },
                     VariableClass::Local(_) | VariableClass::Vacant => {}
                 },
             }

@@ -86,6 +86,7 @@ mod lookahead_request;
 mod move_repeats;
 mod moves;
 mod one_shot_codes;
+mod part_error;
 mod plane_codes;
 mod plane_moves;
 mod pocket;

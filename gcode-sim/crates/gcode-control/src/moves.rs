@@ -64,6 +64,9 @@ impl Planner<'_> {
         if plan.state.controls_tip() {
             self.check_tip_control(&plan.state)?;
         }
+        if plan.state.part_error.is_some() && self.names_axis() {
+            self.check_part_error(&plan.state)?;
+        }
         if let Some(cycle) = plan.state.modal.cycle {
             // A block drills if it names an axis or R.
             if self.words.has(b'R') || self.names_axis() {

@@ -1,6 +1,7 @@
 //! State that one block can change besides variables and offset tables: modes, positions, codes with a number, the transform
 //! of coordinates. It is small enough to copy, so that a block that raises an alarm leaves no trace.
 use super::axis_word_use::AxisWordUse;
+use super::part_error::PartError;
 use super::transform::Transform;
 use super::virtual_plane::VirtualPlane;
 use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirection, UnknownAxes};
@@ -46,6 +47,8 @@ pub struct State {
     /// Radius of cutter compensation, read by D or G41, G42; negative if it swaps sides.
     pub(super) cutter_radius: f64,
     pub(super) transform: Transform,
+    /// Values of G54.2 or G54.4, where they are stated.
+    pub(super) part_error: Option<PartError>,
     /// Polar or cylindrical interpolation: machine positions are those of its plane.
     pub(super) virtual_plane: Option<VirtualPlane>,
     /// Modal data of the canned cycle.

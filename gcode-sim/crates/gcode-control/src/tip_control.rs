@@ -38,6 +38,7 @@ impl State {
             || self.alignment().is_some()
             || self.modal.dynamic == DynamicOffset::On
             || self.virtual_plane.is_some()
+            || self.part_error.is_some()
     }
 }
 
@@ -64,7 +65,10 @@ impl ControlData {
         }
         match state.modal.dynamic {
             DynamicOffset::On => self.dynamic_alignment(state, at),
-            DynamicOffset::Off | DynamicOffset::Fixture | DynamicOffset::SettingError => None,
+            DynamicOffset::Fixture | DynamicOffset::SettingError => {
+                self.error_alignment(state, state.part_error.as_ref()?, at)
+            }
+            DynamicOffset::Off => None,
         }
     }
 
