@@ -47,5 +47,6 @@ mod round_trip;
 mod schemas;
 mod sheet;
 mod start_state;
+mod virtual_planes;
 mod watch;
 mod words;

@@ -10,6 +10,7 @@ pub(super) enum AxisWordUse {
     Mirror { is_on: bool },
     Rotate,
     Tilt,
+    PolarInterpolation { is_on: bool },
 }
 
 impl AxisWordUse {
@@ -30,7 +31,7 @@ impl AxisWordUse {
                     | OneShot::CheckReference
                     | OneShot::FromReference
             ),
-            Self::AdditionalWork | Self::Scale | Self::Tilt => false,
+            Self::AdditionalWork | Self::Scale | Self::Tilt | Self::PolarInterpolation { .. } => false,
         }
     }
 }

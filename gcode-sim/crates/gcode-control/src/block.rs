@@ -267,7 +267,7 @@ impl Planner<'_> {
         if self.data.settings.stroke_limits.is_none() {
             return Ok(());
         }
-        let mut result = plan.events.iter().try_for_each(|(kind, _)| self.data.check_move(kind));
+        let mut result = self.data.check_moves_of(&plan.state, plan.events.iter().map(|(kind, _)| kind));
         if let Some(cycle_plan) = &plan.cycle_plan {
             cycle_plan.expand(self.data, &mut |kind, _| {
                 if result.is_ok() {
@@ -276,7 +276,7 @@ impl Planner<'_> {
             });
         }
         if plan.uses_lookahead {
-            plan.lookahead.check_stroke(self.data)?;
+            plan.lookahead.check_stroke(self.data, &plan.state)?;
         }
         self.locate(result)
     }
@@ -319,6 +319,7 @@ impl Executor {
                 DialectSyntax::LowerCase => Note::LowerCase,
                 DialectSyntax::UnclosedComment => Note::UnclosedComment,
                 DialectSyntax::NestedComment => Note::NestedComment,
+                DialectSyntax::ProgramZero => Note::ProgramZero,
                 _ => continue,
             };
             self.log.note(note, self.flow.block);

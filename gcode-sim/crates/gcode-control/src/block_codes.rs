@@ -23,6 +23,9 @@ use gcode_lang::units::Rpm;
 const FIRST_OUTPUT: u32 = 12_000;
 const LAST_OUTPUT: u32 = 255;
 
+/// Variables of the outputs of a Haas before the NGC, which M59 and M69 name as they are.
+const OLDER_OUTPUTS: std::ops::RangeInclusive<u32> = 1100..=1155;
+
 /// Variable of input 0 of a Haas.
 const FIRST_INPUT: u32 = 11_000;
 
@@ -55,11 +58,13 @@ impl Planner<'_> {
         self.check_modes(&before, state)?;
         let length_before = state.length_offset;
         self.update_coordinates(&before, state);
-        let starts_dynamic = state.modal.dynamic != before.dynamic
+        let is_selected =
+            || self.words.has_non_motion_code(|effect| matches!(effect, Effect::UnstatedOffset(_)));
+        let starts_dynamic = (state.modal.dynamic != before.dynamic || is_selected())
             && match state.modal.dynamic {
                 DynamicOffset::Off => false,
                 DynamicOffset::On => self.data.settings.kinematics.is_none(),
-                DynamicOffset::Fixture | DynamicOffset::SettingError => true,
+                DynamicOffset::Fixture | DynamicOffset::SettingError => state.part_error.is_none(),
             };
         if state.modal.cycle.is_some() && !is_cycle_active {
             self.begin_cycle(state)?;
@@ -82,6 +87,7 @@ impl Planner<'_> {
         let mut uses = AxisWordUses::default();
         let mut is_cycle_active = state.modal.cycle.is_some();
         for row in self.words.g_codes() {
+            self.check_code_in_virtual_plane(row)?;
             if let Effect::Motion(motion) = row.effect {
                 state.set_motion_mode(motion);
                 is_cycle_active = false;
@@ -99,10 +105,7 @@ impl Planner<'_> {
             }
             uses.add(state.modal.apply(row.effect));
             if let Effect::UnstatedOffset(offset) = row.effect {
-                state.modal.dynamic = match self.words.count(b'P')?.unwrap_or(1) {
-                    0 => DynamicOffset::Off,
-                    _ => offset,
-                };
+                self.select_part_error(offset, state)?;
             }
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
@@ -185,7 +188,8 @@ impl Planner<'_> {
         if modal.polar == Polar::On && before.polar == Polar::Off {
             state.polar = PolarPoint::default();
         }
-        if modal.work != before.work || modal.dynamic != before.dynamic {
+        let error_before = self.registers.state.part_error;
+        if modal.work != before.work || modal.dynamic != before.dynamic || state.part_error != error_before {
             state.end_before_transform = None;
             self.realign(state);
             self.data.recompute_position(state);
@@ -349,11 +353,17 @@ impl Planner<'_> {
                 MCodeEffect::Output { is_on } => {
                     plan.push_event(EventKind::Auxiliary { code });
                     let output = self.words.count(b'P')?;
-                    let known = output.filter(|output| *output <= LAST_OUTPUT);
-                    let number =
-                        known.ok_or_else(|| self.not_simulated(format!("M{code:02} without P0 to P255")))?;
+                    let number = match output {
+                        Some(output @ 0..=LAST_OUTPUT) => FIRST_OUTPUT + output,
+                        // The variables of older controls.
+                        Some(output) if OLDER_OUTPUTS.contains(&output) => output,
+                        _ => {
+                            let what = format!("M{code:02} without P0 to P255 or P1100 to P1155");
+                            return Err(self.not_simulated(what));
+                        }
+                    };
                     let value = Value::Number(f64::from(u8::from(is_on)));
-                    plan.writes.push(TableWrite::Variable { number: FIRST_OUTPUT + number, value });
+                    plan.writes.push(TableWrite::Variable { number, value });
                 }
                 MCodeEffect::JumpByInput => self.plan_jump_by_input(plan)?,
                 MCodeEffect::OperatorInput => self.plan_operator_input(plan)?,

@@ -1,5 +1,6 @@
 //! G12 and G13 of a Haas: circular pockets.
 use super::functions::ExecResult;
+use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use gcode_lang::alarm::Alarm;
@@ -18,16 +19,13 @@ impl Planner<'_> {
         let clockwise = motion == Motion::Clockwise;
         let code = if clockwise { "G12" } else { "G13" };
         let modal = &plan.state.modal;
-        let is_allowed = modal.plane == Plane::Xy
-            && modal.cycle.is_none()
-            && modal.cutter == CutterSide::Off
-            && plan.state.transform.is_identity();
+        let is_allowed = modal.plane == Plane::Xy && modal.cycle.is_none() && modal.cutter == CutterSide::Off;
         if !is_allowed || self.words.has_any(b"XY") {
-            return Err(self.not_simulated(format!(
-                "{code} with X, Y, another plane, compensation, rotation or a canned cycle"
-            )));
+            return Err(self
+                .not_simulated(format!("{code} with X, Y, another plane, compensation or a canned cycle")));
         }
         let radii = self.radii(code, plan)?;
+        let plane = self.locate(self.data.plane_axes(Plane::Xy))?;
         let passes = self.words.count(b'L')?.unwrap_or(1);
         if f64::from(passes) * radii.len() as f64 > MAX_CIRCLES {
             return Err(self.not_simulated(format!("{code} with this number of circles")));
@@ -37,19 +35,22 @@ impl Planner<'_> {
             self.locate(self.push_feed(plan, &endpoint.machine))?;
             plan.state.programmed_position = endpoint.programmed;
             for radius in &radii {
-                let start = plan.state.machine_position;
-                let (centre, half_circle_centre) =
-                    ((start[0], start[1]), (start[0] + radius / 2.0, start[1]));
+                let start = plan.state.programmed_position;
+                let centre = (start[plane.0], start[plane.1]);
+                let half_circle_centre = (centre.0 + radius / 2.0, centre.1);
                 let mut edge = start;
-                edge[0] = self.data.remove_residue(centre.0 + radius);
+                edge[plane.0] = self.data.remove_residue(centre.0 + radius);
                 let arcs = [
                     (edge, half_circle_centre, radius / 2.0, 180.0),
                     (edge, centre, *radius, 360.0),
                     (start, half_circle_centre, radius / 2.0, 180.0),
                 ];
-                for (to, centre, radius, degrees) in arcs {
+                for (programmed, centre, radius, degrees) in arcs {
                     let sweep = Deg(if clockwise { -degrees } else { degrees });
-                    self.push_arc(plan, to, PlanarArc { plane: (0, 1), centre, sweep }, radius)?;
+                    let machine = self.data.to_machine(&plan.state, &programmed);
+                    let end = Endpoint { programmed, machine, ..endpoint };
+                    self.push_programmed_arc(plan, &end, PlanarArc { plane, centre, sweep }, radius)?;
+                    plan.state.programmed_position = programmed;
                 }
             }
         }

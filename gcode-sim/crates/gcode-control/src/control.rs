@@ -287,7 +287,12 @@ impl Control {
     /// Returns the coordinate of an axis in the active work coordinate system, as #5001….
     pub fn work_position(&self, axis: AxisIndex) -> f64 {
         let state = &self.executor.registers.state;
-        self.executor.registers.data.to_program_unit(state, Some(axis), state.programmed_position[axis])
+        let data = &self.executor.registers.data;
+        let at = match state.virtual_plane {
+            Some(_) => data.move_end(state)[axis],
+            None => state.programmed_position[axis],
+        };
+        data.to_program_unit(state, Some(axis), at)
     }
 
     /// Returns true if G20 is in force: lengths are programmed in inches.

@@ -51,7 +51,7 @@ impl ControlData {
             false => self.on_machine(work[axis], zero[axis], state.length_offset[axis]),
         };
         let mut machine = Position(std::array::from_fn(to_machine));
-        for axis in self.settings.rollover_axes() {
+        for axis in self.settings.rollover_axes().filter(|axis| !state.is_virtual(*axis)) {
             // The shorter rotation from the current position; full rotations stay.
             let from = state.machine_position[axis] - self.zero(state, axis) - state.length_offset[axis];
             machine[axis] = self
@@ -85,7 +85,8 @@ impl ControlData {
         let mut work = Position::default();
         for axis in 0..self.settings.axes.len() {
             let at = state.machine_position[axis] - self.zero(state, axis) - state.length_offset[axis];
-            work[axis] = self.wrap_angle(axis, self.without_residue(state, at));
+            let at = self.without_residue(state, at);
+            work[axis] = if state.is_virtual(axis) { at } else { self.wrap_angle(axis, at) };
         }
         if let Some(aligned) = self.aligned(state, &state.machine_position) {
             let position = aligned.axes.map(|axis| state.machine_position[axis]);
@@ -109,6 +110,11 @@ impl ControlData {
 
     /// Returns the end of the last move as programmed.
     pub(super) fn move_end(&self, state: &State) -> Position {
+        if let Some(plane) = &state.virtual_plane {
+            let mut end = state.programmed_position;
+            end[plane.rotary] = remove_noise(end[plane.rotary] / plane.scale());
+            return end;
+        }
         let Some(EndBeforeTransform { mut programmed, work }) = state.end_before_transform else {
             return state.programmed_position;
         };
@@ -139,7 +145,7 @@ impl ControlData {
     }
 
     /// Returns a coordinate without rounding errors, to 1e-9 where kinematics computes it.
-    fn without_residue(&self, state: &State, value: f64) -> f64 {
+    pub(super) fn without_residue(&self, state: &State, value: f64) -> f64 {
         if state.is_turned() { remove_noise(value) } else { self.remove_residue(value) }
     }
 
@@ -213,6 +219,26 @@ impl ControlData {
             return Err(Alarm::OffsetNumber { number: system as i64 - 6 });
         }
         Ok(())
+    }
+
+    /// Checks the stroke of events in a virtual plane, as the machine executes them.
+    pub(super) fn check_moves_of<'e>(
+        &self,
+        state: &State,
+        mut events: impl Iterator<Item = &'e EventKind>,
+    ) -> Result<(), Alarm> {
+        let Some(mut plane) = state.virtual_plane else {
+            return events.try_for_each(|kind| self.check_move(kind));
+        };
+        let mut result = Ok(());
+        for kind in events {
+            plane.emit(kind, 0.0, self.settings.chord_tolerance, &mut |kind, _| {
+                if result.is_ok() {
+                    result = self.check_move(&kind);
+                }
+            });
+        }
+        result
     }
 
     /// Stored stroke check 1 (parameters 1320 and 1321): raises the alarm of a move beyond the limits, if there are any.

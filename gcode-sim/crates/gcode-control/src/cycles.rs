@@ -1,4 +1,4 @@
-//! Checks a block of a canned cycle: its axis, words, repeats and end; G70 and G71 of a Haas repeat it round a centre.
+//! Checks a block of a canned cycle: its axis, words, repeats and end; G70 to G72 of a Haas repeat it in a pattern.
 use super::cycle_expansion::{CyclePlan, has_too_many_pecks};
 use super::functions::ExecResult;
 use super::linear_motion::Endpoint;
@@ -15,12 +15,13 @@ use gcode_lang::program::g_codes::HolePattern;
 use gcode_lang::program::modes::{Distance, Plane, Polar, ReturnTo};
 use gcode_lang::units::Deg;
 
-/// Holes round the current position.
+/// Holes round the current position, or on a straight line from it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoltHolePattern {
     count: u32,
-    /// mm.
+    /// From the current position to the first hole, mm, and how much more to each next one.
     radius: f64,
+    radius_step: f64,
     /// Degrees from X+ to the first hole, and from hole to hole.
     start: f64,
     angle_step: f64,
@@ -95,7 +96,7 @@ impl Planner<'_> {
             plan.state.unknown = from.unknown;
             return Ok(());
         }
-        let first = self.data.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
+        let first = self.data.active_plane(&plan.state).map_or(0, |(first, _)| first);
         let other = self.data.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default();
         let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
         let start_state = State { machine_position: from.machine_position, ..*plan.state };
@@ -196,7 +197,7 @@ impl Planner<'_> {
     ) -> ExecResult<Vec<Position>> {
         let mut holes = vec![first];
         let is_incremental = state.modal.distance == Distance::Incremental;
-        let plane = self.data.plane_axes(state.modal.plane);
+        let plane = self.data.active_plane(state);
         let polar_plane = plane.ok().filter(|_| state.modal.polar == Polar::On && is_incremental);
         let angle_step = match polar_plane {
             Some(plane) => self.angle(self.data.axis_letter(plane.1))?.unwrap_or(0.0),
@@ -223,9 +224,10 @@ impl Planner<'_> {
     fn pattern_holes(&self, centre: &Position, pattern: BoltHolePattern) -> Vec<Position> {
         let hole = |index: u32| {
             let angle = Deg(pattern.start + f64::from(index) * pattern.angle_step);
+            let radius = pattern.radius + f64::from(index) * pattern.radius_step;
             let mut hole = *centre;
-            hole[0] = self.data.remove_residue(centre[0] + pattern.radius * angle.cos());
-            hole[1] = self.data.remove_residue(centre[1] + pattern.radius * angle.sin());
+            hole[0] = self.data.remove_residue(centre[0] + radius * angle.cos());
+            hole[1] = self.data.remove_residue(centre[1] + radius * angle.sin());
             hole
         };
         (0..pattern.count).map(hole).collect()
@@ -294,12 +296,14 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Plans the cycle in force at holes round a centre, which itself isn't drilled (Haas Mill Operator's Manual, G70 and
-    /// G71). I is the radius, J the angle of the first hole, L their number, K the angle between holes on an arc.
+    /// Plans the cycle in force at holes round a centre, which itself isn't drilled, or on a line (Haas Mill Operator's Manual,
+    /// G70 to G72). I is the radius or the distance between holes, J the angle of the first hole or of the line, L their
+    /// number, K the angle between holes on an arc.
     pub(super) fn plan_bolt_holes(&self, holes: HolePattern, plan: &mut BlockPlan) -> ExecResult<()> {
         let code = match holes {
             HolePattern::Circle => "G70",
             HolePattern::Arc => "G71",
+            HolePattern::Line => "G72",
         };
         let Some(cycle) = plan.state.modal.cycle else {
             return Err(Alarm::NoCycle { code }.located_at(self.block));
@@ -309,18 +313,29 @@ impl Planner<'_> {
         }
         let missing = |letter| Alarm::MissingWord { code, letter }.located_at(self.block);
         let radius = self.dimension(b'I', &plan.state)?.ok_or_else(|| missing('I'))?;
-        let start = self.angle(b'J')?.ok_or_else(|| missing('J'))?;
+        let start = match (self.angle(b'J')?, holes) {
+            (Some(angle), _) => angle,
+            // A line along X+.
+            (None, HolePattern::Line) => 0.0,
+            (None, _) => return Err(missing('J')),
+        };
         let count = self.words.count(b'L')?.filter(|count| *count > 0).ok_or_else(|| missing('L'))?;
         let angle_step = match holes {
             // A negative radius means clockwise.
             HolePattern::Circle => (360.0 / f64::from(count)).copysign(radius),
             HolePattern::Arc => self.angle(b'K')?.ok_or_else(|| missing('K'))?,
+            HolePattern::Line => 0.0,
         };
-        if radius == 0.0 || radius < 0.0 && holes == HolePattern::Arc {
+        if radius == 0.0 || radius < 0.0 && holes != HolePattern::Circle {
             let function = format!("I of {code}");
             return Err(Alarm::OutOfRange { function, value: radius }.located_at(self.block));
         }
-        let pattern = BoltHolePattern { count, radius: radius.abs(), start, angle_step };
+        let (first, radius_step) = match holes {
+            HolePattern::Circle | HolePattern::Arc => (radius.abs(), 0.0),
+            HolePattern::Line if self.data.settings.undocumented.line_starts_here => (0.0, radius),
+            HolePattern::Line => (radius, radius),
+        };
+        let pattern = BoltHolePattern { count, radius: first, radius_step, start, angle_step };
         self.plan_cycle(plan, cycle, Some(pattern))
     }
 }

@@ -9,6 +9,12 @@ use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::Words;
 use gcode_lang::program::modes::WorkSystem;
 
+/// Number of fixture offsets of G54.2.
+pub(super) const FIXTURES: usize = 8;
+
+/// Number of setting errors of G54.4.
+pub(super) const SETTING_ERRORS: usize = 7;
+
 /// Settings, parameters and offset tables. They change between blocks only, by G10 and by system variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ControlData {
@@ -46,6 +52,10 @@ pub(super) struct Offsets {
     pub(super) work: Vec<Position>,
     /// Tool offset memory C by [`Register`]; row 0 is no offset.
     pub(super) tools: [Vec<f64>; 4],
+    /// Fixture offsets of G54.2, where something states them.
+    pub(super) fixtures: [Option<Position>; FIXTURES],
+    /// Shifts X Y Z and rotations about X Y Z of G54.4, where something states them.
+    pub(super) setting_errors: [Option<[f64; 6]>; SETTING_ERRORS],
 }
 
 /// Table of tool offset memory C: H or D, geometry or wear.
@@ -100,6 +110,8 @@ impl ControlData {
         let offsets = Offsets {
             work: vec![Position::default(); STANDARD_SYSTEMS + settings.work_systems],
             tools: std::array::from_fn(|_| vec![0.0; settings.tool_offsets + 1]),
+            fixtures: [None; FIXTURES],
+            setting_errors: [None; SETTING_ERRORS],
         };
         Self { settings, parameters: BTreeMap::new(), offsets, set_offsets: SystemAxes::default() }
     }

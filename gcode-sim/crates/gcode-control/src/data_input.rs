@@ -7,7 +7,7 @@ use super::planner::Planner;
 use super::variables::{Value, VariableClass};
 use super::words::WordNumber;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
-use gcode_lang::control::{OffsetMemory, ParameterError, ParameterId, Settings, is_without_effect};
+use gcode_lang::control::{Dialect, OffsetMemory, ParameterError, ParameterId, Settings, is_without_effect};
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{Distance, WorkSystem};
 
@@ -23,6 +23,9 @@ impl Planner<'_> {
             }
             2 | 20 => self.plan_work_offset(l, p.ok_or_else(missing_p("P is missing"))? as usize, plan),
             1 | 10..=13 => self.plan_tool_offset(l, p.ok_or_else(missing_p("P is missing"))?, plan),
+            21 | 23 if Dialect::FANUC.contains(&self.data.settings.codes) => {
+                self.plan_part_error(l, p.ok_or_else(missing_p("P is missing"))?, plan)
+            }
             50 | 52 => {
                 plan.state.is_in_parameter_input = true;
                 Ok(())
@@ -62,7 +65,7 @@ impl Planner<'_> {
     }
 
     /// Returns the new value of an offset: G91 adds to the old one.
-    fn table_value(&self, plan: &BlockPlan, old: f64, value: f64) -> ExecResult<f64> {
+    pub(super) fn table_value(&self, plan: &BlockPlan, old: f64, value: f64) -> ExecResult<f64> {
         let is_incremental = plan.state.modal.distance == Distance::Incremental;
         let value = self.data.remove_residue(if is_incremental { old + value } else { value });
         self.locate(self.data.check_offset_range(value))

@@ -74,7 +74,7 @@ impl Executor {
             self.take_lookahead(&mut plan.lookahead, sink);
         }
         for (kind, seconds) in &plan.events {
-            self.emit(kind, *seconds, sink);
+            self.emit_on_machine(kind, *seconds, sink);
         }
         // The first positioning of a cycle sends the M codes of its block.
         for (kind, seconds) in &plan.events_after_motion {
@@ -96,13 +96,22 @@ impl Executor {
                 TableWrite::Tool { register, number, value } => {
                     data.offsets.tools[register as usize][number as usize] = value;
                 }
+                TableWrite::Fixture { index, axis, value } => {
+                    data.offsets.fixtures[index].get_or_insert_default()[axis] = value;
+                }
+                TableWrite::SettingError { index, item, value } => {
+                    data.offsets.setting_errors[index].get_or_insert_default()[item] = value;
+                }
                 TableWrite::Parameter { id, value, has_no_effect } => {
                     data.set_parameter(id, value, has_no_effect)
                 }
                 TableWrite::Variable { number, value } => match variables.classify(number) {
                     VariableClass::Common(index) => variables.set(index, value),
                     // An output.
-                    VariableClass::System => panel.store(number, value.number()),
+                    VariableClass::System => match number {
+                        1100..=1131 => panel.set_output(number - 1100, value.number() != 0.0),
+                        _ => panel.store(number, value.number()),
+                    },
                     VariableClass::Local(_) | VariableClass::Vacant => {}
                 },
             }
@@ -128,13 +137,29 @@ impl Executor {
         let mut counter = EventCounter { log, block_effects };
         let mut cycle_seconds = 0.0;
         let (block, calls) = (flow.block, &flow.frame.calls);
-        state.stated_unknown = cycle_plan.expand(data, &mut |kind, seconds| {
+        let mut pass_on = |kind: EventKind, seconds: f64| {
             cycle_seconds += seconds;
             counter.count_event(&kind);
             sink.event(&Event { kind: &kind, seconds: Seconds(seconds), block, calls });
+        };
+        let mut virtual_plane = state.virtual_plane;
+        state.stated_unknown = cycle_plan.expand(data, &mut |kind, seconds| match &mut virtual_plane {
+            Some(plane) => plane.emit(&kind, seconds, data.settings.chord_tolerance, &mut pass_on),
+            None => pass_on(kind, seconds),
         });
+        state.virtual_plane = virtual_plane;
         // The time of a block is one sum.
         clock.motion_seconds += cycle_seconds;
+    }
+
+    /// Emits an event; that of a virtual plane as the events of the machine.
+    fn emit_on_machine<S: EventSink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
+        let Some(mut plane) = self.registers.state.virtual_plane else {
+            return self.emit(kind, seconds, sink);
+        };
+        let tolerance = self.registers.data.settings.chord_tolerance;
+        plane.emit(kind, seconds, tolerance, &mut |kind, seconds| self.emit(&kind, seconds, sink));
+        self.registers.state.virtual_plane = Some(plane);
     }
 
     #[inline(always)]
@@ -171,11 +196,20 @@ impl Executor {
     /// Replaces the lookahead by that of a plan, and emits the events that no longer wait.
     fn take_lookahead<S: EventSink>(&mut self, lookahead: &mut Lookahead, sink: &mut S) {
         std::mem::swap(&mut self.registers.lookahead, lookahead);
+        let tolerance = self.registers.data.settings.chord_tolerance;
+        let mut virtual_plane = self.registers.state.virtual_plane;
         for (kind, seconds, backtrace) in self.registers.lookahead.take_ready() {
-            self.count_event(&kind, seconds);
-            let (seconds, block) = (Seconds(seconds), backtrace.block);
-            sink.event(&Event { kind: &kind, seconds, block, calls: &backtrace.calls });
+            let mut pass_on = |kind: EventKind, seconds: f64| {
+                self.count_event(&kind, seconds);
+                let (seconds, block) = (Seconds(seconds), backtrace.block);
+                sink.event(&Event { kind: &kind, seconds, block, calls: &backtrace.calls });
+            };
+            match &mut virtual_plane {
+                Some(plane) => plane.emit(&kind, seconds, tolerance, &mut pass_on),
+                None => pass_on(kind, seconds),
+            }
         }
+        self.registers.state.virtual_plane = virtual_plane;
         if self.registers.lookahead.is_idle() {
             self.registers.lookahead = Lookahead::default();
         }
@@ -192,7 +226,7 @@ impl Executor {
         }
         let mut lookahead = self.registers.lookahead.clone();
         advance(&mut lookahead, &self.registers.data, self.flow.block)?;
-        lookahead.check_stroke(&self.registers.data)?;
+        lookahead.check_stroke(&self.registers.data, &self.registers.state)?;
         self.take_lookahead(&mut lookahead, sink);
         Ok(())
     }

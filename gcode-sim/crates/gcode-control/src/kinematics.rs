@@ -99,12 +99,12 @@ impl Frame {
         self.rotation.transposed().apply(sum(point, scaled(self.shift, -1.0)))
     }
 
-    fn inverse(&self) -> Self {
+    pub(super) fn inverse(&self) -> Self {
         let rotation = self.rotation.transposed();
         Self { rotation, shift: scaled(rotation.apply(self.shift), -1.0) }
     }
 
-    fn after(&self, first: &Self) -> Self {
+    pub(super) fn after(&self, first: &Self) -> Self {
         Self { rotation: self.rotation.after(&first.rotation), shift: self.apply(first.shift) }
     }
 
@@ -131,6 +131,11 @@ pub(super) struct Alignment {
 }
 
 impl Alignment {
+    /// Returns the frame that the table carries with its axes at `at`.
+    pub(super) fn of_table(kinematics: &Kinematics, at: &Position) -> Frame {
+        Frame::of_chain(&kinematics.table, at)
+    }
+
     /// Returns the alignment with the rotary axes at `at`; the work zeros count with those of the table at `zero` and those of
     /// the head at 0.
     ///

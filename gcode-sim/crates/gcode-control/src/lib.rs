@@ -55,6 +55,8 @@ mod words;
 mod data;
 
 mod coordinates;
+mod virtual_plane;
+
 mod cycle_expansion;
 mod lookahead;
 mod quantities;
@@ -73,6 +75,7 @@ pub mod static_eval;
 
 mod planner;
 
+mod askew_tapping;
 mod block_codes;
 mod calls;
 mod circle_pocket;
@@ -83,12 +86,15 @@ mod lookahead_request;
 mod move_repeats;
 mod moves;
 mod one_shot_codes;
+mod part_error;
 mod plane_codes;
 mod plane_moves;
+mod pocket;
 mod probing;
 mod tip_control;
 mod tool_axis;
 mod transform_codes;
+mod virtual_plane_codes;
 
 mod executor;
 

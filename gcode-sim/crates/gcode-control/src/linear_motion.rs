@@ -106,7 +106,7 @@ impl ControlData {
         let programmed = if basis.is_incremental {
             // Keeps the compiler from computing it in G90 too.
             cold_path();
-            self.remove_residue(state.programmed_position[axis] + value)
+            self.without_residue(state, state.programmed_position[axis] + value)
         } else {
             value
         };
@@ -174,7 +174,11 @@ impl ControlData {
         to: &Position,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let travel = self.squared_travel(0..self.settings.axes.len(), from, to);
+        let mut travel = SquaredTravel::default();
+        for axis in 0..self.settings.axes.len() {
+            let is_rotary = self.settings.axes.is_rotary(axis) && !state.is_virtual(axis);
+            travel.add(to[axis] - from[axis], is_rotary);
+        }
         self.travel_time(state, state.modal_words.f, travel, f_in_block)
     }
 

@@ -59,7 +59,7 @@ impl Planner<'_> {
         {
             return Err(self.not_simulated(format!("{code} in cutter compensation")));
         }
-        let programmed_plane = self.locate(self.data.plane_axes(plan.state.modal.plane))?;
+        let programmed_plane = self.locate(self.data.active_plane(&plan.state))?;
         let (plane, side) = self.compensation_plane(&plan.state)?;
         let distance = distance.map(|distance| distance * side);
         let is_restated = self.words.g_codes().any(|row| {
@@ -108,7 +108,7 @@ impl Planner<'_> {
 
     /// Returns the machine axes of the active plane, and −1 if it is seen there from behind.
     fn compensation_plane(&self, state: &State) -> ExecResult<((AxisIndex, AxisIndex), f64)> {
-        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        let plane = self.locate(self.data.active_plane(state))?;
         state.machine_plane(plane).ok_or_else(|| {
             self.not_simulated("cutter compensation or a corner word in a plane askew to the machine's axes")
         })
@@ -124,7 +124,7 @@ impl Planner<'_> {
         if state.modal_words.d == 0 {
             return Ok(None);
         }
-        let (mirrored, _) = state.transform.arc_effect(self.data.plane_axes(state.modal.plane)?);
+        let (mirrored, _) = state.transform.arc_effect(self.data.active_plane(state)?);
         Ok(Some(if mirrored { -side } else { side } * state.cutter_radius))
     }
 
@@ -137,7 +137,7 @@ impl Planner<'_> {
         };
         let first = self.dimension(letters.0, state)?.unwrap_or(0.0);
         let second = self.dimension(letters.1, state)?.unwrap_or(0.0);
-        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        let plane = self.locate(self.data.active_plane(state))?;
         if first == 0.0 && second == 0.0 {
             return Ok(None);
         }

@@ -64,6 +64,9 @@ impl Planner<'_> {
         if plan.state.controls_tip() {
             self.check_tip_control(&plan.state)?;
         }
+        if plan.state.part_error.is_some() && self.names_axis() {
+            self.check_part_error(&plan.state)?;
+        }
         if let Some(cycle) = plan.state.modal.cycle {
             // A block drills if it names an axis or R.
             if self.words.has(b'R') || self.names_axis() {
@@ -78,6 +81,9 @@ impl Planner<'_> {
                 self.data.recompute_position(&mut plan.state);
             }
             return Ok(());
+        }
+        if plan.state.virtual_plane.is_some() && self.names_axis() {
+            self.check_motion_in_virtual_plane(&plan.state)?;
         }
         let motion = plan.state.modal.motion;
         let is_arc = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
@@ -174,6 +180,9 @@ impl Planner<'_> {
         for axis in
             self.data.settings.rollover_axes().filter(|axis| self.words.has(self.data.axis_letter(*axis)))
         {
+            if state.is_virtual(axis) {
+                continue;
+            }
             endpoint.machine[axis] = rolled_machine[axis];
         }
         if !state.transform.is_identity() {
@@ -274,7 +283,7 @@ impl Planner<'_> {
     /// Plans an arc to an end point.
     pub(super) fn plan_arc(&self, plan: &mut BlockPlan, endpoint: &Endpoint) -> ExecResult<()> {
         let state = &plan.state;
-        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        let plane = self.locate(self.data.active_plane(state))?;
         let (first, second, stray) = match state.modal.plane {
             Plane::Xy => (b'I', b'J', b'K'),
             Plane::Zx => (b'K', b'I', b'J'),
@@ -339,7 +348,7 @@ impl Planner<'_> {
     }
 
     /// Emits an arc of the programmed path on the machine, with its mirror image and scaling.
-    fn push_programmed_arc(
+    pub(super) fn push_programmed_arc(
         &self,
         plan: &mut BlockPlan,
         endpoint: &Endpoint,

@@ -37,6 +37,8 @@ gcode_lang::finding_kinds! {
     NO_SIGNAL = "no-signal", Warning, "G31 goes to its end";
     OTHER_FOLDER = "other-folder", Warning, "a called program in a folder that a control does not search";
     PARAMETER_WITHOUT_EFFECT = "parameter-without-effect", Warning, "a written parameter has no effect here";
+    POCKET_CLEARING = "pocket-clearing", Warning, "the passes that clear a pocket are unknown";
+    PROGRAM_ZERO = "program-zero", Note, "a program with the number 0";
     RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41, G42 or G45 to G48 without D";
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
     UNCLOSED_COMMENT = "unclosed-comment", Note, "a comment without its closing bracket";
@@ -120,6 +122,10 @@ pub enum Note {
         /// Height × 1000, mm.
         height: u32,
     },
+    /// G150 of a Haas runs as one cut along its outline.
+    PocketClearing,
+    /// The program has the number 0, with which a control does not store it.
+    ProgramZero,
     /// M99 of the main program ends the run, where a control starts again.
     MainRepeats,
     /// A code × 10 depends on the kinematics of the machine, which nothing states.
@@ -181,6 +187,8 @@ impl Note {
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
             Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as 0: nothing states its value on the machine"), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
             Self::Engraving { characters, height } => (&ENGRAVED_TEXT, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),
+            Self::PocketClearing => (&POCKET_CLEARING, "not checked: pocket clearing: the run makes one cut along the outline of G150, at its full depth, and none of the passes before it".into(), "check the clearing passes on the control"),
+            Self::ProgramZero => (&PROGRAM_ZERO, "O0 is no program number: a control refuses it (PS0074) unless the operator gives another one when it is read".into(), "write O1 to O99999999"),
             Self::MainRepeats => (&MAIN_REPEATS, "M99 ends the main program: a control starts it again for ever, the run ends after the first pass".into(), "end it with M30, or state the passes with --cycles 1"),
             Self::NoKinematics(code @ (542 | 544)) => (&NO_KINEMATICS, format!("the offsets of {} are taken as 0: nothing states them, and where X, Y and Z are on the part is unknown", name(code)), "write the offset into a work offset, or end it with P0"),
             Self::NoKinematics(code) => (&NO_KINEMATICS, format!("{} without the rotary axes of the machine: X, Y and Z go on as if a table had turned the part, and where they and the rotary axes are on the machine is unknown", name(code)), "describe [[table]] or [[head.axis]], and [head], in the machine file"),

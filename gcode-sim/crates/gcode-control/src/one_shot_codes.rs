@@ -34,6 +34,7 @@ impl Planner<'_> {
             AxisWordUse::Scale => self.plan_scaling(plan),
             AxisWordUse::Rotate => self.plan_rotation(plan),
             AxisWordUse::Tilt => self.plan_tilt(plan),
+            AxisWordUse::PolarInterpolation { is_on } => self.plan_polar_interpolation(is_on, plan),
             AxisWordUse::Mirror { is_on } => self.plan_mirror(is_on, plan),
         }
     }
@@ -74,9 +75,11 @@ impl Planner<'_> {
                 | OneShot::CirclePocket(_)
                 | OneShot::BoltHoles(_)
                 | OneShot::Engraving
+                | OneShot::Pocket
+                | OneShot::AskewTapping { .. }
         );
         if is_on_path && plan.state.controls_tip() {
-            return Err(self.not_simulated("G31 or G60 in tool centre point control"));
+            return Err(self.not_simulated("G31, G60 or a pattern in tool centre point control"));
         }
         let cycle = plan.state.modal.cycle.is_some();
         match one {
@@ -126,8 +129,12 @@ impl Planner<'_> {
             OneShot::Engraving => self.plan_engraving(plan),
             OneShot::CirclePocket(direction) => self.plan_circle_pocket(direction, plan),
             OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, plan),
+            OneShot::Pocket => self.plan_pocket(plan),
+            OneShot::AskewTapping { is_left_handed } => self.plan_askew_tapping(is_left_handed, plan),
             OneShot::MachineCoordinateSystem => self.plan_machine_move(plan),
             OneShot::ToolAxis { keeps_tip } => self.plan_tool_axis(keeps_tip, plan),
+            OneShot::Cylinder => self.plan_cylinder(plan),
+            OneShot::WrappedAxis => self.plan_wrapped_axis(plan),
             OneShot::CornerArc if self.registers.lookahead.is_compensating => Ok(()),
             OneShot::CornerArc => Err(self.not_simulated("G39 without cutter compensation")),
         }

@@ -214,7 +214,7 @@ impl Registers {
             && !self.state.is_tapping_rigid
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
-            && !self.state.controls_tip()
+            && !self.state.is_turned()
             && self.state.end_before_transform.is_none()
             && self.lookahead.is_idle()
             && self.data.settings.code_calls.is_empty()

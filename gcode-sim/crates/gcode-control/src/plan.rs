@@ -62,6 +62,18 @@ pub(super) enum TableWrite {
         number: u32,
         value: f64,
     },
+    /// G10 L21: an axis of a fixture offset.
+    Fixture {
+        index: usize,
+        axis: usize,
+        value: f64,
+    },
+    /// G10 L23: a shift or a rotation of a setting error.
+    SettingError {
+        index: usize,
+        item: usize,
+        value: f64,
+    },
     /// G10 L52.
     Parameter {
         id: ParameterId,

@@ -142,7 +142,7 @@ impl Planner<'_> {
         endpoint: &mut Endpoint,
     ) -> ExecResult<()> {
         let polar_plane = match state.modal.polar {
-            Polar::On => self.data.plane_axes(state.modal.plane).ok(),
+            Polar::On => self.data.active_plane(state).ok(),
             Polar::Off => None,
         };
         for (axis, letter) in self.data.settings.axes.letters() {
@@ -150,8 +150,16 @@ impl Planner<'_> {
                 continue;
             }
             let Some((raw, span)) = self.words.get(letter) else { continue };
-            let value = locate(self.data.dimension_of(&raw, letter, &basis.measure), span)?;
-            (endpoint.programmed[axis], endpoint.machine[axis]) = match self.data.settings.rolls_over[axis] {
+            let value = match &state.virtual_plane {
+                // The rotary axis of a virtual plane is a length: a radius counts in the unit of X.
+                Some(plane) if plane.virtual_axis() == axis => {
+                    let letter = if plane.scale() == 1.0 { b'X' } else { letter };
+                    locate(self.data.dimension_of(&raw, letter, &basis.measure), span)? * plane.scale()
+                }
+                _ => locate(self.data.dimension_of(&raw, letter, &basis.measure), span)?,
+            };
+            let rolls_over = self.data.settings.rolls_over[axis] && !state.is_virtual(axis);
+            (endpoint.programmed[axis], endpoint.machine[axis]) = match rolls_over {
                 true => self.data.rollover_axis_end(axis, value, state, basis),
                 false => self.data.axis_end(axis, value, state, basis),
             };
@@ -164,7 +172,7 @@ impl Planner<'_> {
 
     /// G16: the plane's first axis is the radius, the second the angle.
     pub(super) fn resolve_polar(&self, state: &mut State, point: &mut Position) -> ExecResult<()> {
-        let Ok((first, second)) = self.data.plane_axes(state.modal.plane) else { return Ok(()) };
+        let Ok((first, second)) = self.data.active_plane(state) else { return Ok(()) };
         let letter = self.data.axis_letter(second);
         let (radius, angle) = (self.axis_dimension(first, state)?, self.angle(letter)?);
         if radius.is_none() && angle.is_none() {

@@ -1,13 +1,16 @@
 //! State that one block can change besides variables and offset tables: modes, positions, codes with a number, the transform
 //! of coordinates. It is small enough to copy, so that a block that raises an alarm leaves no trace.
 use super::axis_word_use::AxisWordUse;
+use super::part_error::PartError;
 use super::transform::Transform;
+use super::virtual_plane::VirtualPlane;
 use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::program::cycles::Cycle;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::{
     CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, ModalCall, ModalGroup,
-    Motion, Plane, Polar, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,
+    Motion, Plane, Polar, PolarInterpolation, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
+    WorkSystem,
 };
 
 /// Control between two blocks; lengths in mm even with G20.
@@ -44,6 +47,10 @@ pub struct State {
     /// Radius of cutter compensation, read by D or G41, G42; negative if it swaps sides.
     pub(super) cutter_radius: f64,
     pub(super) transform: Transform,
+    /// Values of G54.2 or G54.4, where they are stated.
+    pub(super) part_error: Option<PartError>,
+    /// Polar or cylindrical interpolation: machine positions are those of its plane.
+    pub(super) virtual_plane: Option<VirtualPlane>,
     /// Modal data of the canned cycle.
     pub cycle: CycleState,
     /// Modal words with a number.
@@ -207,6 +214,7 @@ pub struct Modal {
     pub(super) cutting: CuttingMode,
     pub(super) rotation: Rotation,
     pub(super) polar: Polar,
+    pub(super) polar_interpolation: PolarInterpolation,
     pub(super) mirror: Mirror,
     pub(super) dynamic: DynamicOffset,
 }
@@ -249,6 +257,10 @@ impl Modal {
                 self.mirror = mirror;
                 return Some(AxisWordUse::Mirror { is_on: mirror == Mirror::On });
             }
+            Effect::PolarInterpolation(mode) => {
+                self.polar_interpolation = mode;
+                return Some(AxisWordUse::PolarInterpolation { is_on: mode == PolarInterpolation::On });
+            }
             Effect::AdditionalWork => return Some(AxisWordUse::AdditionalWork),
             Effect::OneShot(one) => return Some(AxisWordUse::OneShot(one)),
             Effect::Motion(_)
@@ -288,10 +300,10 @@ impl Modal {
             ModalGroup::Cutting => self.cutting.code(),
             ModalGroup::Rotation => self.rotation.code(),
             ModalGroup::Polar => self.polar.code(),
-            // Normal direction control, in-feed control and polar interpolation are always off.
+            // Normal direction control and in-feed control are always off.
             ModalGroup::NormalDirection | ModalGroup::AlternateNormalDirection => 401,
             ModalGroup::InFeed => 1600,
-            ModalGroup::PolarInterpolation => 131,
+            ModalGroup::PolarInterpolation => self.polar_interpolation.code(),
             ModalGroup::Mirror => self.mirror.code(),
             ModalGroup::DynamicOffset => self.dynamic.code(),
         }

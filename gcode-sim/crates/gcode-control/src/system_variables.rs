@@ -89,12 +89,16 @@ const ROWS: &[VariableRow] = &[
     row(5181, 5200, Some(|r, n| r.position(n, |_, _| 0.0)), None),
     // Work offsets.
     row(5201, 5340, Some(|r, n| r.work_offset((n / 20) as usize, n % 20)), Some(|r, n, v| r.set_work_offset((n / 20) as usize, n % 20, v))),
+    // Fixture offsets of G54.2.
+    row(5521, 5680, Some(|r, n| r.position(n % 20, |r, axis| r.data.offsets.fixtures[(n / 20) as usize].map_or(0.0, |row| row[axis]))), Some(|r, n, v| r.set_fixture((n / 20) as usize, n % 20, v))),
     row(7001, 7960, Some(|r, n| r.work_offset((7 + n / 20) as usize, n % 20)), Some(|r, n, v| r.set_work_offset((7 + n / 20) as usize, n % 20, v))),
     row(10001, 10999, Some(|r, n| r.tool_offset(Register::HWear, n)), Some(|r, n, v| r.set_tool_offset(Register::HWear, n, v))),
     row(11001, 11999, Some(|r, n| r.tool_offset(Register::HGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::HGeometry, n, v))),
     row(12001, 12999, Some(|r, n| r.tool_offset(Register::DWear, n)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v))),
     row(13001, 13999, Some(|r, n| r.tool_offset(Register::DGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v))),
     row(14001, 20000, Some(|r, n| r.work_offset((7 + n / 20) as usize, n % 20)), Some(|r, n, v| r.set_work_offset((7 + n / 20) as usize, n % 20, v))),
+    // Setting errors of G54.4.
+    row(26010, 26079, Some(|r, n| r.setting_error(n)), Some(|r, n, v| r.set_setting_error(n, v))),
 ];
 
 /// Ranges that a control may have and the simulator lacks.
@@ -134,6 +138,7 @@ const HAAS: &[VariableRow] = &[
     row(2401, 2600, Some(|r, n| r.tool_offset(Register::DGeometry, n)), Some(|r, n, v| r.set_tool_offset(Register::DGeometry, n, v))),
     row(2601, 2800, Some(|r, n| r.tool_offset(Register::DWear, n)), Some(|r, n, v| r.set_tool_offset(Register::DWear, n, v))),
     stated!(1032, 1099),
+    stored!(1132, 1299),
     stored!(1601, 2000),
     stored!(3020, 3025),
     row(3026, 3026, Some(|r, _| Ok(f64::from(r.state.tool))), None),
@@ -157,9 +162,6 @@ const HAAS: &[VariableRow] = &[
     stored!(50_001, 59_999),
 ];
 
-/// Ranges that a Haas has and the simulator lacks; on a Fanuc they have another meaning or none.
-const HAAS_NOT_SIMULATED: &[(u32, u32, &str)] = &[(1132, 1299, "outputs and loads of a Haas")];
-
 /// Returns the alarm of a number in one of these ranges.
 fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
     let (.., what) = of.iter().find(|(from, to, _)| (*from..=*to).contains(&number))?;
@@ -173,9 +175,6 @@ fn find(number: u32, settings: &Settings) -> Result<&'static VariableRow, Alarm>
     if settings.offset_variables == OffsetVariables::Haas {
         if let Some(row) = among(HAAS) {
             return Ok(row);
-        }
-        if let Some(alarm) = not_simulated(number, HAAS_NOT_SIMULATED) {
-            return Err(alarm);
         }
         if matches!(number, 2500..=2899 | 3100..=3199 | 10_001..=13_999) {
             return Err(unknown);
@@ -407,6 +406,11 @@ impl Registers {
     /// Returns the tool centre in machine coordinates; a move that waits for the next one counts as executed, as if nothing
     /// followed.
     pub(super) fn tool_centre(&self, axis: AxisIndex) -> f64 {
+        if self.state.virtual_plane.is_some() {
+            let offset = &self.lookahead.offset;
+            let at = Position(std::array::from_fn(|axis| self.state.machine_position[axis] + offset[axis]));
+            return self.data.real_position(&self.state, &at)[axis];
+        }
         self.state.machine_position[axis] + self.lookahead.offset[axis]
     }
 }

@@ -31,10 +31,14 @@ impl State {
         matches!(self.modal.length, Length::TipByAngles | Length::TipByVector | Length::TipOfHaas)
     }
 
-    /// Returns true if X, Y and Z depend on the angles of the rotary axes.
+    /// Returns true if X, Y and Z depend on the angles of the rotary axes, or an angle on lengths.
     #[inline]
     pub(super) fn is_turned(&self) -> bool {
-        self.controls_tip() || self.alignment().is_some() || self.modal.dynamic == DynamicOffset::On
+        self.controls_tip()
+            || self.alignment().is_some()
+            || self.modal.dynamic == DynamicOffset::On
+            || self.virtual_plane.is_some()
+            || self.part_error.is_some()
     }
 }
 
@@ -61,7 +65,10 @@ impl ControlData {
         }
         match state.modal.dynamic {
             DynamicOffset::On => self.dynamic_alignment(state, at),
-            DynamicOffset::Off | DynamicOffset::Fixture | DynamicOffset::SettingError => None,
+            DynamicOffset::Fixture | DynamicOffset::SettingError => {
+                self.error_alignment(state, state.part_error.as_ref()?, at)
+            }
+            DynamicOffset::Off => None,
         }
     }
 

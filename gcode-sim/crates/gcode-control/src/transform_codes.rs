@@ -5,7 +5,9 @@ use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::{Modal, State};
 use super::transform::{PlaneRotation, Scale, Transform};
+use super::words::WordNumber;
 use gcode_lang::alarm::Alarm;
+use gcode_lang::control::Dialect;
 use gcode_lang::motion::{MAX_AXES, Position};
 use gcode_lang::program::code_facts::CoordinateUse;
 use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
@@ -18,7 +20,7 @@ impl Planner<'_> {
             return self.plan_rotation_in_space(plan);
         }
         let state = &mut plan.state;
-        let plane = self.locate(self.data.plane_axes(state.modal.plane))?;
+        let plane = self.locate(self.data.active_plane(state))?;
         let first = self.axis_dimension(plane.0, state)?.unwrap_or(state.programmed_position[plane.0]);
         let second = self.axis_dimension(plane.1, state)?.unwrap_or(state.programmed_position[plane.1]);
         let angle = self.angle(b'R')?;
@@ -41,9 +43,16 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// G51: by P, or by I J K for X Y Z, in 0.001 or 0.00001.
+    /// G51: by P, or by I J K for X Y Z, in 0.001 or 0.00001; on a Haas by P as written.
     pub(super) fn plan_scaling(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        let unit = if self.data.settings.has_coarse_scaling { 1000.0 } else { 100_000.0 };
+        let is_haas = self.data.settings.codes == Dialect::HaasNgc;
+        let unit = match self.data.settings.has_coarse_scaling {
+            _ if is_haas => 1.0,
+            true => 1000.0,
+            false => 100_000.0,
+        };
+        let common =
+            if is_haas { self.scale_factor_of_haas()? } else { self.words.count(b'P')?.map(f64::from) };
         let mut scale = Scale { centre: plan.state.programmed_position, factor: Position([1.0; MAX_AXES]) };
         for (axis, letter) in self.data.settings.axes.iter() {
             match self.axis_dimension(axis, &plan.state)? {
@@ -51,12 +60,12 @@ impl Planner<'_> {
                 None => plan.state.transform.unknown_centre |= plan.state.unknown.all() & 1 << axis,
             }
             let own = match letter {
+                'X' | 'Y' | 'Z' if is_haas => None,
                 'X' => self.factor(b'I')?,
                 'Y' => self.factor(b'J')?,
                 'Z' => self.factor(b'K')?,
                 _ => continue,
             };
-            let common = self.words.count(b'P')?.map(f64::from);
             let factor = own.or(common).unwrap_or(self.data.settings.scale_factor * unit);
             if factor == 0.0 || factor.abs() > 999_999_999.0 {
                 return Err(Alarm::ScaleRate { value: factor }.located_at(self.block));
@@ -66,6 +75,19 @@ impl Planner<'_> {
         plan.state.transform.scaling = Some(scale);
         self.data.apply_transform_change(&mut plan.state);
         Ok(())
+    }
+
+    /// Returns P of G51 of a Haas, a factor with a decimal point.
+    fn scale_factor_of_haas(&self) -> ExecResult<Option<f64>> {
+        match self.words.get(b'P') {
+            Some((WordNumber::Literal(number), span)) if number.places.is_none() => {
+                let what = "P of G51 without a decimal point (its unit is undocumented)".into();
+                Err(Alarm::NotSimulated { what }.located_at(span))
+            }
+            Some((WordNumber::Literal(number), _)) => Ok(Some(number.value())),
+            Some((WordNumber::Computed(factor), _)) => Ok(Some(factor)),
+            None => Ok(None),
+        }
     }
 
     /// G51.1 mirrors the named axes, G50.1 ends that; G50.1 alone ends it for all axes.

@@ -12,6 +12,7 @@ use self::path_move::{PathMove, PendingCorner, PendingCornerArc, PendingItem, Pe
 use crate::contour::{Blend, Point};
 use crate::data::ControlData;
 use crate::functions::{ExecResult, locate};
+use crate::state::State;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, Backtrace, EventKind, Position};
 use gcode_lang::source::Span;
@@ -94,7 +95,11 @@ impl Lookahead {
     }
 
     /// Checks the stroke of the moves that no longer wait, each with its own block.
-    pub(super) fn check_stroke(&self, data: &ControlData) -> ExecResult<()> {
+    pub(super) fn check_stroke(&self, data: &ControlData, state: &State) -> ExecResult<()> {
+        if state.virtual_plane.is_some() {
+            let block = self.ready.last().map_or(Span::default(), |(_, _, backtrace)| backtrace.block);
+            return locate(data.check_moves_of(state, self.ready.iter().map(|(kind, ..)| kind)), block);
+        }
         self.ready.iter().try_for_each(|(kind, _, backtrace)| locate(data.check_move(kind), backtrace.block))
     }
 

@@ -92,8 +92,12 @@ impl Slice {
                 OneShot::FromReference
                 | OneShot::ToolAxis { .. }
                 | OneShot::CornerArc
+                | OneShot::Cylinder
+                | OneShot::WrappedAxis
                 | OneShot::Engraving
                 | OneShot::CirclePocket(_)
+                | OneShot::Pocket
+                | OneShot::AskewTapping { .. }
                 | OneShot::BoltHoles(_),
             ) => {
                 let all: Marks = self.machine.axes.iter().copied().collect();
@@ -133,6 +137,7 @@ impl Slice {
             && self.open_axes(data, modal.work) == 0
             && data.set_offsets.axes(0) == 0
             && state.transform.is_identity()
+            && state.virtual_plane.is_none()
             && !state.is_in_parameter_input
             && data.settings.code_calls.is_empty();
         if !is_plain_mode
@@ -228,6 +233,7 @@ impl Slice {
             }
         }
         let mixes = !registers.state.transform.is_identity()
+            || registers.state.virtual_plane.is_some()
             || registers.state.modal.polar == Polar::On
             || !self.machine.transform.is_none();
         if mixes {

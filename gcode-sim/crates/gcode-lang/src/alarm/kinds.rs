@@ -56,6 +56,10 @@ crate::finding_kinds! {
     PS0129 = "PS0129", Alarm, "G as an argument of a macro call";
     PS0142 = "PS0142", Alarm, "G51 with a scale factor of 0 or too large";
     PS0144 = "PS0144", Alarm, "the plane changes in coordinate system rotation (G68)";
+    PS0145 = "PS0145", Alarm, "G12.1 or G13.1 where it is not allowed";
+    PS0146 = "PS0146", Alarm, "a code that polar coordinate interpolation excludes";
+    PS0175 = "PS0175", Alarm, "G07.1 where it is not allowed";
+    PS0176 = "PS0176", Alarm, "a code that cylindrical interpolation excludes";
     PS0200 = "PS0200", Alarm, "rigid tapping (M29) without a spindle speed";
     PS0204 = "PS0204", Alarm, "an axis moves between M29 and G84 or G74";
     PS0206 = "PS0206", Alarm, "the plane changes in rigid tapping";

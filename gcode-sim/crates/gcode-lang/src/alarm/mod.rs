@@ -49,6 +49,14 @@ pub enum Alarm {
     MachineParameter(&'static str),
     /// A rotation in space is commanded in a wrong form; the rule that it breaks.
     SpaceRotation(&'static str),
+    /// Polar coordinate interpolation is commanded in a wrong form; the rule that it breaks.
+    PolarInterpolationFormat(&'static str),
+    /// A code that polar coordinate interpolation excludes.
+    CodeInPolarInterpolation(String),
+    /// Cylindrical interpolation is commanded in a wrong form; the rule that it breaks.
+    CylinderFormat(&'static str),
+    /// A code that cylindrical interpolation excludes.
+    CodeInCylinder(String),
     /// A pattern of holes has no canned cycle.
     NoCycle {
         /// Code of the pattern.

@@ -284,6 +284,8 @@ with_defaults! {
         pub starts_up_by_type_b: bool = false,
         /// 19625: number of lookahead blocks in cutter compensation; two of them must move.
         pub lookahead_blocks: usize = 3,
+        /// 5460 and 5461: numbers of the linear and the rotary axis of G12.1; 0 for X, and for C or the only rotary axis.
+        pub polar_axes: [usize; 2] = [0, 0],
         /// 5411: factor of G51 for an axis that its words give none.
         pub scale_factor: f64 = 1.0,
         /// SCR 5400#7: factors of G51 count in 0.001, not 0.00001.

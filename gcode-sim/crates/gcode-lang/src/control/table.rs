@@ -234,6 +234,8 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("WKP", "19696#5: X, Y and Z of G43.4 count in the work system, which does not turn with the table", tip_in_work_system),
     whole!("12321", "the direction to which X of G68.3 is square: 1 to 3 for X, Y, Z, 0 for that of the tool at 0", 0, 3, |s, v| s.vertical_axis = v),
     number!("CHORDS", "largest deviation of the chords that replace an arc in a plane that is not one of the machine's", 1e-6, 1.0, "0.000001 to 1 mm", |s, v| s.chord_tolerance = v),
+    whole!("5460", "number of the linear axis of G12.1; 0 for X", 0, 8, |s, v| s.polar_axes[0] = v),
+    whole!("5461", "number of the rotary axis of G12.1; 0 for C, or the only one", 0, 8, |s, v| s.polar_axes[1] = v),
     number!("3410", "tolerance for the radius at an arc's end point", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
     switch!("CIR", "3403#5: an arc without R, I, J and K raises PS0022, otherwise it is a straight cut", alarms_without_centre),
     row!("5440", "overrun of G60 single direction positioning, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.single_direction_overrun = point(s, v)?),
@@ -329,6 +331,8 @@ undocumented_choices! {
     "TRANSFORM-RETURNS" returns_in_transforms = false, "G27 to G30 and G53 move in G68 and G51.1 as without them; otherwise SIM0001";
     "PLANE-TURNS" plane_turns_with_axes = false, "a rotary axis that moves after G53.1 takes the plane with it; otherwise the plane stays where G53.1 left it";
     "G268-TURNS" feature_axes_turn = false, "I, J and K of G268 are about axes that turn with one another, not about those of the work system";
+    "PROGRAM-ZERO" reads_program_zero = true, "a program O0 runs: the operator gives it a number when it is read; otherwise PS0074";
+    "G72-AT-START" line_starts_here = true, "the first hole of G72 is at the tool's position, not at the distance I from it";
     "M06-HOMES-Z" tool_change_homes_z = false, "M06 sends Z to machine zero before the tool changes";
 }
 

@@ -327,11 +327,33 @@ pub(super) const SET_COORDINATE_SYSTEM: CodeFacts = CodeFacts {
 };
 pub(super) const CORNER_ARC: CodeFacts =
     CodeFacts { lookahead: CornerArc, coordinates: NotScaled, ..ONE_SHOT };
-/// G12, G13, G70 and G71 of a Haas.
+/// G12, G13 and G70 to G72 of a Haas.
 pub(super) const PATTERN: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     words: CodeWords { own: Letters::of(b"L"), ..CodeWords::NONE },
     coordinates: NotScaled,
+    ..ONE_SHOT
+};
+/// G174 and G184 of a Haas.
+pub(super) const ASKEW_TAPPING: CodeFacts =
+    CodeFacts { axis_words: PositionInAbsolute, lookahead: Refused, coordinates: NotScaled, ..ONE_SHOT };
+/// G150 of a Haas.
+pub(super) const POCKET: CodeFacts = CodeFacts {
+    axis_words: PositionInAbsolute,
+    words: CodeWords { without_effect: Letters::of(b"IJKQ"), ..CodeWords::NONE },
+    lookahead: Suspends,
+    coordinates: NotScaled,
+    unsimulated: Unsimulated::Code(Letters::of(b"IJKPQR")),
+    ..ONE_SHOT
+};
+/// G12.1 and G13.1.
+pub(super) const VIRTUAL_PLANE: CodeFacts = CodeFacts { lookahead: Refused, timing: Waits, ..MODAL };
+/// G07.1, and G107 of a Haas.
+pub(super) const CYLINDER: CodeFacts = CodeFacts {
+    axis_words: Tables,
+    lookahead: Refused,
+    coordinates: NotTransformed,
+    timing: Waits,
     ..ONE_SHOT
 };
 /// G54.2 and G54.4.

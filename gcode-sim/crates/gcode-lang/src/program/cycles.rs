@@ -113,6 +113,14 @@ pub(super) const BORING_SPINDLE_STOP: Cycle = row(
 );
 #[rustfmt::skip]
 pub(super) const BACK_BORING: Cycle = Cycle { rapids_to_r_first: false, ..row(870, &[SpindleStop, Shift, RapidToR, ShiftBack, SpindleForward, FeedToBottom, Dwell, SpindleStop, Shift, RapidToInitial, ShiftBack, SpindleForward], "back boring cycle") };
+/// G77 of a Haas.
+pub(super) const BACK_BORING_OF_HAAS: Cycle = Cycle { code: 770, ..BACK_BORING };
+/// G87 of a Haas.
+pub(super) const BORING_STOP_OF_HAAS: Cycle = row(
+    870,
+    &[FeedToBottom, SpindleStop, ManualRetract, RapidToInitialInG98, SpindleForward],
+    "boring cycle, manual retract",
+);
 pub(super) const BORING_MANUAL_RETRACT: Cycle = row(
     880,
     &[FeedToBottom, Dwell, SpindleStop, ManualRetract, RapidToInitialInG98, SpindleForward],

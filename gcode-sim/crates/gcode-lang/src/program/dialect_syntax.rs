@@ -42,6 +42,8 @@ pub enum DialectSyntax {
     },
     /// Modal codes before G65, G66 or G66.1.
     CodesBeforeCall,
+    /// Program number 0.
+    ProgramZero,
 }
 
 impl DialectSyntax {
@@ -64,6 +66,7 @@ impl DialectSyntax {
             Self::FractionalNumber => !settings.has_variable_bits,
             Self::ValueCondition { .. } => settings.allows_value_conditions,
             Self::CodesBeforeCall => undocumented.allows_codes_before_call,
+            Self::ProgramZero => undocumented.reads_program_zero,
         }
     }
 
@@ -83,6 +86,7 @@ impl DialectSyntax {
             Self::FractionalNumber => Alarm::NotSimulated { what: "writing #n.m".into() },
             Self::ValueCondition { of_loop: false } => Alarm::IfFormat,
             Self::ValueCondition { of_loop: true } => Alarm::WhileFormat,
+            Self::ProgramZero => Alarm::ProgramNumber,
             Self::CodesBeforeCall => Alarm::MacroFormat { what: "words before the macro call".into() },
         }
     }

@@ -3,7 +3,7 @@ use super::code_facts::CodeFacts;
 use super::cycles::Cycle;
 use super::modes::{
     CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, ModalGroup, Motion, Plane,
-    Polar, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
+    Polar, PolarInterpolation, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
 };
 use crate::control::Dialect;
 
@@ -46,6 +46,8 @@ pub enum Effect {
     Rotation(Rotation),
     /// Group 17: polar coordinates.
     Polar(Polar),
+    /// Group 21: polar coordinate interpolation.
+    PolarInterpolation(PolarInterpolation),
     /// Group 22: mirror image.
     Mirror(Mirror),
     /// Group 23: G254 and G255 of a Haas.
@@ -88,6 +90,7 @@ impl Effect {
             Self::Cutting(_) => ModalGroup::Cutting,
             Self::Rotation(_) => ModalGroup::Rotation,
             Self::Polar(_) => ModalGroup::Polar,
+            Self::PolarInterpolation(_) => ModalGroup::PolarInterpolation,
             Self::Mirror(_) => ModalGroup::Mirror,
             Self::DynamicOffset(_) | Self::UnstatedOffset(_) => ModalGroup::DynamicOffset,
             Self::OneShot(_)
@@ -123,6 +126,7 @@ impl Effect {
             | Self::Cutting(_)
             | Self::Rotation(_)
             | Self::Polar(_)
+            | Self::PolarInterpolation(_)
             | Self::Mirror(_)
             | Self::DynamicOffset(_)
             | Self::UnstatedOffset(_)
@@ -177,8 +181,19 @@ pub enum OneShot {
     CirclePocket(Motion),
     /// G47 of a Haas.
     Engraving,
-    /// G70 and G71 of a Haas.
+    /// G70, G71 and G72 of a Haas.
     BoltHoles(HolePattern),
+    /// G07.1: cylindrical interpolation.
+    Cylinder,
+    /// G107 of a Haas: a linear axis wrapped round a cylinder.
+    WrappedAxis,
+    /// G150 of a Haas: its outline is the program P.
+    Pocket,
+    /// G174 and G184 of a Haas.
+    AskewTapping {
+        /// G174: the spindle turns counterclockwise on its way in.
+        is_left_handed: bool,
+    },
 }
 
 /// Arrangement of a pattern's holes.
@@ -188,6 +203,8 @@ pub enum HolePattern {
     Circle,
     /// Spaced by a specified angle.
     Arc,
+    /// Evenly spaced on a straight line.
+    Line,
 }
 
 /// Row of the table.

@@ -4,7 +4,7 @@ use super::cycles::{self, Cycle};
 use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot};
 use super::modes::{
     CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, Motion, Plane, Polar,
-    ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
+    PolarInterpolation, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
 };
 use crate::control::Dialect;
 
@@ -43,6 +43,10 @@ const fn fanuc_cycle(of: &'static Cycle) -> GCodeRow {
     GCodeRow { dialects: Dialect::FANUC, ..cycle(of) }
 }
 
+const fn haas_cycle(of: &'static Cycle) -> GCodeRow {
+    GCodeRow { dialects: Dialect::HAAS, ..cycle(of) }
+}
+
 /// Rows of all codes that the user declares; their code is that of no table.
 pub(super) const DECLARED: GCodeRow = declared(facts::DECLARED);
 pub(super) const DECLARED_WAIT: GCodeRow = declared(facts::DECLARED_WAIT);
@@ -64,16 +68,16 @@ pub(super) const CODES: &[GCodeRow] = &[
     fanuc(50, Effect::NoEffect, "AI contour control, high-speed cycle machining").with(facts::CONTOUR_CONTROL),
     fanuc(51, Effect::NoEffect, "AI contour control, smooth interpolation").with(facts::SMOOTH_CONTOUR_CONTROL),
     fanuc(54, Effect::NoEffect, "HRV3, 4 on/off").with(facts::WITHOUT_EFFECT),
-    fanuc(71, Effect::NotSimulated, "cylindrical interpolation"),
+    fanuc(71, Effect::OneShot(OneShot::Cylinder), "cylindrical interpolation").with(facts::CYLINDER),
     fanuc(80, Effect::LookAhead, "advanced preview control").with(facts::LOOK_AHEAD),
     row(90, Effect::NoEffect, "exact stop").with(facts::EXACT_STOP),
     row(100, Effect::OneShot(OneShot::DataInput), "programmable data input").with(facts::DATA_INPUT),
     fanuc(106, Effect::NotSimulated, "tool retract and recover"),
     fanuc(110, Effect::OneShot(OneShot::DataInputEnd), "programmable data input mode cancel").with(facts::DATA_INPUT_END),
     haas(120, Effect::OneShot(OneShot::CirclePocket(Motion::Clockwise)), "circular pocket milling, clockwise").with(facts::PATTERN),
-    fanuc(121, Effect::NotSimulated, "polar coordinate interpolation mode"),
+    fanuc(121, Effect::PolarInterpolation(PolarInterpolation::On), "polar coordinate interpolation mode").with(facts::VIRTUAL_PLANE),
     haas(130, Effect::OneShot(OneShot::CirclePocket(Motion::Counterclockwise)), "circular pocket milling, counterclockwise").with(facts::PATTERN),
-    fanuc(131, Effect::NoEffect, "polar coordinate interpolation cancel mode").with(facts::WITHOUT_EFFECT),
+    fanuc(131, Effect::PolarInterpolation(PolarInterpolation::Off), "polar coordinate interpolation cancel mode").with(facts::VIRTUAL_PLANE),
     fanuc(150, Effect::Polar(Polar::Off), "polar coordinates command cancel"),
     fanuc(160, Effect::Polar(Polar::On), "polar coordinates command"),
     row(170, Effect::Plane(Plane::Xy), "XpYp plane selection"),
@@ -128,8 +132,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     row(500, Effect::Scaling(Scaling::Off), "scaling cancel").with(facts::SCALING_OFF),
     fanuc(501, Effect::Mirror(Mirror::Off), "programmable mirror image cancel"),
     fanuc(502, Effect::NoEffect, "polygon turning cancel").with(facts::WITHOUT_EFFECT),
-    fanuc(510, Effect::Scaling(Scaling::On), "scaling").with(facts::SCALING),
-    haas(510, Effect::NotSimulated, "scaling"),
+    row(510, Effect::Scaling(Scaling::On), "scaling").with(facts::SCALING),
     fanuc(511, Effect::Mirror(Mirror::On), "programmable mirror image").with(facts::MIRROR),
     fanuc(512, Effect::NotSimulated, "polygon turning"),
     row(520, Effect::OneShot(OneShot::SetLocalCoordinateSystem), "local coordinate system setting").with(facts::SET_COORDINATE_SYSTEM),
@@ -162,13 +165,13 @@ pub(super) const CODES: &[GCodeRow] = &[
     row(690, Effect::Rotation(Rotation::Off), "coordinate system rotation cancel"),
     haas(700, Effect::OneShot(OneShot::BoltHoles(HolePattern::Circle)), "bolt hole circle").with(facts::PATTERN),
     haas(710, Effect::OneShot(OneShot::BoltHoles(HolePattern::Arc)), "bolt hole arc").with(facts::PATTERN),
-    haas(720, Effect::NotSimulated, "bolt holes along an angle"),
+    haas(720, Effect::OneShot(OneShot::BoltHoles(HolePattern::Line)), "bolt holes along an angle").with(facts::PATTERN),
     fanuc(721, Effect::NotSimulated, "figure copying: rotary copy"),
     fanuc(722, Effect::NotSimulated, "figure copying: linear copy"),
     cycle(&cycles::HIGH_SPEED_PECK_DRILLING),
     cycle(&cycles::LEFT_HANDED_TAPPING),
     cycle(&cycles::FINE_BORING),
-    haas(770, Effect::NotSimulated, "back boring cycle"),
+    haas_cycle(&cycles::BACK_BORING_OF_HAAS),
     row(800, Effect::Cycle(None), "canned cycle cancel"),
     fanuc(804, Effect::NoEffect, "electronic gear box: synchronisation cancel").with(facts::WITHOUT_EFFECT),
     cycle(&cycles::DRILLING),
@@ -182,9 +185,8 @@ pub(super) const CODES: &[GCodeRow] = &[
     cycle(&cycles::BORING_FEED_RETRACT),
     cycle(&cycles::BORING_SPINDLE_STOP),
     fanuc_cycle(&cycles::BACK_BORING),
-    haas(870, Effect::NotSimulated, "boring cycle, manual retract"),
-    fanuc_cycle(&cycles::BORING_MANUAL_RETRACT),
-    haas(880, Effect::NotSimulated, "boring cycle, dwell, manual retract"),
+    haas_cycle(&cycles::BORING_STOP_OF_HAAS),
+    cycle(&cycles::BORING_MANUAL_RETRACT),
     cycle(&cycles::BORING_DWELL),
     row(900, Effect::Distance(Distance::Absolute), "absolute programming"),
     row(910, Effect::Distance(Distance::Incremental), "incremental programming"),
@@ -200,7 +202,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     haas(1000, Effect::Mirror(Mirror::Off), "mirror image cancel"),
     haas(1010, Effect::Mirror(Mirror::On), "mirror image").with(facts::MIRROR),
     haas(1030, Effect::NoEffect, "limit of block lookahead").with(facts::WITHOUT_EFFECT),
-    haas(1070, Effect::NotSimulated, "cylindrical mapping"),
+    haas(1070, Effect::OneShot(OneShot::WrappedAxis), "cylindrical mapping").with(facts::CYLINDER),
     haas(1100, Effect::NumberedWork(1), "additional work coordinate system 1").with(facts::WORK),
     haas(1110, Effect::NumberedWork(2), "additional work coordinate system 2").with(facts::WORK),
     haas(1120, Effect::NumberedWork(3), "additional work coordinate system 3").with(facts::WORK),
@@ -225,7 +227,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     haas(1410, Effect::NotSimulated, "3D+ cutter compensation"),
     haas(1430, Effect::NotSimulated, "5-axis tool length compensation +"),
     fanuc(1500, Effect::NoEffect, "normal direction control cancel mode").with(facts::WITHOUT_EFFECT),
-    haas(1500, Effect::NotSimulated, "general purpose pocket milling"),
+    haas(1500, Effect::OneShot(OneShot::Pocket), "general purpose pocket milling").with(facts::POCKET),
     fanuc(1510, Effect::NotSimulated, "normal direction control left"),
     fanuc(1520, Effect::NotSimulated, "normal direction control right"),
     haas(1540, Effect::AdditionalWork, "additional work coordinate system").with(facts::WORK),
@@ -233,8 +235,8 @@ pub(super) const CODES: &[GCodeRow] = &[
     fanuc(1600, Effect::NoEffect, "in-feed control cancel").with(facts::WITHOUT_EFFECT),
     fanuc(1610, Effect::NotSimulated, "in-feed control"),
     haas(1670, Effect::NotSimulated, "modify setting"),
-    haas(1740, Effect::NotSimulated, "counterclockwise non-vertical rigid tapping"),
-    haas(1840, Effect::NotSimulated, "clockwise non-vertical rigid tapping"),
+    haas(1740, Effect::OneShot(OneShot::AskewTapping { is_left_handed: true }), "counterclockwise non-vertical rigid tapping").with(facts::ASKEW_TAPPING),
+    haas(1840, Effect::OneShot(OneShot::AskewTapping { is_left_handed: false }), "clockwise non-vertical rigid tapping").with(facts::ASKEW_TAPPING),
     haas(1870, Effect::Smoothness, "smoothness level setting").with(facts::SMOOTHNESS),
     haas(2340, Effect::Length(Length::TipOfHaas), "tool centre point control"),
     haas(2530, Effect::OneShot(OneShot::ToolAxis { keeps_tip: false }), "orient spindle normal to feature coordinate system").with(facts::TOOL_AXIS),

@@ -144,6 +144,8 @@ group!(/// Group 16: coordinate system rotation.
     Rotation { On = 680, #[default] Off = 690, Tilted = 682, AlongTool = 683, TiltedFurther = 684, Feature = 2680, });
 group!(/// Group 17: polar coordinates.
     Polar { #[default] Off = 150, On = 160, });
+group!(/// Group 21: polar coordinate interpolation.
+    PolarInterpolation { #[default] Off = 131, On = 121, });
 group!(/// Group 22: mirror image.
     Mirror { #[default] Off = 501, On = 511, });
 group!(/// Group 23: dynamic work offset of a Haas; G54.2 and G54.4 of a Fanuc, whose values nothing states.

@@ -1,7 +1,7 @@
 //! Reader of one line: skip, sequence number, words and statements in the order written.
 use nom::Err;
 
-use super::ast::{Address, Block, Item, Unreadable, Word, WordValue};
+use super::ast::{Address, Block, Decimal, Item, Unreadable, Word, WordValue};
 use super::number::integer;
 use super::numbers::{MAX_SEQUENCE_NUMBER, continues_number, number_word, window};
 use super::statement::{assignment, keyword, statement};
@@ -89,7 +89,16 @@ fn read_item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> ReadResul
             (rest, Item::Word(word))
         }
         [b'O' | b'o' | b':', ..] if is_first_item && begins_program(at) => {
-            return fail(at, Alarm::ProgramNumber);
+            match integer(spaces(&at[1..])) {
+                // Number 0 is none: the operator gives the program one, or the control refuses it.
+                Ok((rest, 0)) => {
+                    let number = Decimal { negative: false, digits: 0, places: None };
+                    let address = Address { letter: b'O', comma: false };
+                    let (value, span) = (WordValue::Literal(number), line.span(at, rest));
+                    (rest, Item::Word(Word { address, axis: None, value, span }))
+                }
+                _ => return fail(at, Alarm::ProgramNumber),
+            }
         }
         [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match (number_word(&window(at)), keyword(at)) {
             (Some((letter, number, length)), _) if !continues_number(&at[length..]) => {

@@ -67,7 +67,8 @@ pub(super) fn print(line: LineInput, input: Input<'_>, kind: PrintKind) -> ReadR
             continue;
         }
         match byte {
-            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'+' | b'-' | b'*' | b'/' | b'.' | b',' | b'=' => {
+            // Manuals list * / + - ? @ & _ beside letters and digits; controls print the others too.
+            byte if byte.is_ascii_graphic() && !matches!(byte, b'[' | b';') => {
                 text.push(char::from(byte.to_ascii_uppercase()));
             }
             _ => return fail(rest, Alarm::PrintFormat),

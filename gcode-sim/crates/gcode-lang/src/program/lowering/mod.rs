@@ -59,6 +59,14 @@ impl Lowering {
     }
 
     fn lower_kind(&mut self, block: &ast::Block) -> LoweringResult<OpKind> {
+        if let Some(ast::Item::Word(first)) = block.items.first()
+            && first.address.letter == b'O'
+            && matches!(&first.value, ast::WordValue::Literal(number) if number.value() == 0.0)
+        {
+            self.record_syntax(DialectSyntax::ProgramZero, first.span);
+            let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
+            return self.lower_kind(&rest);
+        }
         if let Some(ast::Item::Statement(first)) = block.items.first()
             && let ast::Statement::If { condition, has_then } = &first.node
         {
