@@ -107,6 +107,7 @@ pub mod static_plan;
 mod unknown_position;
 
 pub mod slice;
+pub mod symbolic;
 
 pub use self::control::{Control, Observer};
 pub use self::next_block::{BlockCommands, UnsimulatedCodes, modal_code};
