@@ -113,6 +113,15 @@ impl SymbolicRun {
         Evaluation::new(&self.control.executor.registers, &mut oracle).condition(code)
     }
 
+    /// Decides a condition in the current state.
+    ///
+    /// # Errors
+    /// [`Halt`] as of [`SymbolicRun::condition`].
+    pub fn decide<T: Terms>(&self, code: &Bytecode, terms: &mut T, answers: &[bool]) -> Result<bool, Halt> {
+        let mut oracle = Oracle::new(terms, answers);
+        Evaluation::new(&self.control.executor.registers, &mut oracle).is_true(code)
+    }
+
     /// Returns a local or common variable: `None` if it is vacant.
     ///
     /// # Errors

@@ -87,7 +87,7 @@ pub trait Terms {
     fn node(&mut self, operation: TermOperation, operands: [Term; 2]) -> Term;
 
     /// Returns bounds of a term over all ranges.
-    fn bounds(&self, term: Term) -> (f64, f64);
+    fn bounds(&mut self, term: Term) -> (f64, f64);
 
     /// Returns the answer to a question, if it is the same over all ranges.
     fn answer(&mut self, test: &Test) -> Option<bool>;
