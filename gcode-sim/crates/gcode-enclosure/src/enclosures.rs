@@ -1,10 +1,15 @@
 //! The enclosures of nodes over one box, on one path through a program.
+use std::sync::Arc;
+
 use crate::alarms::{self, PossibleAlarm};
 use crate::arena::Arena;
+use crate::basis::{Basis, MAX_VARIABLES};
 use crate::domain::Domain;
+use crate::form::{Form, Modeller};
 use crate::hull;
 use crate::interval::Interval;
-use crate::node::{Condition, Node, NodeId, Relation};
+use crate::model::Model;
+use crate::node::{Binary, Condition, Node, NodeId, Relation, Unary};
 
 /// Enclosures of nodes over a box, given the conditions of a path.
 ///
@@ -15,13 +20,44 @@ use crate::node::{Condition, Node, NodeId, Relation};
 pub struct Enclosures {
     domain: Domain,
     conditions: Vec<Condition>,
-    hulls: Vec<Option<Interval>>,
+    forms: Vec<Option<Arc<Form>>>,
+    basis: Basis,
+    /// Variable of each input; none for an input with one value.
+    variables: Vec<Option<usize>>,
+    next_variable: usize,
 }
 
+/// Largest number of inputs with a variable; the others are ranges only.
+const MAX_INPUTS: usize = 10;
+
 impl Enclosures {
-    /// Returns the enclosures over a box.
+    /// Returns the enclosures over a box, with polynomials of a degree that suits its number of inputs.
     pub fn new(domain: Domain) -> Self {
-        Self { domain, conditions: Vec::new(), hulls: Vec::new() }
+        let inputs = domain.ranges().iter().filter(|range| range.lo() < range.hi()).count();
+        let degree = match inputs {
+            0 | 1 => 8,
+            2 => 6,
+            3 => 5,
+            4 => 4,
+            5 | 6 => 3,
+            _ => 2,
+        };
+        Self::with_degree(domain, degree)
+    }
+
+    /// Returns the enclosures over a box with polynomials of a total degree up to 9; of degree 0, ranges alone.
+    pub fn with_degree(domain: Domain, degree: u32) -> Self {
+        let mut next_variable = 0;
+        let variables = domain.ranges().iter().map(|range| {
+            let is_variable = degree > 0 && range.lo() < range.hi() && next_variable < MAX_INPUTS;
+            is_variable.then(|| {
+                next_variable += 1;
+                next_variable - 1
+            })
+        });
+        let variables = variables.collect();
+        let basis = Basis::new(degree);
+        Self { domain, conditions: Vec::new(), forms: Vec::new(), basis, variables, next_variable }
     }
 
     /// Returns the box.
@@ -36,40 +72,168 @@ impl Enclosures {
 
     /// Returns a range that has every double the node can have; empty if it never has a value.
     pub fn enclose(&mut self, arena: &Arena, node: NodeId) -> Interval {
-        if let Some(Some(known)) = self.hulls.get(node.index()) {
-            return *known;
-        }
-        if self.hulls.len() < arena.len() {
-            self.hulls.resize(arena.len(), None);
+        if self.forms.len() < arena.len() {
+            self.forms.resize(arena.len(), None);
         }
         let mut pending = vec![node];
         while let Some(&next) = pending.last() {
-            let missing = arena.operands(next).filter(|operand| self.hulls[operand.index()].is_none());
             let before = pending.len();
-            pending.extend(missing.collect::<Vec<_>>());
+            if self.forms[next.index()].is_none() {
+                pending.extend(arena.operands(next).filter(|operand| self.forms[operand.index()].is_none()));
+            }
             if pending.len() == before {
                 pending.pop();
-                if self.hulls[next.index()].is_none() {
-                    self.hulls[next.index()] = Some(self.compute(arena, next));
+                if self.forms[next.index()].is_none() {
+                    self.forms[next.index()] = Some(Arc::new(self.compute(arena, next)));
                 }
             }
         }
-        self.known(node)
+        self.hull(node)
     }
 
-    /// Returns the hull of a node that has been computed.
-    fn known(&self, node: NodeId) -> Interval {
-        self.hulls[node.index()].unwrap_or(Interval::ALL)
-    }
-
-    fn compute(&self, arena: &Arena, node: NodeId) -> Interval {
-        match arena.node(node) {
-            Node::Constant(value) => Interval::point(value),
-            Node::Input(input) => self.domain.range(input),
-            Node::Unary(function, x) => hull::unary(function, self.known(x), arena.semantics()),
-            Node::Binary(operator, a, b) => {
-                hull::binary(operator, self.known(a), self.known(b), arena.semantics())
+    /// Returns a range of the node from the best bounds of its polynomial.
+    pub fn enclose_tightly(&mut self, arena: &Arena, node: NodeId) -> Interval {
+        let hull = self.enclose(arena, node);
+        if let Some(form) = &self.forms[node.index()]
+            && let Some(model) = &form.model
+        {
+            let tighter = hull.intersect(model.range(&self.basis));
+            if tighter != hull {
+                self.set_hull(node, tighter);
             }
+        }
+        self.hull(node)
+    }
+
+    /// Returns the range of a node that has a form.
+    fn hull(&self, node: NodeId) -> Interval {
+        self.forms[node.index()].as_ref().map_or(Interval::ALL, |form| form.hull)
+    }
+
+    fn set_hull(&mut self, node: NodeId, hull: Interval) {
+        if let Some(form) = &mut self.forms[node.index()] {
+            Arc::make_mut(form).hull = hull;
+        }
+    }
+
+    /// Returns the form of a node whose operands have theirs.
+    fn compute(&mut self, arena: &Arena, node: NodeId) -> Form {
+        let content = arena.node(node);
+        // Where the operands touch the edge of the domain, a better range of theirs decides.
+        if self.is_critical(content) {
+            for operand in arena.operands(node) {
+                self.enclose_tightly(arena, operand);
+            }
+        }
+        let semantics = arena.semantics();
+        let (natural, operands) = match content {
+            Node::Constant(value) => return Form { hull: Interval::point(value), model: None },
+            Node::Input(input) => return self.input(input),
+            Node::Unary(function, x) => {
+                let Some(x) = self.forms[x.index()].clone() else { return Form::UNKNOWN };
+                (hull::unary(function, x.hull, semantics), [Some(x), None])
+            }
+            Node::Binary(operator, a, b) => {
+                let (Some(a), Some(b)) = (self.forms[a.index()].clone(), self.forms[b.index()].clone()) else {
+                    return Form::UNKNOWN;
+                };
+                (hull::binary(operator, a.hull, b.hull, semantics), [Some(a), Some(b)])
+            }
+        };
+        if natural.lo() >= natural.hi() || self.basis.degree() == 0 {
+            return Form { hull: natural, model: None };
+        }
+        let mut modeller = Modeller { basis: &mut self.basis, semantics };
+        let model = match (content, &operands) {
+            (Node::Unary(function @ (Unary::Fix | Unary::Fup | Unary::Round), _), [Some(x), _]) => {
+                let variable = (self.next_variable < MAX_VARIABLES && x.model.is_some()).then(|| {
+                    self.next_variable += 1;
+                    self.next_variable - 1
+                });
+                modeller.whole(function, x, variable)
+            }
+            (Node::Unary(function, _), [Some(x), _]) => modeller.unary(function, x, natural),
+            (Node::Binary(operator, ..), [Some(a), Some(b)]) => modeller.binary(operator, a, b, natural),
+            _ => None,
+        };
+        let Some(model) = model.filter(Model::is_finite) else {
+            return self.free_form(natural);
+        };
+        let hull = natural.intersect(model.bound(&self.basis));
+        if hull.lo() >= hull.hi() {
+            return Form { hull, model: None };
+        }
+        // A polynomial within its own rest says nothing.
+        let is_useful = model.rest < hull.width() * 0.4999 && !model.is_constant();
+        if is_useful { Form { hull, model: Some(model) } } else { self.free_form(hull) }
+    }
+
+    /// Returns the form of a value without a relation to the inputs: a variable of its own, if there is one left.
+    fn free_form(&mut self, hull: Interval) -> Form {
+        if self.next_variable >= MAX_VARIABLES || hull.magnitude() > 1e20 {
+            return Form { hull, model: None };
+        }
+        self.next_variable += 1;
+        let model = Model::of_variable(&mut self.basis, self.next_variable - 1, hull);
+        Form { hull, model: Some(model) }
+    }
+
+    /// Returns the form of an input.
+    fn input(&mut self, input: usize) -> Form {
+        let hull = self.domain.range(input);
+        let variable = self.variables.get(input).copied().flatten();
+        let model = variable.map(|variable| Model::of_variable(&mut self.basis, variable, hull));
+        Form { hull, model: model.filter(Model::is_finite) }
+    }
+
+    /// Returns the input whose variation changes a node that has been enclosed most: the one to divide.
+    ///
+    /// `None` if no input has more than one double.
+    pub fn widest_effect(&self, node: NodeId) -> Option<usize> {
+        let model = self.forms.get(node.index()).and_then(Option::as_ref).and_then(|form| form.model.as_ref());
+        let effect = |input: usize| {
+            let (Some(model), Some(Some(variable))) = (model, self.variables.get(input)) else { return 0.0 };
+            let terms = model.terms.iter();
+            terms.map(|(monomial, value)| value.abs() * f64::from(self.basis.exponent(*monomial, *variable))).sum()
+        };
+        let relative_width = |range: &Interval| range.width() / (range.magnitude() + f64::MIN_POSITIVE);
+        let ranges = self.domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
+        let rated = ranges.map(|(input, range)| (effect(input), relative_width(range), input));
+        let best = rated.max_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
+        best.map(|(_, _, input)| input)
+    }
+
+    /// Returns the corner of the box where the node's linear part is largest, or least for a negative sign.
+    pub(crate) fn corner(&self, node: NodeId, sign: f64) -> Vec<f64> {
+        let model = self.forms.get(node.index()).and_then(Option::as_ref).and_then(|form| form.model.as_ref());
+        let slope = |input: usize| {
+            let variable = self.variables.get(input).copied().flatten()?;
+            let is_linear = |monomial: u32| self.basis.is_variable(monomial, variable);
+            model?.terms.iter().find(|(monomial, _)| is_linear(*monomial)).map(|(_, value)| *value)
+        };
+        let ranges = self.domain.ranges().iter().enumerate();
+        let ends = ranges.map(|(input, range)| match slope(input) {
+            Some(slope) if slope * sign > 0.0 => range.hi(),
+            Some(_) => range.lo(),
+            None => range.midpoint(),
+        });
+        ends.collect()
+    }
+
+    /// Returns true for an operation whose operands may be outside its domain or at its edge.
+    fn is_critical(&self, content: Node) -> bool {
+        if self.basis.degree() == 0 {
+            return false;
+        }
+        match content {
+            Node::Unary(Unary::Sqrt | Unary::Ln, x) => self.hull(x).lo() <= 0.0,
+            Node::Unary(Unary::Asin | Unary::Acos, x) => self.hull(x).magnitude() >= 1.0,
+            Node::Unary(Unary::Fix | Unary::Fup | Unary::Round | Unary::Abs, _) => true,
+            Node::Binary(Binary::Div, _, b) => self.hull(b).contains(0.0),
+            Node::Binary(Binary::Pow, a, _) => self.hull(a).lo() <= 0.0,
+            Node::Binary(Binary::Atan, a, b) => self.hull(a).contains(0.0) || self.hull(b).contains(0.0),
+            Node::Binary(Binary::Compare(_) | Binary::Mod, ..) => true,
+            _ => false,
         }
     }
 
@@ -79,15 +243,15 @@ impl Enclosures {
         let semantics = arena.semantics();
         let mut possible = match arena.node(node) {
             Node::Constant(_) | Node::Input(_) => return Vec::new(),
-            Node::Unary(function, x) if self.known(x).is_empty() => {
+            Node::Unary(function, x) if self.hull(x).is_empty() => {
                 let _ = function;
                 return Vec::new();
             }
-            Node::Binary(_, a, b) if self.known(a).is_empty() || self.known(b).is_empty() => {
+            Node::Binary(_, a, b) if self.hull(a).is_empty() || self.hull(b).is_empty() => {
                 return Vec::new();
             }
-            Node::Unary(function, x) => alarms::unary(function, self.known(x), semantics),
-            Node::Binary(operator, a, b) => alarms::binary(operator, self.known(a), self.known(b), semantics),
+            Node::Unary(function, x) => alarms::unary(function, self.hull(x), semantics),
+            Node::Binary(operator, a, b) => alarms::binary(operator, self.hull(a), self.hull(b), semantics),
         };
         possible.retain_mut(|alarm| {
             let conditions = arena.alarm_conditions(node, alarm.kind);
@@ -107,7 +271,20 @@ impl Enclosures {
         if left == right {
             return Some(matches!(relation, Relation::Eq | Relation::Ge | Relation::Le));
         }
-        hull::decide(relation, a, b)
+        hull::decide(relation, a, b).or_else(|| self.decide_difference(relation, left, right))
+    }
+
+    /// Decides by the polynomial of the difference, in which common parts cancel.
+    fn decide_difference(&mut self, relation: Relation, left: NodeId, right: NodeId) -> Option<bool> {
+        let [Some(left), Some(right)] = [left, right].map(|node| self.forms[node.index()].clone()) else {
+            return None;
+        };
+        if left.model.is_none() && right.model.is_none() {
+            return None;
+        }
+        let difference = left.as_model()?.sub(&right.as_model()?);
+        let range = difference.range(&self.basis);
+        hull::decide(relation, range, Interval::point(0.0)).filter(|_| difference.is_finite())
     }
 
     /// Assumes a condition from here on; false if no point of the box keeps it.
@@ -117,10 +294,9 @@ impl Enclosures {
         }
         self.conditions.push(condition);
         let Condition { relation, left, right } = condition;
-        let (a, b) = (self.known(left), self.known(right));
-        let (a, b) = contract(relation, a, b);
-        self.hulls[left.index()] = Some(a);
-        self.hulls[right.index()] = Some(b);
+        let (a, b) = contract(relation, self.hull(left), self.hull(right));
+        self.set_hull(left, a);
+        self.set_hull(right, b);
         !a.is_empty() && !b.is_empty()
     }
 }

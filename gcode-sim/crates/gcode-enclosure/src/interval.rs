@@ -125,9 +125,3 @@ pub(crate) fn sub_down(a: f64, b: f64) -> f64 {
 pub(crate) fn mul_up(a: f64, b: f64) -> f64 {
     (a * b).next_up()
 }
-
-/// Returns an upper bound of a quotient.
-#[inline]
-pub(crate) fn div_up(a: f64, b: f64) -> f64 {
-    (a / b).next_up()
-}

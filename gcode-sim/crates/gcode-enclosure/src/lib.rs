@@ -5,16 +5,26 @@
 #![warn(missing_docs)]
 
 mod alarms;
+mod approximation;
 mod arena;
+mod basis;
+mod bounds;
 mod domain;
+mod elementary;
 mod enclosures;
+mod form;
 mod hull;
 mod interval;
+mod model;
 mod node;
+mod polynomial_range;
+#[cfg(test)]
+mod tests;
 mod values;
 
 pub use alarms::PossibleAlarm;
 pub use arena::Arena;
+pub use bounds::{Bounds, BoundsSearch, bounds};
 pub use domain::Domain;
 pub use enclosures::Enclosures;
 pub use interval::Interval;

@@ -1,0 +1,1 @@
+//! Published kernels: bounds against the true ranges.
