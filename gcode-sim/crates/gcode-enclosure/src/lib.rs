@@ -5,6 +5,7 @@
 #![warn(missing_docs)]
 
 mod alarms;
+mod apply;
 mod approximation;
 mod arena;
 mod basis;

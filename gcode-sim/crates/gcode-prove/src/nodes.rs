@@ -1,10 +1,13 @@
 //! Terms of a symbolic run as nodes of an arena, with what holds over all ranges.
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use gcode_control::symbolic::{Term, TermOperation, Terms, Test};
 use gcode_enclosure::{AlarmKind, Arena, Binary, Condition, Domain, Enclosures, Node, NodeId, Relation, Semantics, Unary};
 use gcode_lang::control::Settings;
 use gcode_lang::syntax::ast;
+
+/// Largest number of constants that are kept for the search.
+const MAX_CONSTANTS: usize = 200;
 
 /// Nodes of all ways of a program.
 #[derive(Debug)]
@@ -14,6 +17,8 @@ pub(crate) struct Nodes {
     ids: HashMap<u32, NodeId>,
     /// Enclosures over all ranges.
     root: Enclosures,
+    /// Numbers of the program that meet a node, by their bits.
+    constants: BTreeSet<u64>,
     /// Answers of the way that is followed.
     answers: HashMap<TestKey, bool>,
 }
@@ -49,7 +54,8 @@ impl Nodes {
         Self {
             arena: Arena::new(semantics),
             ids: HashMap::new(),
-            root: Enclosures::new(domain),
+            constants: BTreeSet::new(),
+            root: Enclosures::with_degree(domain, 0),
             answers: HashMap::new(),
         }
     }
@@ -62,6 +68,11 @@ impl Nodes {
     pub(crate) fn input(&mut self, index: usize) -> Term {
         let id = self.arena.input(index);
         self.term(id)
+    }
+
+    /// Returns numbers of the program that meet a node.
+    pub(crate) fn constants(&self) -> Vec<f64> {
+        self.constants.iter().map(|bits| f64::from_bits(*bits)).filter(|number| number.is_finite()).collect()
     }
 
     /// Sets the answers of the way that is followed.
@@ -82,7 +93,12 @@ impl Nodes {
     /// Returns the node of a term.
     pub(crate) fn id(&mut self, term: Term) -> NodeId {
         match term {
-            Term::Number(number) => self.arena.constant(number),
+            Term::Number(number) => {
+                if self.constants.len() < MAX_CONSTANTS {
+                    self.constants.insert(number.to_bits());
+                }
+                self.arena.constant(number)
+            }
             Term::Node(node) => self.known_id(node),
         }
     }

@@ -5,7 +5,7 @@ use gcode_lang::program::Bytecode;
 
 /// Range of a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
+pub(crate) struct Range {
     /// Number of a local or common variable.
     pub variable: u32,
     /// Smallest value.
@@ -54,7 +54,7 @@ impl Range {
     ///
     /// # Errors
     /// [`RequestError`] for another text, or limits in the wrong order.
-    pub fn parse(text: &str) -> Result<Self, RequestError> {
+    pub(crate) fn parse(text: &str) -> Result<Self, RequestError> {
         let unreadable = || RequestError::Range(text.to_owned());
         let parsed = text.trim().strip_prefix('#').and_then(|rest| {
             let (number, limits) = rest.split_once('=')?;
@@ -77,7 +77,7 @@ impl Range {
 
 /// Property that every run is claimed to have.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Claim {
+pub(crate) enum Claim {
     /// Condition at the end of a run, if it ends without an alarm.
     Condition(Bytecode),
     /// No alarm stops the run.
@@ -95,7 +95,7 @@ impl Claim {
     ///
     /// # Errors
     /// [`RequestError::Claim`] for a text that is none.
-    pub fn parse(text: &str) -> Result<Self, RequestError> {
+    pub(crate) fn parse(text: &str) -> Result<Self, RequestError> {
         let refused = |why: &str| RequestError::Claim(text.to_owned(), why.to_owned());
         let trimmed = text.trim();
         let (word, rest) = trimmed.split_once(char::is_whitespace).unwrap_or((trimmed, ""));
@@ -155,7 +155,7 @@ pub(crate) fn condition(text: &str) -> Result<Bytecode, String> {
 ///
 /// # Errors
 /// [`RequestError::Bounds`] for a text that is none.
-pub fn parse_variable(text: &str) -> Result<u32, RequestError> {
+pub(crate) fn parse_variable(text: &str) -> Result<u32, RequestError> {
     let number = text.trim().strip_prefix('#').and_then(|digits| digits.parse().ok());
     number.ok_or_else(|| RequestError::Bounds(text.to_owned()))
 }

@@ -1,6 +1,7 @@
 //! Ways through a program: the questions that the ranges don't decide, and what each way ends with.
 //!
 //! The tree grows where a box or a point goes. It knows no box: each question is asked of the enclosures over one.
+use std::rc::Rc;
 use std::sync::Arc;
 
 use gcode_control::symbolic::{Advance, Formula, Halt, Snapshot, SymbolicRun, Term, Test};
@@ -45,7 +46,7 @@ struct Segment {
 enum SegmentState {
     Open(Open),
     Fork(Fork),
-    Leaf(Arc<Leaf>),
+    Leaf(Rc<Leaf>),
     /// While it is expanded.
     Taken,
 }
@@ -53,7 +54,7 @@ enum SegmentState {
 /// Segment that no box has reached yet.
 #[derive(Debug)]
 struct Open {
-    snapshot: Arc<Snapshot>,
+    snapshot: Rc<Snapshot>,
     phase: Phase,
     answers: Vec<bool>,
 }
@@ -135,7 +136,7 @@ pub(crate) enum BoundState {
 /// Part of a tree that a caller follows.
 pub(crate) enum Step {
     Fork(Fork),
-    Leaf(Arc<Leaf>),
+    Leaf(Rc<Leaf>),
     /// The work is to stop.
     Stopped,
 }
@@ -170,10 +171,15 @@ impl<L: Library> Tree<L> {
             // A variable that can't be set has been refused with the request.
             _ = run.set_term(range.variable, term);
         }
-        let snapshot = Arc::new(run.snapshot());
+        let snapshot = Rc::new(run.snapshot());
         let open = Open { snapshot, phase: Phase::Conditions(0), answers: Vec::new() };
         let root = Segment { parent: None, state: SegmentState::Open(open) };
         Self { run, library, nodes, segments: vec![root], question }
+    }
+
+    /// Returns the number of variables whose bounds are wanted.
+    pub(crate) fn bound_count(&self) -> usize {
+        self.question.bounds.len()
     }
 
     /// Returns the segment's end, after its blocks are executed.
@@ -183,7 +189,7 @@ impl<L: Library> Tree<L> {
         }
         match &self.segments[id].state {
             SegmentState::Fork(fork) => Step::Fork(*fork),
-            SegmentState::Leaf(leaf) => Step::Leaf(Arc::clone(leaf)),
+            SegmentState::Leaf(leaf) => Step::Leaf(Rc::clone(leaf)),
             SegmentState::Open(_) | SegmentState::Taken => Step::Stopped,
         }
     }
@@ -201,23 +207,36 @@ impl<L: Library> Tree<L> {
         })
     }
 
-    fn expand(&mut self, id: SegmentId, watch: &Watch) {
-        let answers: Vec<_> = self.answers_to(id).collect();
+    /// Lets the answers of the way to a segment hold, without the last ones.
+    fn follow_answers(&mut self, id: SegmentId, without: usize) {
+        let answers: Vec<_> = self.answers_to(id).skip(without).collect();
         self.nodes.set_answers(answers.into_iter());
+    }
+
+    fn expand(&mut self, id: SegmentId, watch: &Watch) {
         let state = std::mem::replace(&mut self.segments[id].state, SegmentState::Taken);
         let SegmentState::Open(open) = state else { return };
+        // The block asks its own questions again, in their order.
+        self.follow_answers(id, open.answers.len());
         self.run.restore(&open.snapshot);
-        let mut open = Open { snapshot: open.snapshot, phase: open.phase, answers: open.answers };
+        let mut now =
+            Open { snapshot: Rc::clone(&open.snapshot), phase: open.phase.clone(), answers: open.answers.clone() };
+        let mut asks_again = !open.answers.is_empty();
         let state = loop {
-            match self.advance(&mut open, watch) {
-                Some(Progress::Ended(leaf)) => break SegmentState::Leaf(Arc::new(leaf)),
+            match self.advance(&mut now, watch) {
+                Some(Progress::Ended(leaf)) => break SegmentState::Leaf(Rc::new(leaf)),
                 Some(Progress::Asked(_)) if self.segments.len() >= MAX_SEGMENTS => {
                     break self.unfollowed("more than 200,000 ways");
                 }
-                Some(Progress::Asked(test)) => break self.fork(id, test, &open),
+                Some(Progress::Asked(test)) => break self.fork(id, test, &now),
+                // What has been executed since the last question is executed again.
                 Some(Progress::Stopped) => break SegmentState::Open(open),
                 None if self.nodes.arena().len() > MAX_NODES => {
                     break self.unfollowed("a loop that computes without an end");
+                }
+                None if asks_again => {
+                    asks_again = false;
+                    self.follow_answers(id, 0);
                 }
                 None => {}
             }
@@ -227,7 +246,7 @@ impl<L: Library> Tree<L> {
 
     fn unfollowed(&self, what: &str) -> SegmentState {
         let blocks = self.run.control().blocks();
-        SegmentState::Leaf(Arc::new(self.leaf(End::Unfollowed(what.to_owned()), blocks)))
+        SegmentState::Leaf(Rc::new(self.leaf(End::Unfollowed(what.to_owned()), blocks)))
     }
 
     /// Adds the two answers of a question.
@@ -241,7 +260,7 @@ impl<L: Library> Tree<L> {
         let mut child = |answer: bool| {
             let mut answers = open.answers.clone();
             answers.push(answer);
-            let open = Open { snapshot: Arc::clone(&open.snapshot), phase: open.phase.clone(), answers };
+            let open = Open { snapshot: Rc::clone(&open.snapshot), phase: open.phase.clone(), answers };
             self.segments.push(Segment { parent: Some((id, answer)), state: SegmentState::Open(open) });
             self.segments.len() - 1
         };
@@ -302,8 +321,6 @@ impl<L: Library> Tree<L> {
     fn block(&mut self, open: &mut Open, watch: &Watch) -> Option<Progress> {
         let blocks = self.run.control().blocks();
         if blocks.is_multiple_of(BLOCKS_PER_LOOK) && watch.is_over() {
-            // What has been executed since the last question is executed again.
-            self.run.restore(&open.snapshot);
             return Some(Progress::Stopped);
         }
         if blocks >= self.question.max_blocks {
@@ -315,7 +332,7 @@ impl<L: Library> Tree<L> {
                 None
             }
             Advance::Fork(test) => {
-                open.snapshot = Arc::new(self.run.snapshot());
+                open.snapshot = Rc::new(self.run.snapshot());
                 Some(Progress::Asked(test))
             }
             Advance::End(Outcome::End) => self.end(open, End::End),
@@ -350,7 +367,7 @@ impl<L: Library> Tree<L> {
                 Err(_) => BoundState::None,
             });
         }
-        open.snapshot = Arc::new(self.run.snapshot());
+        open.snapshot = Rc::new(self.run.snapshot());
         open.answers.clear();
         open.phase = Phase::Claims(leaf);
         None

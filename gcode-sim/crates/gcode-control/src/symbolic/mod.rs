@@ -23,7 +23,7 @@ use super::control::Control;
 use super::executor::Executor;
 use super::flow::CallFrame;
 use super::loop_detection::LoopDetector;
-use super::outcome::{AlarmStop, Outcome, RunEnd};
+use super::outcome::{AlarmStop, Limits, Outcome, RunEnd};
 use super::variables::{Value, VariableClass};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{Bytecode, Library, Memory, OpBody, OpKind, Statement};
@@ -130,6 +130,11 @@ impl SymbolicRun {
         let value = self.control.variable(number).map_err(|_| Halt::unfollowed(format!("#{number}")))?;
         let Some(stored) = value.as_number() else { return Ok(None) };
         Term::of(stored).map(Some).ok_or_else(|| Halt::unfollowed(format!("#{number}")))
+    }
+
+    /// Runs to the end, when every variable is a known number.
+    pub fn run_numbers(&mut self, limits: Limits, library: &mut impl Library) -> Outcome {
+        self.control.run(limits, library, &mut ())
     }
 
     /// Executes the next block with these answers to its questions.

@@ -123,7 +123,7 @@ struct MoveBlock<'a, 'o, T> {
 impl<T: Terms> MoveBlock<'_, '_, T> {
     /// Returns the alarm of a block that the control refuses whatever the terms, if they can't raise an earlier one.
     fn refused(&mut self, alarm: Halt) -> Halt {
-        let is_small = |term: &Term, oracle: &Oracle<'_, T>| {
+        let is_small = |term: &Term, oracle: &mut Oracle<'_, T>| {
             let (low, high) = oracle.terms.bounds(*term);
             low > -5e4 && high < 5e4
         };

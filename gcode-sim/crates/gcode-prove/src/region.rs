@@ -1,0 +1,288 @@
+//! One box: every way that its values can take, and what the claims are there.
+use gcode_enclosure::{Arena, Condition, Domain, Enclosures, Interval, NodeId, Relation};
+use gcode_lang::program::Library;
+use gcode_lang::syntax::ast::BinaryOp;
+
+use crate::nodes::is_finite;
+use crate::tree::{Asked, BoundState, ClaimState, End, Leaf, NodeFormula, SegmentId, Step, Tree};
+use crate::watch::Watch;
+
+/// Largest number of ways of a box; with more it is divided.
+const MAX_WAYS: usize = 48;
+
+/// Largest number of undecided questions of a box.
+const MAX_FORKS: usize = 400;
+
+/// Set of claims, as bits.
+pub(crate) type ClaimSet = u64;
+
+/// What is known of a box.
+#[derive(Debug, Default)]
+pub(crate) struct Finding {
+    /// Claims that hold for all values.
+    pub(crate) proved: ClaimSet,
+    /// Claims that fail for all values of the box.
+    pub(crate) refuted: ClaimSet,
+    /// Conditions that aren't decided, the most important first.
+    pub(crate) undecided: Vec<Condition>,
+    /// What isn't followed on some way.
+    pub(crate) unfollowed: Option<String>,
+    /// Dividing the box can't help.
+    pub(crate) is_final: bool,
+    /// A way on which the conditions of the request hold has been reached.
+    pub(crate) is_included: bool,
+    /// Ranges of the variables whose bounds are wanted; empty if no run gives them a value.
+    pub(crate) bounds: Vec<Interval>,
+    /// Nodes of the last way that has values for them.
+    pub(crate) bound_nodes: Vec<Option<NodeId>>,
+    pub(crate) is_stopped: bool,
+}
+
+/// Examines a box for the claims of a set.
+pub(crate) fn examine<L: Library>(
+    tree: &mut Tree<L>,
+    enclosures: Enclosures,
+    claims: ClaimSet,
+    watch: &Watch,
+) -> Finding {
+    let mut region = Region {
+        claims,
+        finding: Finding {
+            proved: claims,
+            bounds: vec![Interval::EMPTY; tree.bound_count()],
+            bound_nodes: vec![None; tree.bound_count()],
+            ..Finding::default()
+        },
+        fails: 0,
+        forks: 0,
+        ways: 0,
+        failing: Vec::new(),
+    };
+    region.walk(tree, enclosures, watch);
+    region.conclude()
+}
+
+struct Region {
+    claims: ClaimSet,
+    finding: Finding,
+    /// Claims that fail on a way.
+    fails: ClaimSet,
+    forks: usize,
+    ways: usize,
+    failing: Vec<Condition>,
+}
+
+impl Region {
+    fn walk<L: Library>(&mut self, tree: &mut Tree<L>, enclosures: Enclosures, watch: &Watch) {
+        let mut pending: Vec<(SegmentId, Enclosures)> = vec![(0, enclosures)];
+        while let Some((id, mut enclosures)) = pending.pop() {
+            let fork = match tree.step(id, watch) {
+                Step::Fork(fork) => fork,
+                Step::Leaf(leaf) => {
+                    self.ways += 1;
+                    self.leaf(tree, &leaf, &mut enclosures);
+                    if self.ways > MAX_WAYS && !pending.is_empty() {
+                        return self.give_up();
+                    }
+                    continue;
+                }
+                Step::Stopped => {
+                    self.finding.is_stopped = true;
+                    return self.give_up();
+                }
+            };
+            let arena = tree.nodes.arena();
+            let answer = match fork.asked {
+                Asked::Condition(condition) => enclosures.decide(arena, condition),
+                Asked::Finite(node) => is_finite(arena, &mut enclosures, node),
+            };
+            match answer {
+                Some(true) => pending.push((fork.yes, enclosures)),
+                Some(false) => pending.push((fork.no, enclosures)),
+                None => {
+                    self.forks += 1;
+                    let mut other = enclosures.clone();
+                    let (mut yes, mut no) = (true, true);
+                    if let Asked::Condition(condition) = fork.asked {
+                        self.finding.undecided.push(condition);
+                        yes = enclosures.assume(arena, condition);
+                        no = other.assume(arena, condition.negated());
+                    }
+                    if self.forks > MAX_FORKS {
+                        return self.give_up();
+                    }
+                    // The way on which the run continues is often the one on which a claim fails.
+                    pending.extend(yes.then_some((fork.yes, enclosures)));
+                    pending.extend(no.then_some((fork.no, other)));
+                }
+            }
+        }
+    }
+
+    /// Leaves the rest of the box undecided.
+    fn give_up(&mut self) {
+        self.finding.proved = 0;
+        self.fails = 0;
+        self.finding.bounds.iter_mut().for_each(|bounds| *bounds = Interval::ALL);
+    }
+
+    fn leaf<L: Library>(&mut self, tree: &Tree<L>, leaf: &Leaf, enclosures: &mut Enclosures) {
+        if leaf.end == End::Excluded {
+            return;
+        }
+        self.finding.is_included = true;
+        let arena = tree.nodes.arena();
+        for (index, state) in leaf.claims.iter().enumerate().filter(|(index, _)| self.claims >> index & 1 == 1) {
+            let bit = 1 << index;
+            match state {
+                ClaimState::Holds => {}
+                ClaimState::Fails => {
+                    self.finding.proved &= !bit;
+                    self.fails |= bit;
+                }
+                ClaimState::Unfollowed(what) => {
+                    self.finding.proved &= !bit;
+                    self.finding.unfollowed.get_or_insert_with(|| what.clone());
+                }
+                ClaimState::Depends(formula) => match decide(formula, arena, enclosures, &mut self.failing) {
+                    Some(true) => {}
+                    Some(false) => {
+                        self.finding.proved &= !bit;
+                        self.fails |= bit;
+                    }
+                    None => self.finding.proved &= !bit,
+                },
+            }
+        }
+        self.bounds(leaf, arena, enclosures);
+    }
+
+    fn bounds(&mut self, leaf: &Leaf, arena: &Arena, enclosures: &mut Enclosures) {
+        let finding = &mut self.finding;
+        for (index, state) in leaf.bounds.iter().enumerate() {
+            match state {
+                BoundState::None => {}
+                BoundState::Unfollowed(what) => {
+                    finding.unfollowed.get_or_insert_with(|| what.clone());
+                    finding.bounds[index] = Interval::ALL;
+                }
+                BoundState::Node(node) => {
+                    let range = enclosures.enclose_tightly(arena, *node);
+                    finding.bounds[index] = finding.bounds[index].hull(range);
+                    finding.bound_nodes[index] = Some(*node);
+                }
+            }
+        }
+    }
+
+    fn conclude(mut self) -> Finding {
+        let has_one_way = self.forks == 0 && self.ways == 1;
+        if has_one_way {
+            self.finding.refuted = self.fails & self.claims;
+            self.finding.is_final = self.finding.unfollowed.is_some();
+        }
+        // What the claims say decides more often than where a way divides.
+        self.failing.append(&mut self.finding.undecided);
+        self.finding.undecided = self.failing;
+        self.finding
+    }
+}
+
+/// Decides a condition over nodes; those that aren't decided are collected.
+fn decide(
+    formula: &NodeFormula,
+    arena: &Arena,
+    enclosures: &mut Enclosures,
+    undecided: &mut Vec<Condition>,
+) -> Option<bool> {
+    match formula {
+        NodeFormula::Known(known) => Some(*known),
+        NodeFormula::Condition(condition) => {
+            let answer = enclosures.decide(arena, *condition);
+            if answer.is_none() {
+                undecided.push(*condition);
+            }
+            answer
+        }
+        NodeFormula::Logic(op, left, right) => {
+            let left = decide(left, arena, enclosures, undecided);
+            match (op, left) {
+                (BinaryOp::And, Some(false)) => Some(false),
+                (BinaryOp::And, Some(true)) => decide(right, arena, enclosures, undecided),
+                (BinaryOp::Xor, left) => {
+                    let right = decide(right, arena, enclosures, undecided)?;
+                    Some(left? != right)
+                }
+                (BinaryOp::And, None) => {
+                    let right = decide(right, arena, enclosures, undecided);
+                    if right == Some(false) { right } else { None }
+                }
+                (_, Some(true)) => Some(true),
+                (_, Some(false)) => decide(right, arena, enclosures, undecided),
+                (_, None) => {
+                    let right = decide(right, arena, enclosures, undecided);
+                    if right == Some(true) { right } else { None }
+                }
+            }
+        }
+    }
+}
+
+/// Divides a box where it decides most; empty if every input has one value.
+pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<Domain> {
+    for condition in &finding.undecided {
+        if let Some(parts) = cut_at_limit(arena, domain, *condition) {
+            return parts;
+        }
+    }
+    let input = finding.undecided.first().and_then(|condition| best_input(arena, domain, *condition));
+    let widest = || {
+        let ranges = domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
+        let width = |range: &Interval| range.width() / (range.magnitude() + f64::MIN_POSITIVE);
+        ranges.max_by(|a, b| width(a.1).total_cmp(&width(b.1))).map(|(input, _)| input)
+    };
+    let Some(input) = input.or_else(widest) else { return Vec::new() };
+    domain.split(input).map_or_else(Vec::new, Vec::from)
+}
+
+/// Cuts a box exactly where a condition compares an input with a number.
+fn cut_at_limit(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
+    let input_of = |node: NodeId| match arena.node(node) {
+        gcode_enclosure::Node::Input(input) => Some(input),
+        _ => None,
+    };
+    let (input, limit, relation) = match (input_of(condition.left), arena.as_constant(condition.right)) {
+        (Some(input), Some(limit)) => (input, limit, condition.relation),
+        _ => {
+            let input = input_of(condition.right)?;
+            (input, arena.as_constant(condition.left)?, condition.relation.swapped())
+        }
+    };
+    let range = domain.range(input);
+    let (below, above) = (limit.next_down(), limit.next_up());
+    let parts = match relation {
+        Relation::Lt | Relation::Ge => vec![(range.lo(), below), (limit, range.hi())],
+        Relation::Le | Relation::Gt => vec![(range.lo(), limit), (above, range.hi())],
+        Relation::Eq | Relation::Ne => vec![(range.lo(), below), (limit, limit), (above, range.hi())],
+    };
+    let parts = parts.into_iter().filter(|(lo, hi)| lo <= hi && *lo >= range.lo() && *hi <= range.hi());
+    let parts: Vec<_> = parts.map(|(lo, hi)| domain.with(input, Interval::new(lo, hi))).collect();
+    (parts.len() > 1).then_some(parts)
+}
+
+/// Returns the input that, known to be at its middle, leaves least of a condition's margin.
+fn best_input(arena: &Arena, domain: &Domain, condition: Condition) -> Option<usize> {
+    let margin = |domain: Domain| {
+        let mut enclosures = Enclosures::with_degree(domain, 0);
+        let (left, right) =
+            (enclosures.enclose(arena, condition.left), enclosures.enclose(arena, condition.right));
+        left.width() + right.width()
+    };
+    let all = margin(domain.clone());
+    let ranges = domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
+    let rated = ranges.map(|(input, range)| {
+        (all - margin(domain.with(input, Interval::point(range.midpoint()))), input)
+    });
+    let best = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 > 0.0).then_some(best.1)
+}
