@@ -25,6 +25,10 @@ impl Approximation {
         let range = function.domain(range)?;
         let middle = range.midpoint();
         let radius = (range.hi() - middle).next_up().max((middle - range.lo()).next_up());
+        // The powers of a radius below would underflow.
+        if radius < 1e-25 {
+            return None;
+        }
         let degree = degree.clamp(1, MAX_DEGREE);
         let bounds = function.coefficient_bounds(range, degree + 1);
         let scale = function.value(middle).abs() * f64::EPSILON / 8.0;

@@ -55,7 +55,7 @@ const WIDTHS: [f64; 10] = [0.0, 1e-320, 1e-15, 1e-9, 1e-3, 0.5, 1.0, 20.0, 400.0
 fn range() -> impl Strategy<Value = Interval> {
     let place = prop_oneof![4 => -20.0..20.0, 4 => prop::sample::select(&PLACES[..]), 1 => any::<f64>()];
     let width = prop_oneof![3 => 0.0..4.0, 3 => prop::sample::select(&WIDTHS[..])];
-    (place, width, 0..3).prop_map(|(place, width, side)| {
+    (place, width, 0..3).prop_map(|(place, width, side): (f64, f64, i32)| {
         let place = if place.is_nan() { 0.0 } else { place };
         let (below, above) = [(0.0, width), (width, 0.0), (width, width)][side as usize];
         Interval::new((place - below).max(-f64::MAX), (place + above).min(f64::MAX))
@@ -125,7 +125,7 @@ fn shares() -> impl Strategy<Value = Vec<Vec<f64>>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 3000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: std::env::var("CASES").ok().and_then(|c| c.parse().ok()).unwrap_or(3000), ..ProptestConfig::default() })]
 
     #[test]
     fn a_computed_value_lies_in_its_enclosure(
