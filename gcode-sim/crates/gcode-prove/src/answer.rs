@@ -240,7 +240,7 @@ impl<S: Setup> Prover<'_, S> {
         });
         results.into_iter().collect::<Result<(), _>>()?;
         let rest = shared.into_rest();
-        if !question.conditions.is_empty() && !rest.is_included && rest.boxes_left == 0 {
+        if !question.conditions.is_empty() && !rest.is_included && rest.boxes_left == 0 && rest.refuted == 0 {
             return Err(RequestError::NothingLeft.into());
         }
         self.take(&rest, group, &question, settings)

@@ -9,6 +9,9 @@ use gcode_lang::syntax::ast;
 /// Largest number of constants that are kept for the search.
 const MAX_CONSTANTS: usize = 200;
 
+/// Magnitude below which six units in the last place are far less than a half.
+const LARGEST_MULTIPLE: f64 = 1e12;
+
 /// Nodes of all ways of a program.
 #[derive(Debug)]
 pub(crate) struct Nodes {
@@ -90,6 +93,11 @@ impl Nodes {
         }
     }
 
+    /// Adds an answer of the way that is followed.
+    pub(crate) fn add_answer(&mut self, test: &Test, answer: bool) {
+        self.answers.insert(key(test), answer);
+    }
+
     /// Returns the node of a term.
     pub(crate) fn id(&mut self, term: Term) -> NodeId {
         match term {
@@ -101,6 +109,29 @@ impl Nodes {
             }
             Term::Node(node) => self.known_id(node),
         }
+    }
+
+    /// Returns the whole number of which a node is the quotient by `scale`, if rounding their product gives it back.
+    ///
+    /// Quotient, product and the correction of halves are off by less than six units in the last place.
+    fn multiple(&mut self, node: NodeId, scale: f64) -> Option<NodeId> {
+        let Node::Binary(Binary::Div, whole, divisor) = self.arena.node(node) else { return None };
+        let is_multiple = self.arena.as_constant(divisor) == Some(scale) && self.arena.is_whole(whole);
+        (is_multiple && self.root.enclose(&self.arena, whole).magnitude() < LARGEST_MULTIPLE).then_some(whole)
+    }
+
+    /// Returns the node of ROUND.
+    fn rounded(&mut self, node: NodeId) -> NodeId {
+        if let Node::Binary(Binary::Mul, a, b) = self.arena.node(node) {
+            for (factor, scale) in [(a, b), (b, a)] {
+                if let Some(scale) = self.arena.as_constant(scale)
+                    && let Some(whole) = self.multiple(factor, scale)
+                {
+                    return whole;
+                }
+            }
+        }
+        self.arena.unary(Unary::Round, node)
     }
 
     fn known_id(&self, node: u32) -> NodeId {
@@ -175,10 +206,14 @@ impl Terms for Nodes {
             TermOperation::Direction => self.arena.binary(Binary::Atan, a, b),
             TermOperation::Negate => self.arena.unary(Unary::Neg, a),
             TermOperation::Function(function) => match unary_of(function) {
+                Some(Unary::Round) => self.rounded(a),
                 Some(function) => self.arena.unary(function, a),
                 None => a,
             },
-            TermOperation::Scaled(scale) => self.arena.round_scaled(a, scale),
+            TermOperation::Scaled(scale) => match self.multiple(a, scale) {
+                Some(whole) => whole,
+                None => self.arena.round_scaled(a, scale),
+            },
         };
         self.term(id)
     }

@@ -13,6 +13,9 @@ const MAX_WAYS: usize = 48;
 /// Largest number of undecided questions of a box.
 const MAX_FORKS: usize = 400;
 
+/// Largest number of questions of a box, decided ones included.
+const MAX_STEPS: usize = 20_000;
+
 /// Set of claims, as bits.
 pub(crate) type ClaimSet = u64;
 
@@ -75,7 +78,12 @@ struct Region {
 impl Region {
     fn walk<L: Library>(&mut self, tree: &mut Tree<L>, enclosures: Enclosures, watch: &Watch) {
         let mut pending: Vec<(SegmentId, Enclosures)> = vec![(0, enclosures)];
+        let mut steps = 0;
         while let Some((id, mut enclosures)) = pending.pop() {
+            steps += 1;
+            if steps > MAX_STEPS {
+                return self.give_up();
+            }
             let fork = match tree.step(id, watch) {
                 Step::Fork(fork) => fork,
                 Step::Leaf(leaf) => {
@@ -230,8 +238,9 @@ fn decide(
 
 /// Divides a box where it decides most; empty if every input has one value.
 pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<Domain> {
-    for condition in &finding.undecided {
-        if let Some(parts) = cut_at_limit(arena, domain, *condition) {
+    for condition in finding.undecided.iter().take(8) {
+        let parts = cut_at_limit(arena, domain, *condition).or_else(|| cut_at_turn(arena, domain, *condition));
+        if let Some(parts) = parts {
             return parts;
         }
     }
@@ -268,6 +277,54 @@ fn cut_at_limit(arena: &Arena, domain: &Domain, condition: Condition) -> Option<
     let parts = parts.into_iter().filter(|(lo, hi)| lo <= hi && *lo >= range.lo() && *hi <= range.hi());
     let parts: Vec<_> = parts.map(|(lo, hi)| domain.with(input, Interval::new(lo, hi))).collect();
     (parts.len() > 1).then_some(parts)
+}
+
+/// Cuts a box exactly where a condition of one input turns, if it has different answers at both ends.
+fn cut_at_turn(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
+    let mut inputs = inputs_of(arena, [condition.left, condition.right]);
+    inputs.retain(|input| domain.range(*input).lo() < domain.range(*input).hi());
+    let [input] = inputs[..] else { return None };
+    let range = domain.range(input);
+    let mut point = domain.midpoint();
+    let mut holds = |value: f64| {
+        point[input] = value;
+        arena.holds(condition, &point).ok()
+    };
+    let (mut low, mut high) = (range.lo(), range.hi());
+    let at_low = holds(low)?;
+    if at_low == holds(high)? {
+        return None;
+    }
+    while low.next_up() < high {
+        let middle = low / 2.0 + high / 2.0;
+        let middle = if low < middle && middle < high { middle } else { low.next_up() };
+        if holds(middle)? == at_low { low = middle } else { high = middle }
+    }
+    Some(vec![
+        domain.with(input, Interval::new(range.lo(), low)),
+        domain.with(input, Interval::new(high, range.hi())),
+    ])
+}
+
+/// Returns the inputs on which nodes depend, in ascending order.
+fn inputs_of(arena: &Arena, nodes: [NodeId; 2]) -> Vec<usize> {
+    let mut inputs = Vec::new();
+    let mut seen = std::collections::BTreeSet::new();
+    let mut pending = nodes.to_vec();
+    while let Some(node) = pending.pop() {
+        if !seen.insert(node) {
+            continue;
+        }
+        match arena.node(node) {
+            gcode_enclosure::Node::Input(input) => inputs.push(input),
+            gcode_enclosure::Node::Constant(_) => {}
+            gcode_enclosure::Node::Unary(_, x) => pending.push(x),
+            gcode_enclosure::Node::Binary(_, a, b) => pending.extend([a, b]),
+        }
+    }
+    inputs.sort_unstable();
+    inputs.dedup();
+    inputs
 }
 
 /// Returns the input that, known to be at its middle, leaves least of a condition's margin.

@@ -8,7 +8,7 @@ use gcode_lang::program::Library;
 use crate::points::Points;
 use crate::region::ClaimSet;
 use crate::shared::Shared;
-use crate::tree::{ClaimState, Question, Tree};
+use crate::tree::{ClaimState, End, Question, Tree};
 use crate::watch::Watch;
 use crate::witness::Witness;
 
@@ -51,6 +51,9 @@ impl<'s, L: Library> Prober<'s, L> {
     pub(crate) fn try_point(&mut self, point: &[f64]) {
         self.watch.count_run();
         let Some(way) = self.points.follow(&mut self.tree, point, self.watch, |_, _| {}) else { return };
+        if way.leaf.end != End::Excluded {
+            self.shared.include();
+        }
         let open = self.shared.open_claims();
         let suspected = (way.failed | way.unfollowed) & open;
         let is_compared = self.compared < COMPARED;

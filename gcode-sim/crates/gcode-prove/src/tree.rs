@@ -25,6 +25,15 @@ pub(crate) struct Question {
 }
 
 impl Question {
+    /// Returns the number of blocks after which nothing more is asked: every claim counts blocks, and fails.
+    pub(crate) fn enough_blocks(&self) -> u64 {
+        let limit = |claim: &Claim| match claim {
+            Claim::Blocks(limit) => *limit,
+            Claim::Condition(_) | Claim::NoAlarm | Claim::OnlyAlarms(_) | Claim::Travel(_) => u64::MAX,
+        };
+        if self.bounds.is_empty() { self.claims.iter().map(limit).max().unwrap_or(u64::MAX) } else { u64::MAX }
+    }
+
     /// Returns the box of all ranges.
     pub(crate) fn domain(&self) -> Domain {
         let range = |range: &Range| gcode_enclosure::Interval::new(range.low, range.high);
@@ -52,12 +61,34 @@ enum SegmentState {
 }
 
 /// Segment that no box has reached yet.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Open {
+    /// State before a block, a condition or a claim.
     snapshot: Rc<Snapshot>,
     phase: Phase,
+    /// Answers of the way since then.
     answers: Vec<bool>,
 }
+
+/// Expansion of a segment.
+struct Expansion {
+    /// Where it began, or where its last snapshot was taken; the answers are those used since then.
+    from: Open,
+    phase: Phase,
+    /// Number of answers in `from` that belong to what has been done.
+    used: usize,
+    blocks: u64,
+}
+
+impl Expansion {
+    /// Returns the answers to what is done next.
+    fn answers(&self) -> &[bool] {
+        &self.from.answers[self.used..]
+    }
+}
+
+/// Largest number of answers and of blocks that are done again from a snapshot.
+const MAX_REPEATED: (usize, u64) = (16, 512);
 
 /// What a run does next.
 #[derive(Clone, Debug)]
@@ -107,6 +138,17 @@ pub(crate) enum End {
     Unfollowed(String),
 }
 
+impl End {
+    /// Returns the end of a run.
+    pub(crate) fn of(outcome: &Outcome) -> Self {
+        match outcome {
+            Outcome::End => Self::End,
+            Outcome::Alarm(stop) => Self::Alarm(stop.alarm.code().to_string()),
+            Outcome::Limit => Self::Limit,
+        }
+    }
+}
+
 /// State of a claim at the end of a way.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ClaimState {
@@ -145,7 +187,10 @@ pub(crate) enum Step {
 const MAX_NODES: usize = 4_000_000;
 
 /// Largest number of segments.
-const MAX_SEGMENTS: usize = 200_000;
+const MAX_SEGMENTS: usize = 30_000;
+
+/// Largest number of questions on one way; a loop that never ends must not fill the memory.
+const MAX_QUESTIONS: usize = 2000;
 
 /// Number of blocks between two looks at the clock.
 const BLOCKS_PER_LOOK: u64 = 1024;
@@ -207,38 +252,42 @@ impl<L: Library> Tree<L> {
         })
     }
 
-    /// Lets the answers of the way to a segment hold, without the last ones.
-    fn follow_answers(&mut self, id: SegmentId, without: usize) {
-        let answers: Vec<_> = self.answers_to(id).skip(without).collect();
-        self.nodes.set_answers(answers.into_iter());
-    }
-
     fn expand(&mut self, id: SegmentId, watch: &Watch) {
         let state = std::mem::replace(&mut self.segments[id].state, SegmentState::Taken);
         let SegmentState::Open(open) = state else { return };
-        // The block asks its own questions again, in their order.
-        self.follow_answers(id, open.answers.len());
+        // What is done again asks its own questions again, in their order.
+        let way: Vec<_> = self.answers_to(id).collect();
+        let (again, before) = way.split_at(open.answers.len());
+        self.nodes.set_answers(before.iter().copied());
+        let mut again = again.iter().rev();
         self.run.restore(&open.snapshot);
-        let mut now =
-            Open { snapshot: Rc::clone(&open.snapshot), phase: open.phase.clone(), answers: open.answers.clone() };
-        let mut asks_again = !open.answers.is_empty();
+        let mut expansion = Expansion {
+            phase: open.phase.clone(),
+            from: open.clone(),
+            used: 0,
+            blocks: self.run.control().blocks(),
+        };
         let state = loop {
-            match self.advance(&mut now, watch) {
+            let before = expansion.used;
+            match self.advance(&mut expansion, watch) {
                 Some(Progress::Ended(leaf)) => break SegmentState::Leaf(Rc::new(leaf)),
                 Some(Progress::Asked(_)) if self.segments.len() >= MAX_SEGMENTS => {
-                    break self.unfollowed("more than 200,000 ways");
+                    break self.unfollowed("more than 30,000 ways");
                 }
-                Some(Progress::Asked(test)) => break self.fork(id, test, &now),
+                Some(Progress::Asked(_)) if way.len() >= MAX_QUESTIONS => {
+                    break self.unfollowed("more than 2000 questions on one way");
+                }
+                Some(Progress::Asked(test)) => break self.fork(id, test, &mut expansion),
                 // What has been executed since the last question is executed again.
                 Some(Progress::Stopped) => break SegmentState::Open(open),
                 None if self.nodes.arena().len() > MAX_NODES => {
                     break self.unfollowed("a loop that computes without an end");
                 }
-                None if asks_again => {
-                    asks_again = false;
-                    self.follow_answers(id, 0);
+                None => {
+                    for (test, answer) in again.by_ref().take(expansion.used - before) {
+                        self.nodes.add_answer(test, *answer);
+                    }
                 }
-                None => {}
             }
         };
         self.segments[id].state = state;
@@ -250,17 +299,23 @@ impl<L: Library> Tree<L> {
     }
 
     /// Adds the two answers of a question.
-    fn fork(&mut self, id: SegmentId, test: Test, open: &Open) -> SegmentState {
+    fn fork(&mut self, id: SegmentId, test: Test, expansion: &mut Expansion) -> SegmentState {
         let asked = match test {
             Test::Compare(relation, left, right) => {
                 Asked::Condition(self.nodes.condition(relation, left, right))
             }
             Test::Finite(term) => Asked::Finite(self.nodes.id(term)),
         };
+        let blocks = self.run.control().blocks() - expansion.blocks;
+        if expansion.from.answers.len() >= MAX_REPEATED.0 || blocks >= MAX_REPEATED.1 {
+            // The state is that before what asks.
+            expansion.from.answers.drain(..expansion.used);
+            expansion.from.snapshot = Rc::new(self.run.snapshot());
+            expansion.from.phase = expansion.phase.clone();
+        }
         let mut child = |answer: bool| {
-            let mut answers = open.answers.clone();
-            answers.push(answer);
-            let open = Open { snapshot: Rc::clone(&open.snapshot), phase: open.phase.clone(), answers };
+            let mut open = expansion.from.clone();
+            open.answers.push(answer);
             self.segments.push(Segment { parent: Some((id, answer)), state: SegmentState::Open(open) });
             self.segments.len() - 1
         };
@@ -268,40 +323,46 @@ impl<L: Library> Tree<L> {
         SegmentState::Fork(Fork { test, asked, yes, no })
     }
 
-    /// Does one thing more; the state in `open` is that of the last block executed.
-    fn advance(&mut self, open: &mut Open, watch: &Watch) -> Option<Progress> {
-        match &mut open.phase {
+    /// Does one thing more.
+    fn advance(&mut self, open: &mut Expansion, watch: &Watch) -> Option<Progress> {
+        match open.phase.clone() {
             Phase::Conditions(index) => {
-                let Some(code) = self.question.conditions.get(*index) else {
+                let question = Arc::clone(&self.question);
+                let Some(code) = question.conditions.get(index) else {
                     open.phase = Phase::Blocks;
                     return None;
                 };
-                match self.run.decide(code, &mut self.nodes, &open.answers) {
-                    Ok(true) => {
-                        *index += 1;
-                        open.answers.clear();
+                match self.run.decide(code, &mut self.nodes, open.answers()) {
+                    Ok((true, used)) => {
+                        open.phase = Phase::Conditions(index + 1);
+                        open.used += used;
                         None
                     }
                     // A condition without a value excludes its values.
-                    Ok(false) | Err(Halt::Alarm(_)) => Some(Progress::Ended(self.leaf(End::Excluded, 0))),
+                    Ok((false, _)) | Err(Halt::Alarm(_)) => {
+                        Some(Progress::Ended(self.leaf(End::Excluded, 0)))
+                    }
                     Err(Halt::Fork(test)) => Some(Progress::Asked(test)),
                     Err(Halt::Unfollowed(what)) => Some(Progress::Ended(self.leaf(End::Unfollowed(what), 0))),
                 }
             }
             Phase::Blocks => self.block(open, watch),
-            Phase::Claims(leaf) => {
-                let index = leaf.claims.len();
-                let Some(claim) = self.question.claims.get(index) else {
-                    return Some(Progress::Ended(leaf.clone()));
+            Phase::Claims(mut leaf) => {
+                let question = Arc::clone(&self.question);
+                let Some(claim) = question.claims.get(leaf.claims.len()) else {
+                    return Some(Progress::Ended(leaf));
                 };
                 let state = match (claim, &leaf.end) {
                     (Claim::Condition(code), End::End) => {
-                        match self.run.condition(code, &mut self.nodes, &open.answers) {
-                            Ok(formula) => match self.formula(&formula) {
-                                NodeFormula::Known(true) => ClaimState::Holds,
-                                NodeFormula::Known(false) => ClaimState::Fails,
-                                formula => ClaimState::Depends(formula),
-                            },
+                        match self.run.condition(code, &mut self.nodes, open.answers()) {
+                            Ok((formula, used)) => {
+                                open.used += used;
+                                match self.formula(&formula) {
+                                    NodeFormula::Known(true) => ClaimState::Holds,
+                                    NodeFormula::Known(false) => ClaimState::Fails,
+                                    formula => ClaimState::Depends(formula),
+                                }
+                            }
                             Err(Halt::Fork(test)) => return Some(Progress::Asked(test)),
                             // A claim without a value doesn't hold.
                             Err(Halt::Alarm(_)) => ClaimState::Fails,
@@ -311,33 +372,31 @@ impl<L: Library> Tree<L> {
                     (claim, _) => state_at(claim, &leaf.end, leaf.blocks),
                 };
                 leaf.claims.push(state);
-                open.answers.clear();
+                open.phase = Phase::Claims(leaf);
                 None
             }
         }
     }
 
     /// Executes a block.
-    fn block(&mut self, open: &mut Open, watch: &Watch) -> Option<Progress> {
+    fn block(&mut self, open: &mut Expansion, watch: &Watch) -> Option<Progress> {
         let blocks = self.run.control().blocks();
         if blocks.is_multiple_of(BLOCKS_PER_LOOK) && watch.is_over() {
             return Some(Progress::Stopped);
         }
-        if blocks >= self.question.max_blocks {
-            return self.end(open, End::Limit);
+        if blocks > self.question.enough_blocks() {
+            return self.end(open, End::Limit, 0);
         }
-        match self.run.advance(&mut self.nodes, &open.answers, &mut self.library) {
-            Advance::Next => {
-                open.answers.clear();
+        if blocks >= self.question.max_blocks {
+            return self.end(open, End::Limit, 0);
+        }
+        match self.run.advance(&mut self.nodes, open.answers(), &mut self.library) {
+            Advance::Next(used) => {
+                open.used += used;
                 None
             }
-            Advance::Fork(test) => {
-                open.snapshot = Rc::new(self.run.snapshot());
-                Some(Progress::Asked(test))
-            }
-            Advance::End(Outcome::End) => self.end(open, End::End),
-            Advance::End(Outcome::Alarm(stop)) => self.end(open, End::Alarm(stop.alarm.code().to_string())),
-            Advance::End(Outcome::Limit) => self.end(open, End::Limit),
+            Advance::Fork(test) => Some(Progress::Asked(test)),
+            Advance::End(outcome, used) => self.end(open, End::of(&outcome), used),
             Advance::Unfollowed(what) => {
                 let what = format!("{}: {what}", self.place());
                 Some(Progress::Ended(self.leaf(End::Unfollowed(what), blocks)))
@@ -353,7 +412,7 @@ impl<L: Library> Tree<L> {
         format!("{program} line {line}")
     }
 
-    fn end(&mut self, open: &mut Open, end: End) -> Option<Progress> {
+    fn end(&mut self, open: &mut Expansion, end: End, used: usize) -> Option<Progress> {
         // An alarm leaves the locals of the macro.
         self.run.leave_calls();
         let blocks = self.run.control().blocks();
@@ -367,9 +426,13 @@ impl<L: Library> Tree<L> {
                 Err(_) => BoundState::None,
             });
         }
-        open.snapshot = Rc::new(self.run.snapshot());
-        open.answers.clear();
+        // The answers to the questions of a last block that ends the run.
+        open.used += used;
+        open.from.answers.drain(..open.used);
+        open.used = 0;
+        open.from.snapshot = Rc::new(self.run.snapshot());
         open.phase = Phase::Claims(leaf);
+        open.from.phase = open.phase.clone();
         None
     }
 

@@ -2,7 +2,7 @@
 use std::sync::Arc;
 
 use gcode_control::symbolic::{Formula, Snapshot, SymbolicRun, Term, TermOperation, Terms, Test};
-use gcode_control::{Control, Limits, Outcome};
+use gcode_control::{Control, Limits};
 use gcode_lang::program::Library;
 
 use crate::region::ClaimSet;
@@ -63,23 +63,21 @@ impl<L: Library> Witness<L> {
         let excluded =
             PointResult { end: None, blocks: 0, failed: 0, values: vec![None; self.question.bounds.len()] };
         for code in &self.question.conditions {
-            if !matches!(self.run.decide(code, &mut NoTerms, &[]), Ok(true)) {
+            if !matches!(self.run.decide(code, &mut NoTerms, &[]), Ok((true, _))) {
                 return excluded;
             }
         }
-        let limits = Limits { blocks: self.question.max_blocks };
-        let end = match self.run.run_numbers(limits, &mut self.library) {
-            Outcome::End => End::End,
-            Outcome::Alarm(stop) => End::Alarm(stop.alarm.code().to_string()),
-            Outcome::Limit => End::Limit,
-        };
+        let enough = self.question.enough_blocks().saturating_add(1);
+        let limits = Limits { blocks: self.question.max_blocks.min(enough) };
+        let end = End::of(&self.run.run_numbers(limits, &mut self.library));
         let blocks = self.run.control().blocks();
         self.run.leave_calls();
         let mut failed = 0;
         for (index, claim) in self.question.claims.iter().enumerate() {
             let holds = match (claim, &end) {
                 (Claim::Condition(code), End::End) => {
-                    matches!(self.run.condition(code, &mut NoTerms, &[]).map(|formula| value(&formula)), Ok(Some(true)))
+                    let formula = self.run.condition(code, &mut NoTerms, &[]);
+                    matches!(formula.map(|(formula, _)| value(&formula)), Ok(Some(true)))
                 }
                 (claim, end) => state_at(claim, end, blocks) == ClaimState::Holds,
             };

@@ -25,7 +25,7 @@ impl<L: Library> Prober<'_, L> {
     fn examine(&mut self, pending: Pending) {
         self.watch.count_box();
         let claims = pending.claims & self.shared.open_claims();
-        if claims == 0 && !self.needs_inclusion() {
+        if claims == 0 {
             return;
         }
         if let Some(points) = doubles(&pending.domain) {
@@ -50,11 +50,6 @@ impl<L: Library> Prober<'_, L> {
             return;
         }
         self.divide(&Pending { claims: left, ..pending }, &finding);
-    }
-
-    /// Returns true while no value is known to satisfy the conditions of the request.
-    fn needs_inclusion(&self) -> bool {
-        false
     }
 
     fn divide(&self, pending: &Pending, finding: &Finding) {

@@ -41,10 +41,10 @@ pub struct Snapshot(Box<Executor>);
 /// Result of [`SymbolicRun::advance`].
 #[derive(Clone, Debug)]
 pub enum Advance {
-    /// The block is executed.
-    Next,
-    /// The run has ended.
-    End(Outcome),
+    /// The block is executed, with this number of answers.
+    Next(usize),
+    /// The run has ended, with this number of answers.
+    End(Outcome, usize),
     /// The block needs the answer to a question; nothing has changed.
     Fork(Test),
     /// The block does something with the ranges that isn't followed; nothing has changed.
@@ -99,7 +99,8 @@ impl SymbolicRun {
         }
     }
 
-    /// Evaluates a condition in the current state; `answers` are those to the questions that its functions ask.
+    /// Evaluates a condition in the current state; `answers` are those to the questions that its functions ask, and to later
+    /// ones. Returns the number of answers used too.
     ///
     /// # Errors
     /// [`Halt`]: a further question, the alarm of a function, or a value that isn't followed.
@@ -108,18 +109,25 @@ impl SymbolicRun {
         code: &Bytecode,
         terms: &mut T,
         answers: &[bool],
-    ) -> Result<Formula, Halt> {
+    ) -> Result<(Formula, usize), Halt> {
         let mut oracle = Oracle::new(terms, answers);
-        Evaluation::new(&self.control.executor.registers, &mut oracle).condition(code)
+        let formula = Evaluation::new(&self.control.executor.registers, &mut oracle).condition(code)?;
+        Ok((formula, answers.len() - oracle.unused()))
     }
 
-    /// Decides a condition in the current state.
+    /// Decides a condition in the current state. Returns the number of answers used too.
     ///
     /// # Errors
     /// [`Halt`] as of [`SymbolicRun::condition`].
-    pub fn decide<T: Terms>(&self, code: &Bytecode, terms: &mut T, answers: &[bool]) -> Result<bool, Halt> {
+    pub fn decide<T: Terms>(
+        &self,
+        code: &Bytecode,
+        terms: &mut T,
+        answers: &[bool],
+    ) -> Result<(bool, usize), Halt> {
         let mut oracle = Oracle::new(terms, answers);
-        Evaluation::new(&self.control.executor.registers, &mut oracle).is_true(code)
+        let is_true = Evaluation::new(&self.control.executor.registers, &mut oracle).is_true(code)?;
+        Ok((is_true, answers.len() - oracle.unused()))
     }
 
     /// Returns a local or common variable: `None` if it is vacant.
@@ -137,20 +145,24 @@ impl SymbolicRun {
         self.control.run(limits, library, &mut ())
     }
 
-    /// Executes the next block with these answers to its questions.
+    /// Executes the next block; `answers` are those to its questions, in their order, and to later ones.
     pub fn advance<T: Terms>(
         &mut self,
         terms: &mut T,
         answers: &[bool],
         library: &mut impl Library,
     ) -> Advance {
-        match self.execute(&mut Oracle::new(terms, answers), library) {
-            Ok(None) => Advance::Next,
-            Ok(Some(outcome)) => Advance::End(outcome),
+        let mut oracle = Oracle::new(terms, answers);
+        let result = self.execute(&mut oracle, library);
+        let used = answers.len() - oracle.unused();
+        match result {
+            Ok(None) => Advance::Next(used),
+            Ok(Some(outcome)) => Advance::End(outcome, used),
             Err(Halt::Fork(test)) => Advance::Fork(test),
             Err(Halt::Alarm(alarm)) => {
                 let backtrace = self.control.executor.flow.backtrace();
-                Advance::End(Outcome::Alarm(AlarmStop { alarm: alarm.node, span: alarm.span, backtrace }))
+                let stop = AlarmStop { alarm: alarm.node, span: alarm.span, backtrace };
+                Advance::End(Outcome::Alarm(stop), used)
             }
             Err(Halt::Unfollowed(what)) => Advance::Unfollowed(what),
         }

@@ -91,7 +91,8 @@ impl SymbolicRun {
         }
         plan.state.modal_words.n = number.unwrap_or(plan.state.modal_words.n);
         let moves = plan.commands_axes;
-        let shifts = self.control.block_words.has_non_motion_code(shifts_coordinates);
+        let had_terms = self.control.executor.registers.has_terms_in_state();
+        let shifts = had_terms && self.control.block_words.has_non_motion_code(shifts_coordinates);
         self.control.executor.begin(place);
         let end = self.carry_out(library)?;
         let registers = &mut self.control.executor.registers;
@@ -144,6 +145,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
     /// Refuses codes and modes in which more than a straight move depends on a position.
     fn check_codes(&self) -> Symbolic<()> {
         let names_axis = self.names_axis();
+        let has_terms = self.registers.has_terms_in_state();
         for row in self.words.g_codes() {
             let is_followed = match row.effect {
                 Effect::Motion(Motion::Rapid | Motion::Linear)
@@ -161,7 +163,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 | Effect::Call => true,
                 Effect::OneShot(OneShot::Dwell) => self.terms.axes.is_empty(),
                 Effect::Motion(_) => !names_axis && !self.words.has_any(b"IJKR"),
-                effect => shifts_coordinates(effect) && !names_axis,
+                effect => shifts_coordinates(effect) && !(names_axis && has_terms),
             };
             if !is_followed {
                 return Err(Halt::unfollowed(format!("G{}", gcode_lang::program::g_codes::spelled(row.code))));
@@ -182,7 +184,10 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             (names_axis && state.end_before_transform.is_some(), "a move after a change of coordinates"),
             (names_axis && self.registers.is_inch(), "a length in inches"),
             (names_axis && self.words.has(b'L'), "repeated moves"),
-            (state.length_offset != self.registers.state.length_offset, "a new tool length"),
+            (
+                (has_terms || !names_axis) && state.length_offset != self.registers.state.length_offset,
+                "a new tool length",
+            ),
             (names_axis && state.modal.unit != self.registers.state.modal.unit, "a change of the unit"),
         ];
         match refused.iter().find(|(is_there, _)| *is_there) {

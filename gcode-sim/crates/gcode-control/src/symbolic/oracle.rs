@@ -45,6 +45,11 @@ impl<'o, T: Terms> Oracle<'o, T> {
         Self { terms, answers }
     }
 
+    /// Returns the number of answers that haven't been used.
+    pub(super) fn unused(&self) -> usize {
+        self.answers.len()
+    }
+
     /// Returns the answer to a question.
     pub(super) fn ask(&mut self, test: Test) -> Symbolic<bool> {
         if let Some(answer) = self.terms.answer(&test) {

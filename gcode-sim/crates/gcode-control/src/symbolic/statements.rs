@@ -199,7 +199,8 @@ impl Executor {
             _ => value,
         };
         self.write(slot, value, text, span, &mut ())?;
-        if !is_stored {
+        // Signals, switches, messages and counters shift nothing.
+        if !is_stored && !matches!(number, 1000..=1199 | 3000..=3999) {
             self.registers.forget_shifted_positions();
         }
         Ok(())
