@@ -198,7 +198,7 @@ fn best_halves(arena: &Arena, node: NodeId, part: &Part, found: Interval) -> Vec
         let Some(halves) = part.domain.split(input) else { continue };
         let halves: Vec<_> = halves.into_iter().map(|half| examine(arena, node, half)).collect();
         let score = halves.iter().map(|(half, _)| excess(half.range)).sum();
-        if best.as_ref().is_none_or(|(least, _)| score < *least * 0.999) {
+        if best.as_ref().is_none_or(|(least, _)| score < *least * 0.9) {
             best = Some((score, halves));
         }
         if score == 0.0 {

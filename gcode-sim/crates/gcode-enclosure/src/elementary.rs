@@ -181,9 +181,10 @@ fn binomial(bounds: &mut [f64], exponent: f64, lo: f64, hi: f64) {
     let mut factor = 1.0_f64;
     for (order, bound) in bounds.iter_mut().enumerate() {
         let power = |x: f64| libm::pow(x, exponent - order as f64);
-        // The coefficients of a whole power end.
+        // The coefficients of a whole power end; no other factor is 0, though it may underflow.
         *bound = if factor == 0.0 { 0.0 } else { factor * power(lo).max(power(hi)) * MARGIN };
-        factor = (factor * (exponent - order as f64) / (order + 1) as f64).abs() * MARGIN;
+        let step = (exponent - order as f64).abs() / (order + 1) as f64 * MARGIN;
+        factor = if factor == 0.0 || step == 0.0 { 0.0 } else { (factor * step).max(UNDERFLOWN) };
     }
 }
 

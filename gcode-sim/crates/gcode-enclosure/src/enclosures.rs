@@ -155,6 +155,16 @@ impl Enclosures {
                 });
                 modeller.whole(function, x, variable)
             }
+            (Node::Unary(Unary::Atan, quotient), [Some(x), _]) => {
+                let sides = match arena.node(quotient) {
+                    Node::Binary(Binary::Div, a, b) => {
+                        self.forms[a.index()].clone().zip(self.forms[b.index()].clone())
+                    }
+                    _ => None,
+                };
+                let angle = sides.and_then(|(y, x)| modeller.angle_of_quotient(&y, &x));
+                angle.or_else(|| modeller.unary(Unary::Atan, x, natural))
+            }
             (Node::Unary(function, _), [Some(x), _]) => modeller.unary(function, x, natural),
             (Node::Binary(operator, ..), [Some(a), Some(b)]) => modeller.binary(operator, a, b, natural),
             _ => None,
