@@ -63,7 +63,8 @@ impl Approximation {
         let (value, slope) = (function.value(middle), function.derivative(middle));
         let error = function.value_error(value.abs())
             + (slope.abs() * 1e-11 * radius + bounds[2] * radius * radius) * (1.0 + 1e-9);
-        let found = Self { middle, radius, coefficients: vec![value, slope * radius], error: add_up(error, 1e-300) };
+        let found =
+            Self { middle, radius, coefficients: vec![value, slope * radius], error: add_up(error, 1e-300) };
         (found.error.is_finite() && value.is_finite()).then_some(found)
     }
 
@@ -132,7 +133,8 @@ impl Approximation {
         let most = all.copied().fold(f64::NEG_INFINITY, f64::max);
         let offset = least / 2.0 + most / 2.0;
         let error = (most - least) / 2.0 + size * 1e-11 + function.value_error(size);
-        let found = Self { middle, radius, coefficients: vec![offset, slope * radius], error: add_up(error, 1e-300) };
+        let found =
+            Self { middle, radius, coefficients: vec![offset, slope * radius], error: add_up(error, 1e-300) };
         found.error.is_finite().then_some(found)
     }
 }
@@ -148,8 +150,11 @@ fn power_coefficients(values: &[f64], angle: impl Fn(usize) -> f64) -> Vec<f64> 
         last[1] = 1.0;
     }
     for order in 0..count {
-        let sum: f64 =
-            values.iter().enumerate().map(|(node, value)| value * libm::cos(order as f64 * angle(node))).sum();
+        let sum: f64 = values
+            .iter()
+            .enumerate()
+            .map(|(node, value)| value * libm::cos(order as f64 * angle(node)))
+            .sum();
         let factor = if order == 0 { sum / count as f64 } else { 2.0 * sum / count as f64 };
         for (coefficient, power) in coefficients.iter_mut().zip(&before) {
             *coefficient += factor * power;

@@ -163,6 +163,11 @@ impl Arena {
         self.index.get(&Key::Unary(function, x)).copied()
     }
 
+    /// Returns the node of a value's square if the arena has it.
+    pub(crate) fn find_square(&self, x: NodeId) -> Option<NodeId> {
+        self.index.get(&Key::Binary(Binary::Mul, x, x)).copied()
+    }
+
     /// Computes a node at a point, the doubles of its inputs; the alarm of the first operation that has one.
     pub fn evaluate(&self, node: NodeId, point: &[f64]) -> Result<f64, AlarmKind> {
         let mut values = vec![f64::NAN; node.index() + 1];

@@ -43,6 +43,8 @@ struct Part {
     range: Interval,
     domain: Domain,
     split: Option<usize>,
+    /// True if the node is a polynomial of inputs over the box.
+    is_modelled: bool,
 }
 
 impl PartialEq for Part {
@@ -72,13 +74,7 @@ const ROUND: usize = 64;
 pub fn bounds(arena: &Arena, node: NodeId, domain: &Domain, search: &BoundsSearch<'_>) -> Bounds {
     let whole = examine(arena, node, domain.clone());
     let mut state = State {
-        found: Bounds {
-            range: Interval::EMPTY,
-            least: None,
-            greatest: None,
-            boxes: 1,
-            is_complete: false,
-        },
+        found: Bounds { range: Interval::EMPTY, least: None, greatest: None, boxes: 1, is_complete: false },
         parts: BinaryHeap::new(),
         closed: Interval::EMPTY,
     };
@@ -104,7 +100,7 @@ pub fn bounds(arena: &Arena, node: NodeId, domain: &Domain, search: &BoundsSearc
             state.parts.extend(round);
             break;
         }
-        for examined in divide(arena, node, &round, search.threads) {
+        for examined in divide(arena, node, &round, state.found_range(), search.threads) {
             state.found.boxes += 1;
             state.add(examined);
         }
@@ -122,7 +118,7 @@ struct State {
 }
 
 impl State {
-    fn add(&mut self, (mut part, samples): (Part, Vec<(f64, Vec<f64>)>)) {
+    fn add(&mut self, (mut part, samples): Examined) {
         for sample in samples {
             if self.found.least.as_ref().is_none_or(|least| sample.0 < least.0) {
                 self.found.least = Some(sample.clone());
@@ -146,6 +142,14 @@ impl State {
         }
     }
 
+    /// Returns the range of the values found.
+    fn found_range(&self) -> Interval {
+        match (&self.found.least, &self.found.greatest) {
+            (Some((least, _)), Some((greatest, _))) => Interval::new(*least, *greatest),
+            _ => Interval::point(0.0),
+        }
+    }
+
     fn tolerance(&self, search: &BoundsSearch<'_>) -> f64 {
         let width = match (&self.found.least, &self.found.greatest) {
             (Some((least, _)), Some((greatest, _))) => greatest - least,
@@ -155,12 +159,12 @@ impl State {
     }
 }
 
+/// A box with its values at points that are likely to be extreme.
+type Examined = (Part, Vec<(f64, Vec<f64>)>);
+
 /// Divides boxes, on several threads.
-fn divide(arena: &Arena, node: NodeId, parts: &[Part], threads: usize) -> Vec<(Part, Vec<(f64, Vec<f64>)>)> {
-    let of_part = |part: &Part| {
-        let halves = part.split.and_then(|input| part.domain.split(input));
-        halves.into_iter().flatten().map(|half| examine(arena, node, half)).collect::<Vec<_>>()
-    };
+fn divide(arena: &Arena, node: NodeId, parts: &[Part], found: Interval, threads: usize) -> Vec<Examined> {
+    let of_part = |part: &Part| best_halves(arena, node, part, found);
     let size = parts.len().div_ceil(threads.max(1)).max(1);
     if threads <= 1 || parts.len() < 2 {
         return parts.iter().flat_map(of_part).collect();
@@ -171,18 +175,49 @@ fn divide(arena: &Arena, node: NodeId, parts: &[Part], threads: usize) -> Vec<(P
             .map(|chunk| scope.spawn(move || chunk.iter().flat_map(of_part).collect::<Vec<_>>()))
             .collect();
         // A box that is lost would make the bounds wrong: a panic goes on.
-        let results = workers.into_iter().map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        let results =
+            workers.into_iter().map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)));
         results.flatten().collect()
     })
 }
 
+/// Returns the halves of a box, divided at the input for which they reach least beyond the values found.
+fn best_halves(arena: &Arena, node: NodeId, part: &Part, found: Interval) -> Vec<Examined> {
+    let excess = |range: Interval| {
+        if range.is_empty() {
+            0.0
+        } else {
+            (found.lo() - range.lo()).max(0.0) + (range.hi() - found.hi()).max(0.0)
+        }
+    };
+    let mut best: Option<(f64, Vec<Examined>)> = None;
+    // A polynomial says which input matters; without one, every input is tried.
+    let inputs = if part.is_modelled { 0 } else { part.domain.ranges().len() };
+    let others = (0..inputs).filter(|input| Some(*input) != part.split);
+    for input in part.split.into_iter().chain(others) {
+        let Some(halves) = part.domain.split(input) else { continue };
+        let halves: Vec<_> = halves.into_iter().map(|half| examine(arena, node, half)).collect();
+        let score = halves.iter().map(|(half, _)| excess(half.range)).sum();
+        if best.as_ref().is_none_or(|(least, _)| score < *least * 0.9) {
+            best = Some((score, halves));
+        }
+        if score == 0.0 {
+            break;
+        }
+    }
+    best.map(|(_, halves)| halves).unwrap_or_default()
+}
+
 /// Returns a box with its range, and values at points that are likely to be extreme.
-fn examine(arena: &Arena, node: NodeId, domain: Domain) -> (Part, Vec<(f64, Vec<f64>)>) {
+fn examine(arena: &Arena, node: NodeId, domain: Domain) -> Examined {
     let mut enclosures = Enclosures::new(domain);
     let range = enclosures.enclose_tightly(arena, node);
-    let points = [enclosures.domain().midpoint(), enclosures.corner(node, -1.0), enclosures.corner(node, 1.0)];
+    let points =
+        [enclosures.domain().midpoint(), enclosures.corner(node, -1.0), enclosures.corner(node, 1.0)];
     let samples = points.into_iter().filter_map(|point| Some((arena.evaluate(node, &point).ok()?, point)));
     let samples = samples.collect();
-    let split = enclosures.widest_effect(node);
-    (Part { excess: f64::INFINITY, range, domain: enclosures.domain().clone(), split }, samples)
+    let split = enclosures.widest_effect(arena, node);
+    let is_modelled = enclosures.is_modelled(node);
+    let domain = enclosures.domain().clone();
+    (Part { excess: f64::INFINITY, range, domain, split, is_modelled }, samples)
 }

@@ -108,10 +108,8 @@ impl Elementary {
                     *bound = power / order as f64 * MARGIN;
                 }
             }
-            Self::Sqrt => binomial(&mut bounds, 0.5, lo, hi, f64::sqrt),
-            Self::Power(exponent) => binomial(&mut bounds, exponent, lo, hi, |x| {
-                libm::pow(x, exponent) * (1.0 + FUNCTION_ERROR)
-            }),
+            Self::Sqrt => binomial(&mut bounds, 0.5, lo, hi),
+            Self::Power(exponent) => binomial(&mut bounds, exponent, lo, hi),
             Self::Sin | Self::Cos => {
                 let mut factor = MARGIN;
                 for (order, bound) in bounds.iter_mut().enumerate().skip(1) {
@@ -179,18 +177,14 @@ fn geometric(bounds: &mut [f64], least: f64) {
 }
 
 /// Bounds the coefficients of x^p: C(p, j)·x^(p−j), whose magnitude is largest at an end.
-fn binomial(bounds: &mut [f64], exponent: f64, lo: f64, hi: f64, value: impl Fn(f64) -> f64) {
-    let mut ends = [(lo, value(lo) * MARGIN), (hi, value(hi) * MARGIN)];
+fn binomial(bounds: &mut [f64], exponent: f64, lo: f64, hi: f64) {
+    let mut factor = 1.0_f64;
     for (order, bound) in bounds.iter_mut().enumerate() {
-        *bound = ends[0].1.max(ends[1].1);
-        let factor = ((exponent - order as f64) / (order + 1) as f64).abs() * MARGIN;
-        for (x, coefficient) in &mut ends {
-            *coefficient = match *x > 0.0 {
-                true if factor == 0.0 => 0.0,
-                true => *coefficient * factor / *x * MARGIN,
-                false => f64::INFINITY,
-            };
-        }
+        let power = |x: f64| libm::pow(x, exponent - order as f64);
+        // The coefficients of a whole power end; no other factor is 0, though it may underflow.
+        *bound = if factor == 0.0 { 0.0 } else { factor * power(lo).max(power(hi)) * MARGIN };
+        let step = (exponent - order as f64).abs() / (order + 1) as f64 * MARGIN;
+        factor = if factor == 0.0 || step == 0.0 { 0.0 } else { (factor * step).max(UNDERFLOWN) };
     }
 }
 

@@ -1,4 +1,5 @@
 //! The enclosures of nodes over one box, on one path through a program.
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use crate::alarms::{self, PossibleAlarm};
@@ -10,6 +11,7 @@ use crate::hull;
 use crate::interval::Interval;
 use crate::model::Model;
 use crate::node::{Binary, Condition, Node, NodeId, Relation, Unary};
+use crate::proof::Prover;
 
 /// Enclosures of nodes over a box, given the conditions of a path.
 ///
@@ -106,7 +108,7 @@ impl Enclosures {
     }
 
     /// Returns the range of a node that has a form.
-    fn hull(&self, node: NodeId) -> Interval {
+    pub(crate) fn hull(&self, node: NodeId) -> Interval {
         self.forms[node.index()].as_ref().map_or(Interval::ALL, |form| form.hull)
     }
 
@@ -134,7 +136,8 @@ impl Enclosures {
                 (hull::unary(function, x.hull, semantics), [Some(x), None])
             }
             Node::Binary(operator, a, b) => {
-                let (Some(a), Some(b)) = (self.forms[a.index()].clone(), self.forms[b.index()].clone()) else {
+                let (Some(a), Some(b)) = (self.forms[a.index()].clone(), self.forms[b.index()].clone())
+                else {
                     return Form::UNKNOWN;
                 };
                 (hull::binary(operator, a.hull, b.hull, semantics), [Some(a), Some(b)])
@@ -151,6 +154,16 @@ impl Enclosures {
                     self.next_variable - 1
                 });
                 modeller.whole(function, x, variable)
+            }
+            (Node::Unary(Unary::Atan, quotient), [Some(x), _]) => {
+                let sides = match arena.node(quotient) {
+                    Node::Binary(Binary::Div, a, b) => {
+                        self.forms[a.index()].clone().zip(self.forms[b.index()].clone())
+                    }
+                    _ => None,
+                };
+                let angle = sides.and_then(|(y, x)| modeller.angle_of_quotient(&y, &x));
+                angle.or_else(|| modeller.unary(Unary::Atan, x, natural))
             }
             (Node::Unary(function, _), [Some(x), _]) => modeller.unary(function, x, natural),
             (Node::Binary(operator, ..), [Some(a), Some(b)]) => modeller.binary(operator, a, b, natural),
@@ -189,23 +202,67 @@ impl Enclosures {
     /// Returns the input whose variation changes a node that has been enclosed most: the one to divide.
     ///
     /// `None` if no input has more than one double.
-    pub fn widest_effect(&self, node: NodeId) -> Option<usize> {
-        let model = self.forms.get(node.index()).and_then(Option::as_ref).and_then(|form| form.model.as_ref());
-        let effect = |input: usize| {
-            let (Some(model), Some(Some(variable))) = (model, self.variables.get(input)) else { return 0.0 };
-            let terms = model.terms.iter();
-            terms.map(|(monomial, value)| value.abs() * f64::from(self.basis.exponent(*monomial, *variable))).sum()
-        };
+    pub fn widest_effect(&self, arena: &Arena, node: NodeId) -> Option<usize> {
+        let effects = self.effects(arena, node);
         let relative_width = |range: &Interval| range.width() / (range.magnitude() + f64::MIN_POSITIVE);
         let ranges = self.domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
-        let rated = ranges.map(|(input, range)| (effect(input), relative_width(range), input));
-        let best = rated.max_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
+        let rated = ranges.map(|(input, range)| (effects[input], relative_width(range), input));
+        let best = rated.max_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(Ordering::Equal));
         best.map(|(_, _, input)| input)
+    }
+
+    /// Returns the share of each input in the variation of a node: by its polynomial, or by those of its operands.
+    fn effects(&self, arena: &Arena, node: NodeId) -> Vec<f64> {
+        let inputs = self.domain.ranges().len();
+        let cone = arena.cone(&[node]);
+        let mut weights = vec![0.0; node.index() + 1];
+        weights[node.index()] = 1.0;
+        let mut effects = vec![0.0; inputs];
+        for &id in cone.iter().rev() {
+            let weight = weights[id.index()];
+            let Some(Some(form)) = self.forms.get(id.index()) else { continue };
+            if weight == 0.0 || form.hull.as_point().is_some() {
+                continue;
+            }
+            let own = match &form.model {
+                Some(model) => self.variables.iter().map(|variable| self.effect(model, *variable)).collect(),
+                None => vec![0.0; inputs],
+            };
+            let sum: f64 = own.iter().sum();
+            if sum > 0.0 {
+                for (effect, own) in effects.iter_mut().zip(own) {
+                    *effect += weight * own / sum;
+                }
+                continue;
+            }
+            if let Node::Input(input) = arena.node(id) {
+                effects[input] += weight;
+            }
+            for operand in arena.operands(id) {
+                weights[operand.index()] += weight;
+            }
+        }
+        effects
+    }
+
+    /// Returns true for a node with a polynomial of inputs.
+    pub(crate) fn is_modelled(&self, node: NodeId) -> bool {
+        let form = self.forms.get(node.index()).and_then(Option::as_ref);
+        form.and_then(|form| form.model.as_ref())
+            .is_some_and(|model| self.variables.iter().any(|variable| self.effect(model, *variable) > 0.0))
+    }
+
+    /// Returns how much a variable changes a polynomial.
+    fn effect(&self, model: &Model, variable: Option<usize>) -> f64 {
+        let Some(variable) = variable else { return 0.0 };
+        let terms = model.terms.iter();
+        terms.map(|(monomial, value)| value.abs() * f64::from(self.basis.exponent(*monomial, variable))).sum()
     }
 
     /// Returns the corner of the box where the node's linear part is largest, or least for a negative sign.
     pub(crate) fn corner(&self, node: NodeId, sign: f64) -> Vec<f64> {
-        let model = self.forms.get(node.index()).and_then(Option::as_ref).and_then(|form| form.model.as_ref());
+        let model =
+            self.forms.get(node.index()).and_then(Option::as_ref).and_then(|form| form.model.as_ref());
         let slope = |input: usize| {
             let variable = self.variables.get(input).copied().flatten()?;
             let is_linear = |monomial: u32| self.basis.is_variable(monomial, variable);
@@ -271,20 +328,97 @@ impl Enclosures {
         if left == right {
             return Some(matches!(relation, Relation::Eq | Relation::Ge | Relation::Le));
         }
-        hull::decide(relation, a, b).or_else(|| self.decide_difference(relation, left, right))
+        hull::decide(relation, a, b)
+            .or_else(|| {
+                let hulls = |node: NodeId| match self.forms.get(node.index()) {
+                    Some(Some(form)) => form.hull,
+                    _ => Interval::ALL,
+                };
+                Prover::new(arena, &hulls, &self.conditions).decide(relation, left, right)
+            })
+            .or_else(|| self.decide_difference(arena, relation, left, right))
     }
 
     /// Decides by the polynomial of the difference, in which common parts cancel.
-    fn decide_difference(&mut self, relation: Relation, left: NodeId, right: NodeId) -> Option<bool> {
+    fn decide_difference(
+        &mut self,
+        arena: &Arena,
+        relation: Relation,
+        left: NodeId,
+        right: NodeId,
+    ) -> Option<bool> {
+        let difference = self.difference(arena, left, right)?;
+        let zero = Interval::point(0.0);
+        let range = difference.range(&self.basis);
+        if let Some(decided) = hull::decide(relation, range, zero) {
+            return Some(decided);
+        }
+        // The least and the greatest difference under the conditions of the path.
+        let facts = self.facts(arena);
+        if facts.is_empty() {
+            return None;
+        }
+        let lo = self.lower_bound(&difference, range.lo(), &facts);
+        let hi = -self.lower_bound(&difference.neg(), -range.hi(), &facts);
+        hull::decide(relation, Interval::new(lo, hi), zero)
+    }
+
+    /// Returns the model of a real difference between two nodes.
+    fn difference(&mut self, arena: &Arena, left: NodeId, right: NodeId) -> Option<Model> {
+        self.enclose(arena, left);
+        self.enclose(arena, right);
         let [Some(left), Some(right)] = [left, right].map(|node| self.forms[node.index()].clone()) else {
             return None;
         };
         if left.model.is_none() && right.model.is_none() {
             return None;
         }
-        let difference = left.as_model()?.sub(&right.as_model()?);
-        let range = difference.range(&self.basis);
-        hull::decide(relation, range, Interval::point(0.0)).filter(|_| difference.is_finite())
+        Some(left.as_model()?.sub(&right.as_model()?)).filter(Model::is_finite)
+    }
+
+    /// Returns models that are 0 or more on this path: the differences of the conditions assumed last.
+    fn facts(&mut self, arena: &Arena) -> Vec<Model> {
+        const MOST: usize = 8;
+        let conditions: Vec<_> = self.conditions.iter().rev().take(MOST).copied().collect();
+        let mut facts = Vec::new();
+        for Condition { relation, left, right } in conditions {
+            let Some(difference) = self.difference(arena, left, right) else { continue };
+            match relation {
+                Relation::Ge | Relation::Gt => facts.push(difference),
+                Relation::Le | Relation::Lt => facts.push(difference.neg()),
+                Relation::Eq => facts.extend([difference.neg(), difference]),
+                Relation::Ne => {}
+            }
+        }
+        facts
+    }
+
+    /// Returns a lower bound of a model: that of the model less multiples of facts, which are 0 or more.
+    fn lower_bound(&self, model: &Model, bound: f64, facts: &[Model]) -> f64 {
+        let (mut best, mut model) = (bound, model.clone());
+        for fact in facts {
+            // A multiple that cancels a linear term.
+            let linear = (0..self.next_variable).filter_map(|variable| {
+                let term = |model: &Model| {
+                    let mut terms = model.terms.iter();
+                    terms
+                        .find(|(monomial, _)| self.basis.is_variable(*monomial, variable))
+                        .map(|(_, value)| *value)
+                };
+                Some(term(&model)? / term(fact)?).filter(|factor| *factor > 0.0 && factor.is_finite())
+            });
+            let mut better = None;
+            for factor in linear {
+                let rest = model.sub(&fact.scale(factor));
+                let lo = rest.range(&self.basis).lo();
+                if lo > best && rest.is_finite() {
+                    best = lo;
+                    better = Some(rest);
+                }
+            }
+            model = better.unwrap_or(model);
+        }
+        best
     }
 
     /// Assumes a condition from here on; false if no point of the box keeps it.

@@ -21,6 +21,12 @@ impl Form {
     /// The form of a value of which nothing is known.
     pub(crate) const UNKNOWN: Self = Self { hull: Interval::ALL, model: None };
 
+    /// Returns the form of the opposite number.
+    fn opposite(&self) -> Self {
+        let hull = Interval::new(-self.hull.hi(), -self.hull.lo());
+        Self { hull, model: self.model.as_ref().map(Model::neg) }
+    }
+
     /// Returns the model, or that of the range.
     pub(crate) fn as_model(&self) -> Option<Model> {
         let model = match &self.model {
@@ -187,50 +193,68 @@ impl Modeller<'_> {
         Some(of_function(value, result))
     }
 
-    /// Returns the model of ATAN of two values, within a half plane that has no jump.
+    /// Returns the model of ATAN of two values, where the angle has no jump.
     fn angle(&mut self, y: &Form, x: &Form) -> Option<Model> {
         let (_, to_degrees) = conversions();
         let is_signed = self.semantics.returns_signed_angles;
-        let is_steep = y.hull.mignitude() > x.hull.mignitude();
-        let (ratio, shift, sign) = if is_steep {
-            // From the y axis: 90° − arctan(x/y), or 270° below.
-            let shift = if y.hull.lo() > 0.0 {
-                90.0
-            } else if is_signed {
-                -90.0
-            } else {
-                270.0
-            };
-            (self.quotient(x, y)?, shift, -1.0)
-        } else if x.hull.lo() > 0.0 {
-            let shift = match y.hull {
-                _ if is_signed || y.hull.lo() >= 0.0 => 0.0,
-                // A negative angle that underflows stays 0.
-                _ if y.hull.hi() / x.hull.hi() < -1e-300 => 360.0,
-                _ => return None,
-            };
-            (self.quotient(y, x)?, shift, 1.0)
+        let shift = if y.hull.lo() >= 0.0 || x.hull.lo() > 0.0 && is_signed {
+            0.0
+        } else if y.hull.hi() < 0.0 {
+            // A negative angle that underflows stays 0.
+            match is_signed {
+                true => 0.0,
+                false if y.hull.hi() / x.hull.magnitude() < -1e-300 => 360.0,
+                false => return None,
+            }
+        } else if x.hull.hi() < 0.0 && !is_signed {
+            // Across the negative x axis: half a turn from the opposite direction, which has no jump there.
+            let [y, x] = [y, x].map(Form::opposite);
+            return Some(in_degrees(self.direction(&y, &x)?, to_degrees, 180.0));
+        } else {
+            return None;
+        };
+        Some(in_degrees(self.direction(y, x)?, to_degrees, shift))
+    }
+
+    /// Returns the model of ATAN of a quotient, whose divisor has one sign.
+    pub(crate) fn angle_of_quotient(&mut self, y: &Form, x: &Form) -> Option<Model> {
+        let (_, to_degrees) = conversions();
+        let direction = if x.hull.lo() > 0.0 {
+            self.direction(y, x)?
         } else if x.hull.hi() < 0.0 {
-            let shift = match y.hull {
-                _ if !is_signed || y.hull.lo() >= 0.0 => 180.0,
-                _ if y.hull.hi() < 0.0 => -180.0,
-                _ => return None,
-            };
-            (self.quotient(y, x)?, shift, 1.0)
+            self.direction(&y.opposite(), &x.opposite())?
         } else {
             return None;
         };
+        Some(in_degrees(direction, to_degrees, 0.0))
+    }
+
+    /// Returns the model of the direction of points in radians, within half a turn of that of a point amid them.
+    ///
+    /// The points must be on one side of an axis: y ≥ 0, y < 0 or x > 0. Turned by the middle's direction they lie around
+    /// the x axis, where the ratio y/x is small.
+    fn direction(&mut self, y: &Form, x: &Form) -> Option<Model> {
+        let (mid_y, mid_x) = (y.hull.midpoint(), x.hull.midpoint());
+        let distance = libm::hypot(mid_y, mid_x);
+        let (sine, cosine) = (mid_y / distance, mid_x / distance);
+        if !(1e-20..1e20).contains(&distance) {
+            return None;
+        }
+        let (y, x) = (y.as_model()?, x.as_model()?);
+        let turned_x = x.scale(cosine).add(&y.scale(sine));
+        let turned_y = y.scale(cosine).sub(&x.scale(sine));
+        // Any pair of a sine and a cosine is a direction, whatever its rounded length.
+        let along = turned_x.range(self.basis);
+        if along.lo() <= 0.0 || !turned_y.is_finite() {
+            return None;
+        }
+        let inverse = self.compose(Elementary::Reciprocal, &turned_x, along)?;
+        let ratio = turned_y.mul(&inverse, self.basis);
         let range = ratio.range(self.basis);
-        let angle = if ratio.is_constant() {
-            return None;
-        } else {
-            self.compose(Elementary::Atan, &ratio, range)?.scale(to_degrees * sign)
-        };
-        let mut angle = angle.add(&Model::constant(shift));
-        // Quarter turns in degrees are those in radians × the factor, within a unit in the last place.
-        let of_shift = 360.0 * f64::EPSILON;
-        angle.widen(add_up(mul_up(360.0, FUNCTION_ERROR), of_shift));
-        Some(angle)
+        let mut angle =
+            self.compose(Elementary::Atan, &ratio, range)?.add(&Model::constant(libm::atan2(sine, cosine)));
+        angle.widen(std::f64::consts::PI * FUNCTION_ERROR);
+        angle.is_finite().then_some(angle)
     }
 
     /// Returns the model of a real quotient.
@@ -277,6 +301,15 @@ impl Modeller<'_> {
         };
         Some(x.model.as_ref()?.add(&cut))
     }
+}
+
+/// Returns a direction in degrees as the interpreter computes it, shifted by a number of half turns.
+fn in_degrees(direction: Model, to_degrees: f64, shift: f64) -> Model {
+    let mut angle = direction.scale(to_degrees).add(&Model::constant(shift));
+    // The function, the conversion and the addition of a turn are off by this much together; half turns in degrees are
+    // those in radians × the factor, within a unit in the last place.
+    angle.widen(add_up(mul_up(180.0, 2.0 * FUNCTION_ERROR), 720.0 * f64::EPSILON));
+    angle
 }
 
 /// Returns an angle one turn on.

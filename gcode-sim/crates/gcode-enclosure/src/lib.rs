@@ -19,6 +19,8 @@ mod interval;
 mod model;
 mod node;
 mod polynomial_range;
+mod proof;
+mod rounding;
 #[cfg(test)]
 mod tests;
 mod values;

@@ -151,8 +151,7 @@ impl Model {
 
     /// Returns the real product.
     pub(crate) fn mul(&self, other: &Self, basis: &mut Basis) -> Self {
-        let (short, long) =
-            if self.terms.len() <= other.terms.len() { (self, other) } else { (other, self) };
+        let (short, long) = if self.terms.len() <= other.terms.len() { (self, other) } else { (other, self) };
         let (mut odd, mut positive, mut negative) = (0.0_f64, 0.0_f64, 0.0_f64);
         for &(a, x) in &short.terms {
             for &(b, y) in &long.terms {

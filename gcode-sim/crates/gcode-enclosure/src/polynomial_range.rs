@@ -72,8 +72,7 @@ impl Model {
     fn upper_face(&self, basis: &Basis, sign: f64) -> f64 {
         let mut terms: Vec<([u8; MAX_VARIABLES], f64)> = Vec::with_capacity(self.terms.len());
         for &(monomial, value) in &self.terms {
-            let exponents =
-                std::array::from_fn(|variable| basis.exponent(monomial, variable) as u8);
+            let exponents = std::array::from_fn(|variable| basis.exponent(monomial, variable) as u8);
             terms.push((exponents, value * sign));
         }
         let mut is_changed = true;
@@ -102,7 +101,8 @@ impl Model {
                 }
             }
         }
-        let mut sums: std::collections::BTreeMap<[u8; MAX_VARIABLES], f64> = std::collections::BTreeMap::new();
+        let mut sums: std::collections::BTreeMap<[u8; MAX_VARIABLES], f64> =
+            std::collections::BTreeMap::new();
         for (exponents, value) in terms {
             *sums.entry(exponents).or_default() += value;
         }
@@ -110,7 +110,13 @@ impl Model {
         for (exponents, value) in sums {
             let is_constant = exponents.iter().all(|exponent| *exponent == 0);
             let is_even = exponents.iter().all(|exponent| exponent % 2 == 0);
-            upper += if is_constant { value } else if is_even { value.max(0.0) } else { value.abs() };
+            upper += if is_constant {
+                value
+            } else if is_even {
+                value.max(0.0)
+            } else {
+                value.abs()
+            };
         }
         let rounding = self.norm() * 4.0 * HALF_ULP * (self.terms.len() + 4) as f64;
         add_up(add_up(upper, rounding), self.rest)
