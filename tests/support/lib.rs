@@ -19,6 +19,7 @@ mod r#gen;
 mod macros;
 mod picture;
 pub mod programs;
+mod prove;
 pub mod sheet;
 mod syntax;
 pub mod verify;
@@ -39,6 +40,7 @@ pub const KINDS: &[(&str, Run)] = &[
     ("gen", r#gen::run),
     ("macro", macros::run),
     ("picture", picture::run),
+    ("prove", prove::run),
     ("sheet", sheet::run),
     ("syntax", syntax::run),
     ("verify", verify::run),

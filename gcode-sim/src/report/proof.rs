@@ -26,6 +26,8 @@ pub(crate) struct ProofReport {
     seconds: f64,
     /// What depends on the ranges and isn't followed.
     unfollowed: Vec<String>,
+    /// No run is known to end without an alarm: a condition at the end says nothing then.
+    never_ends: bool,
     #[serde(skip)]
     call: Option<String>,
     #[serde(skip)]
@@ -81,6 +83,7 @@ impl ProofReport {
             runs: answer.runs,
             seconds,
             unfollowed: answer.unfollowed.clone(),
+            never_ends: answer.never_ends,
             call,
             program,
         }
@@ -111,6 +114,9 @@ impl ProofReport {
         }
         for what in &self.unfollowed {
             _ = writeln!(text, "not followed: {what}");
+        }
+        if self.never_ends {
+            text.push_str("no run is known to end without an alarm: a condition at the end says nothing then\n");
         }
         let (boxes, runs) = (count(self.boxes as usize, "box"), count(self.runs as usize, "run"));
         _ = writeln!(text, "{} and {}, {:.2} s", boxes.replace("boxs", "boxes"), runs, self.seconds);

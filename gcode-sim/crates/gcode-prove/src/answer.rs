@@ -172,6 +172,7 @@ fn empty(ask: &Ask) -> Answer {
         boxes: 0,
         runs: 0,
         unfollowed: Vec::new(),
+        never_ends: false,
     }
 }
 
@@ -296,6 +297,8 @@ impl<S: Setup> Prover<'_, S> {
                 answer.verdict = Verdict::Undecided;
             }
         }
+        let asks_at_end = question.claims.iter().any(|claim| matches!(claim, Claim::Condition(_)));
+        self.answer.never_ends |= asks_at_end && !rest.has_end;
         debug_assert_eq!(rest.refuted.count_ones() as usize, rest.counterexamples.len());
         self.answer.undecided_share = self.answer.undecided_share.max(rest.share);
         if let Some(point) = &rest.disagreement {

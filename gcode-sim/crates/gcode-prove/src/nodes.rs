@@ -9,8 +9,11 @@ use gcode_lang::syntax::ast;
 /// Largest number of constants that are kept for the search.
 const MAX_CONSTANTS: usize = 200;
 
-/// Magnitude below which six units in the last place are far less than a half.
-const LARGEST_MULTIPLE: f64 = 1e12;
+/// Magnitude below which some units in the last place are far less than a half.
+const LARGEST_MULTIPLE: f64 = 1e11;
+
+/// Largest depth of a sum of multiples.
+const MAX_SUM: u32 = 8;
 
 /// Nodes of all ways of a program.
 #[derive(Debug)]
@@ -111,21 +114,41 @@ impl Nodes {
         }
     }
 
-    /// Returns the whole number of which a node is the quotient by `scale`, if rounding their product gives it back.
+    /// Returns the whole number to which the product of a node and `scale` rounds, if the node is a sum of quotients of whole
+    /// numbers and the product is off by far less than a half.
     ///
-    /// Quotient, product and the correction of halves are off by less than six units in the last place.
-    fn multiple(&mut self, node: NodeId, scale: f64) -> Option<NodeId> {
-        let Node::Binary(Binary::Div, whole, divisor) = self.arena.node(node) else { return None };
-        let is_multiple = self.arena.as_constant(divisor) == Some(scale) && self.arena.is_whole(whole);
-        (is_multiple && self.root.enclose(&self.arena, whole).magnitude() < LARGEST_MULTIPLE).then_some(whole)
+    /// Each quotient, sum and product, and the correction of halves, is off by some units in the last place.
+    fn multiple(&mut self, node: NodeId, scale: f64, depth: u32) -> Option<NodeId> {
+        let whole = match self.arena.node(node) {
+            Node::Constant(value) => {
+                let product = value * scale;
+                let is_near = (product - product.round()).abs() < 1e-3 && product.abs() < LARGEST_MULTIPLE;
+                return is_near.then(|| self.arena.constant(product.round()));
+            }
+            Node::Binary(Binary::Div, whole, divisor) if self.arena.is_whole(whole) => {
+                let factor = scale / self.arena.as_constant(divisor)?;
+                if factor < 1.0 || factor.fract() != 0.0 {
+                    return None;
+                }
+                let factor = self.arena.constant(factor);
+                self.arena.binary(Binary::Mul, whole, factor)
+            }
+            Node::Binary(operator @ (Binary::Add | Binary::Sub), a, b) if depth > 0 => {
+                let (a, b) = (self.multiple(a, scale, depth - 1)?, self.multiple(b, scale, depth - 1)?);
+                self.arena.binary(operator, a, b)
+            }
+            _ => return None,
+        };
+        (self.root.enclose(&self.arena, whole).magnitude() < LARGEST_MULTIPLE).then_some(whole)
     }
 
     /// Returns the node of ROUND.
     fn rounded(&mut self, node: NodeId) -> NodeId {
         if let Node::Binary(Binary::Mul, a, b) = self.arena.node(node) {
             for (factor, scale) in [(a, b), (b, a)] {
-                if let Some(scale) = self.arena.as_constant(scale)
-                    && let Some(whole) = self.multiple(factor, scale)
+                if let Some(scale) = self.arena.as_constant(scale).filter(|scale| *scale >= 1.0)
+                    && self.arena.as_constant(factor).is_none()
+                    && let Some(whole) = self.multiple(factor, scale, MAX_SUM)
                 {
                     return whole;
                 }
@@ -210,7 +233,7 @@ impl Terms for Nodes {
                 Some(function) => self.arena.unary(function, a),
                 None => a,
             },
-            TermOperation::Scaled(scale) => match self.multiple(a, scale) {
+            TermOperation::Scaled(scale) => match self.multiple(a, scale, MAX_SUM) {
                 Some(whole) => whole,
                 None => self.arena.round_scaled(a, scale),
             },

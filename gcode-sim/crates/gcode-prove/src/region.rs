@@ -1,5 +1,7 @@
 //! One box: every way that its values can take, and what the claims are there.
-use gcode_enclosure::{Arena, Condition, Domain, Enclosures, Interval, NodeId, Relation};
+use std::collections::BTreeSet;
+
+use gcode_enclosure::{Arena, Condition, Domain, Enclosures, Interval, Node, NodeId, Relation, Unary};
 use gcode_lang::program::Library;
 use gcode_lang::syntax::ast::BinaryOp;
 
@@ -34,6 +36,8 @@ pub(crate) struct Finding {
     pub(crate) is_final: bool,
     /// A way on which the conditions of the request hold has been reached.
     pub(crate) is_included: bool,
+    /// A way on which the run ends without an alarm has been reached.
+    pub(crate) has_end: bool,
     /// Ranges of the variables whose bounds are wanted; empty if no run gives them a value.
     pub(crate) bounds: Vec<Interval>,
     /// Nodes of the last way that has values for them.
@@ -139,6 +143,7 @@ impl Region {
             return;
         }
         self.finding.is_included = true;
+        self.finding.has_end |= leaf.end == End::End;
         let arena = tree.nodes.arena();
         for (index, state) in leaf.claims.iter().enumerate().filter(|(index, _)| self.claims >> index & 1 == 1) {
             let bit = 1 << index;
@@ -244,6 +249,11 @@ pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<D
             return parts;
         }
     }
+    for condition in finding.undecided.iter().take(2) {
+        if let Some(parts) = cut_at_step(arena, domain, *condition) {
+            return parts;
+        }
+    }
     let input = finding.undecided.first().and_then(|condition| best_input(arena, domain, *condition));
     let widest = || {
         let ranges = domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
@@ -257,7 +267,7 @@ pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<D
 /// Cuts a box exactly where a condition compares an input with a number.
 fn cut_at_limit(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
     let input_of = |node: NodeId| match arena.node(node) {
-        gcode_enclosure::Node::Input(input) => Some(input),
+        Node::Input(input) => Some(input),
         _ => None,
     };
     let (input, limit, relation) = match (input_of(condition.left), arena.as_constant(condition.right)) {
@@ -281,24 +291,53 @@ fn cut_at_limit(arena: &Arena, domain: &Domain, condition: Condition) -> Option<
 
 /// Cuts a box exactly where a condition of one input turns, if it has different answers at both ends.
 fn cut_at_turn(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
-    let mut inputs = inputs_of(arena, [condition.left, condition.right]);
-    inputs.retain(|input| domain.range(*input).lo() < domain.range(*input).hi());
-    let [input] = inputs[..] else { return None };
-    let range = domain.range(input);
+    let input = only_input(arena, domain, &[condition.left, condition.right])?;
+    let at_low = holds_at(arena, domain, input, domain.range(input).lo(), condition)?;
+    cut_where(domain, input, |value| holds_at(arena, domain, input, value, condition).map(|holds| holds == at_low))
+}
+
+fn holds_at(arena: &Arena, domain: &Domain, input: usize, value: f64, condition: Condition) -> Option<bool> {
     let mut point = domain.midpoint();
-    let mut holds = |value: f64| {
-        point[input] = value;
-        arena.holds(condition, &point).ok()
+    point[input] = value;
+    arena.holds(condition, &point).ok()
+}
+
+/// Cuts a box exactly where a whole number on which a condition depends has its only step.
+fn cut_at_step(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
+    let is_step = |node: &NodeId| {
+        matches!(arena.node(*node), Node::Unary(Unary::Round | Unary::Fix | Unary::Fup, _))
     };
+    let steps = cone(arena, &[condition.left, condition.right]).into_iter().filter(is_step);
+    steps.take(16).find_map(|node| {
+        let input = only_input(arena, domain, &[node])?;
+        let mut point = domain.midpoint();
+        let mut value_at = |value: f64| {
+            point[input] = value;
+            arena.evaluate(node, &point).ok()
+        };
+        let (low, high) = (value_at(domain.range(input).lo())?, value_at(domain.range(input).hi())?);
+        if (high - low).abs() != 1.0 {
+            return None;
+        }
+        cut_where(domain, input, |value| Some(value_at(value)? == low))
+    })
+}
+
+/// Cuts a box between the last double of an input that is as the first, and the next one.
+fn cut_where(
+    domain: &Domain,
+    input: usize,
+    mut is_as_first: impl FnMut(f64) -> Option<bool>,
+) -> Option<Vec<Domain>> {
+    let range = domain.range(input);
     let (mut low, mut high) = (range.lo(), range.hi());
-    let at_low = holds(low)?;
-    if at_low == holds(high)? {
+    if is_as_first(high)? {
         return None;
     }
     while low.next_up() < high {
         let middle = low / 2.0 + high / 2.0;
         let middle = if low < middle && middle < high { middle } else { low.next_up() };
-        if holds(middle)? == at_low { low = middle } else { high = middle }
+        if is_as_first(middle)? { low = middle } else { high = middle }
     }
     Some(vec![
         domain.with(input, Interval::new(range.lo(), low)),
@@ -306,25 +345,31 @@ fn cut_at_turn(arena: &Arena, domain: &Domain, condition: Condition) -> Option<V
     ])
 }
 
-/// Returns the inputs on which nodes depend, in ascending order.
-fn inputs_of(arena: &Arena, nodes: [NodeId; 2]) -> Vec<usize> {
-    let mut inputs = Vec::new();
-    let mut seen = std::collections::BTreeSet::new();
+/// Returns the only input with a range on which nodes depend.
+fn only_input(arena: &Arena, domain: &Domain, nodes: &[NodeId]) -> Option<usize> {
+    let input_of = |node: NodeId| match arena.node(node) {
+        Node::Input(input) if domain.range(input).lo() < domain.range(input).hi() => Some(input),
+        _ => None,
+    };
+    let mut inputs = cone(arena, nodes).into_iter().filter_map(input_of);
+    let first = inputs.next()?;
+    inputs.all(|input| input == first).then_some(first)
+}
+
+/// Returns nodes and everything of which they are computed.
+fn cone(arena: &Arena, nodes: &[NodeId]) -> BTreeSet<NodeId> {
+    let mut seen = BTreeSet::new();
     let mut pending = nodes.to_vec();
     while let Some(node) = pending.pop() {
-        if !seen.insert(node) {
-            continue;
-        }
-        match arena.node(node) {
-            gcode_enclosure::Node::Input(input) => inputs.push(input),
-            gcode_enclosure::Node::Constant(_) => {}
-            gcode_enclosure::Node::Unary(_, x) => pending.push(x),
-            gcode_enclosure::Node::Binary(_, a, b) => pending.extend([a, b]),
+        if seen.insert(node) {
+            match arena.node(node) {
+                Node::Input(_) | Node::Constant(_) => {}
+                Node::Unary(_, x) => pending.push(x),
+                Node::Binary(_, a, b) => pending.extend([a, b]),
+            }
         }
     }
-    inputs.sort_unstable();
-    inputs.dedup();
-    inputs
+    seen
 }
 
 /// Returns the input that, known to be at its middle, leaves least of a condition's margin.

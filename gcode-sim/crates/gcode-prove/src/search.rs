@@ -52,7 +52,7 @@ impl<'s, L: Library> Prober<'s, L> {
         self.watch.count_run();
         let Some(way) = self.points.follow(&mut self.tree, point, self.watch, |_, _| {}) else { return };
         if way.leaf.end != End::Excluded {
-            self.shared.include();
+            self.shared.include(way.leaf.end == End::End);
         }
         let open = self.shared.open_claims();
         let suspected = (way.failed | way.unfollowed) & open;

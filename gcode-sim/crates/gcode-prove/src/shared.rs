@@ -46,6 +46,7 @@ pub(crate) struct Shared {
     all_claims: ClaimSet,
     refuted: AtomicU64,
     is_included: AtomicBool,
+    has_end: AtomicBool,
     queue: Mutex<Queue>,
     changed: Condvar,
 }
@@ -106,9 +107,12 @@ impl Shared {
         }
     }
 
-    /// Records that the conditions of the request include some values.
-    pub(crate) fn include(&self) {
+    /// Records that the conditions of the request include some values, and that a run with some of them ends.
+    pub(crate) fn include(&self, has_end: bool) {
         self.is_included.store(true, Ordering::Relaxed);
+        if has_end {
+            self.has_end.store(true, Ordering::Relaxed);
+        }
     }
 
     pub(crate) fn push(&self, boxes: impl IntoIterator<Item = Pending>) {
@@ -170,6 +174,7 @@ impl Shared {
             unfollowed: queue.unfollowed,
             disagreement: queue.disagreement,
             is_included: self.is_included.into_inner(),
+            has_end: self.has_end.into_inner(),
         }
     }
 }
@@ -186,4 +191,5 @@ pub(crate) struct Rest {
     pub(crate) unfollowed: Vec<String>,
     pub(crate) disagreement: Option<Vec<f64>>,
     pub(crate) is_included: bool,
+    pub(crate) has_end: bool,
 }

@@ -5,6 +5,7 @@ use gcode_lang::program::Library;
 use crate::region::{ClaimSet, Finding, divide, examine};
 use crate::search::Prober;
 use crate::shared::Pending;
+use crate::tree::End;
 
 /// Boxes with at most this many doubles are run double by double.
 const MAX_DOUBLES: u64 = 48;
@@ -39,7 +40,7 @@ impl<L: Library> Prober<'_, L> {
             finding = Finding { proved: finding.proved | closer.proved, ..closer };
         }
         if finding.is_included {
-            self.shared.include();
+            self.shared.include(finding.has_end);
         }
         let left = claims & !finding.proved;
         if left != 0 {
@@ -74,8 +75,8 @@ impl<L: Library> Prober<'_, L> {
         for point in points {
             self.watch.count_run();
             let result = self.witness.run(point);
-            if result.end.is_some() {
-                self.shared.include();
+            if let Some(end) = &result.end {
+                self.shared.include(*end == End::End);
             }
             self.shared.refute(result.failed & claims, point);
         }

@@ -72,10 +72,11 @@ impl SymbolicRun {
         executor.registers.data.settings.stroke_limits = limits;
         let registers = &executor.registers;
         let mut block = MoveBlock { registers, plan, words: block_words, terms, oracle, span: place.span };
+        // A plan that a known word refuses ends early: what its codes need is checked first.
+        block.check_codes()?;
         if let Err(alarm) = result {
             return Err(block.refused(alarm.into()));
         }
-        block.check_codes()?;
         let ends = block.ends()?;
         let plan = &mut self.control.plan;
         for end in &ends {
@@ -153,7 +154,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 | Effect::Distance(_)
                 | Effect::FeedMode(_)
                 | Effect::Cutter(CutterSide::Off)
-                | Effect::Cycle(None)
+                | Effect::Cycle(_)
                 | Effect::ReturnTo(_)
                 | Effect::SpindleMode(_)
                 | Effect::NoEffect
@@ -173,11 +174,11 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         let is_arc = !matches!(state.modal.motion, Motion::Rapid | Motion::Linear);
         let refused = [
             (is_arc && (names_axis || self.words.has_any(b"IJKR")), "an arc or a thread"),
-            (state.modal.cycle.is_some() && (names_axis || self.words.has(b'R')), "a canned cycle"),
+            (!self.is_plain_cycle(), "a canned cycle"),
             (state.modal.cutter != CutterSide::Off && names_axis, "a move in cutter compensation"),
             (self.plan.corner.is_some(), "a corner"),
             (self.plan.uses_lookahead || !self.registers.lookahead.is_idle(), "a move that waits for the next"),
-            (self.plan.skip_plan.is_some() || self.plan.cycle_plan.is_some(), "a skip or a cycle"),
+            (self.plan.skip_plan.is_some(), "a skip"),
             (names_axis && state.modal.polar == Polar::On, "polar coordinates"),
             (names_axis && state.controls_tip(), "tool centre point control"),
             (names_axis && !state.transform.is_identity(), "mirrored, scaled or rotated coordinates"),
@@ -196,6 +197,28 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         }
     }
 
+    /// Returns true if the block drills by no cycle, or by one of which only the place of the hole depends on the ranges.
+    fn is_plain_cycle(&self) -> bool {
+        let state = &self.plan.state;
+        if state.modal.cycle.is_none() || !(self.names_axis() || self.words.has(b'R')) {
+            return true;
+        }
+        // The axis of a plan that ended early is that of the last block.
+        let drilling = self.plan.cycle_plan.as_ref().map(|cycle| cycle.axis).or(state.cycle.axis);
+        let before = &self.registers.state;
+        let is_known = |axis: AxisIndex| {
+            let letter = self.registers.data.settings.axes.letter(axis) as u8;
+            self.terms.axes.iter().all(|(named, _)| *named != letter)
+                && !before.programmed_position[axis].is_nan()
+                && !before.machine_position[axis].is_nan()
+        };
+        drilling.is_some_and(is_known)
+            && !state.modal.cycle.is_some_and(gcode_lang::program::cycles::Cycle::taps)
+            && !self.words.has_any(b"KLIJ")
+            && self.registers.data.settings.stroke_limits.is_none()
+            && !state.modal_words.s.is_nan()
+    }
+
     /// Returns the ends of all axes that depend on the ranges, after the alarms of the block in the control's order.
     fn ends(&mut self) -> Symbolic<Vec<AxisEnd>> {
         let zero = Term::Number(0.0);
@@ -205,8 +228,20 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             return self.alarm(Alarm::IllegalMinus { letter: 'F' }, b'F');
         }
         let axes: Vec<_> = self.registers.data.settings.axes.letters().collect();
+        let drilling = self.plan.cycle_plan.as_ref().map(|cycle| cycle.axis);
         let mut ends = Vec::new();
         for (axis, letter) in &axes {
+            if drilling == Some(*axis) {
+                // It ends at a level that is known.
+                let state = &self.plan.state;
+                let known = |at: f64| Term::of(at).ok_or_else(|| Halt::unfollowed("a canned cycle"));
+                ends.push(AxisEnd {
+                    axis: *axis,
+                    programmed: Some(known(state.programmed_position[*axis])?),
+                    machine: Some(known(state.machine_position[*axis])?),
+                });
+                continue;
+            }
             ends.push(match self.plan.commands_axes && self.words.has(*letter) {
                 true => self.end(*axis, *letter)?,
                 false => self.unchanged(*axis),
@@ -341,7 +376,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
     /// Raises the alarm of a straight cut without a feed.
     fn check_feed(&mut self) -> Symbolic<()> {
         let state = &self.plan.state;
-        if state.modal.motion != Motion::Linear {
+        if state.modal.motion != Motion::Linear && self.plan.cycle_plan.is_none() {
             return Ok(());
         }
         let depends = self.terms.feed.is_some() || state.modal_words.f.is_nan();
