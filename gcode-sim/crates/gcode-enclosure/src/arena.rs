@@ -65,6 +65,14 @@ impl Arena {
         }
     }
 
+    /// Returns the input of the node at a place.
+    pub(crate) fn as_input(&self, place: usize) -> Option<usize> {
+        match self.nodes[place] {
+            Node::Input(input) => Some(input),
+            Node::Constant(_) | Node::Unary(..) | Node::Binary(..) => None,
+        }
+    }
+
     /// Returns the node of a finite number.
     pub fn constant(&mut self, value: f64) -> NodeId {
         // Zeros of either sign are one number.

@@ -10,6 +10,8 @@ mod approximation;
 mod arena;
 mod basis;
 mod bounds;
+mod contraction;
+mod decisions;
 mod domain;
 mod elementary;
 mod enclosures;

@@ -211,6 +211,12 @@ proptest! {
             let is_possible = enclosures.assume(&arena, condition);
             prop_assert!(is_possible || points.is_empty(), "{condition:?} at {points:?}");
         }
+        let contracted = enclosures.contracted_domain(&arena);
+        prop_assert!(points.is_empty() || contracted.is_some());
+        for (point, domain) in points.iter().flat_map(|point| contracted.iter().map(move |domain| (point, domain))) {
+            let mut sides = domain.ranges().iter().zip(point);
+            prop_assert!(sides.all(|(range, value)| range.contains(*value)), "{point:?} beyond {domain:?}");
+        }
         for &node in &nodes {
             let range = enclosures.enclose_tightly(&arena, node);
             for point in &points {
