@@ -122,6 +122,8 @@ pub struct Answer {
     pub runs: u64,
     /// What depends on the ranges and isn't followed.
     pub unfollowed: Vec<String>,
+    /// No run ends without an alarm, as far as is known: a condition at the end says nothing then.
+    pub never_ends: bool,
 }
 
 /// Message of a thread that has panicked.

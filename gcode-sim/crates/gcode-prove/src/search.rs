@@ -67,7 +67,7 @@ impl<'s, L: Library> Prober<'s, L> {
     /// Runs a point by the control. Where it disagrees with the tree, nothing is proved.
     pub(crate) fn confirm(&mut self, point: &[f64], failed: ClaimSet, unfollowed: ClaimSet) {
         let result = self.witness.run(point);
-        if (result.failed ^ failed) & !unfollowed != 0 {
+        if result.end.is_some() && (result.failed ^ failed) & !unfollowed != 0 {
             self.shared.disagree(point);
         }
         self.shared.refute(result.failed, point);

@@ -43,10 +43,13 @@ impl SymbolicRun {
         let mut planned = words.clone();
         let mut halt = None;
         let mut is_known = true;
+        // A known value can be computed from terms, as 0 times one; the control would compute it again.
+        let mut is_computed = false;
         planned.for_each_word(|role, word| {
             if halt.is_some() {
                 return;
             }
+            is_computed |= matches!(word.value, WordOperand::Code(_));
             match executor.word_value(words, role, word, oracle) {
                 Ok(Some(term)) => {
                     is_known &= term.number().is_some();
@@ -62,7 +65,7 @@ impl SymbolicRun {
         let has_terms = executor.registers.has_terms_in_state();
         let is_special = executor.registers.state.is_in_parameter_input
             || executor.flow.triggered_call().is_some_and(|call| executor.flow.modal_calls[call].is_every_block);
-        if is_known && !has_terms && !is_conditional {
+        if is_known && !is_computed && !has_terms && !is_conditional {
             return Ok(self.control.step(library, &mut ()));
         }
         if is_special {
