@@ -171,6 +171,31 @@ impl Arena {
         self.index.get(&Key::Unary(function, x)).copied()
     }
 
+    /// Returns z of [z + ABS[z]]/2, which is the larger of z and 0 without a rounding.
+    pub(crate) fn positive_part(&self, id: NodeId) -> Option<NodeId> {
+        let Node::Binary(operator, sum, factor) = self.node(id) else { return None };
+        let (sum, factor) = if self.as_constant(sum).is_some() { (factor, sum) } else { (sum, factor) };
+        let halves = match operator {
+            Binary::Div => self.as_constant(factor) == Some(2.0),
+            Binary::Mul => self.as_constant(factor) == Some(0.5),
+            _ => false,
+        };
+        if halves { self.doubled_positive_part(sum) } else { None }
+    }
+
+    /// Returns z of z + ABS[z].
+    pub(crate) fn doubled_positive_part(&self, id: NodeId) -> Option<NodeId> {
+        let Node::Binary(Binary::Add, a, b) = self.node(id) else { return None };
+        let is_abs = |x: NodeId, of: NodeId| self.node(x) == Node::Unary(Unary::Abs, of);
+        if is_abs(b, a) {
+            Some(a)
+        } else if is_abs(a, b) {
+            Some(b)
+        } else {
+            None
+        }
+    }
+
     /// Returns the node of a value's square if the arena has it.
     pub(crate) fn find_square(&self, x: NodeId) -> Option<NodeId> {
         self.index.get(&Key::Binary(Binary::Mul, x, x)).copied()

@@ -15,8 +15,6 @@ pub(crate) struct Basis {
     tables: Arc<Tables>,
     /// Sums by monomial, 0 between two uses.
     scratch: Vec<f64>,
-    is_touched: Vec<bool>,
-    touched: Vec<u32>,
 }
 
 /// Monomials and their products, shared by the bases of equal boxes until one needs more.
@@ -26,6 +24,8 @@ struct Tables {
     keys: Vec<u64>,
     index: HashMap<u64, u32>,
     products: Vec<Vec<u32>>,
+    /// Number of monomials whose products with one another are all known.
+    complete: usize,
 }
 
 /// Tables by number of variables and degree, with all their monomials.
@@ -34,9 +34,9 @@ static COMPLETE: Mutex<BTreeMap<(usize, u32), Arc<Tables>>> = Mutex::new(BTreeMa
 /// A product that hasn't been looked up.
 const UNKNOWN: u32 = u32::MAX;
 /// A product beyond the degree with an odd exponent, in [−1, 1].
-pub(crate) const BEYOND_ODD: u32 = u32::MAX - 1;
+const BEYOND_ODD: u32 = u32::MAX - 1;
 /// A product beyond the degree with even exponents only, in [0, 1].
-pub(crate) const BEYOND_EVEN: u32 = u32::MAX - 2;
+const BEYOND_EVEN: u32 = u32::MAX - 2;
 
 const ODD_BITS: u64 = 0x1111_1111_1111_1111;
 
@@ -47,9 +47,7 @@ impl Basis {
         let mut complete = COMPLETE.lock().unwrap_or_else(PoisonError::into_inner);
         let tables =
             complete.entry((variables, degree)).or_insert_with(|| Arc::new(Tables::new(variables, degree)));
-        let tables = Arc::clone(tables);
-        let count = tables.keys.len();
-        Self { tables, scratch: vec![0.0; count], is_touched: vec![false; count], touched: Vec::new() }
+        Self { tables: Arc::clone(tables), scratch: Vec::new() }
     }
 
     pub(crate) fn degree(&self) -> u32 {
@@ -80,51 +78,70 @@ impl Basis {
         self.tables.keys[monomial as usize] & ODD_BITS == 0
     }
 
-    /// Returns the product of two monomials, or which kind beyond the degree it is.
-    #[inline]
-    pub(crate) fn product(&mut self, a: u32, b: u32) -> u32 {
-        match self.tables.products[a as usize].get(b as usize) {
-            Some(&known) if known != UNKNOWN => known,
-            _ => Arc::make_mut(&mut self.tables).find_product(a, b),
-        }
-    }
-
-    /// Adds to the sum of a monomial.
-    #[inline]
-    pub(crate) fn accumulate(&mut self, monomial: u32, value: f64) {
-        let place = monomial as usize;
-        if place >= self.scratch.len() {
-            self.scratch.resize(place + 1, 0.0);
-            self.is_touched.resize(place + 1, false);
-        }
-        self.scratch[place] += value;
-        if !self.is_touched[place] {
-            self.is_touched[place] = true;
-            self.touched.push(monomial);
-        }
-    }
-
-    /// Takes the sums, in the order of their monomials, and clears them.
-    pub(crate) fn take_sums(&mut self) -> Vec<(u32, f64)> {
-        self.touched.sort_unstable();
-        let (scratch, is_touched) = (&mut self.scratch, &mut self.is_touched);
-        let mut terms = Vec::with_capacity(self.touched.len());
-        for monomial in self.touched.drain(..) {
-            let place = monomial as usize;
-            let sum = std::mem::take(&mut scratch[place]);
-            is_touched[place] = false;
-            if sum != 0.0 {
-                terms.push((monomial, sum));
+    /// Returns the product of two polynomials up to the degree, and what lies beyond.
+    pub(crate) fn multiply(&mut self, left: &[(u32, f64)], right: &[(u32, f64)]) -> Product {
+        let mut beyond = Product::default();
+        self.complete_for(left, right);
+        let tables = &*self.tables;
+        self.scratch.resize(tables.keys.len(), 0.0);
+        let scratch = self.scratch.as_mut_slice();
+        for &(a, x) in left {
+            let row = tables.products[a as usize].as_slice();
+            for &(b, y) in right {
+                let value = x * y;
+                match row[b as usize] {
+                    BEYOND_ODD => beyond.odd += value.abs(),
+                    BEYOND_EVEN if value > 0.0 => beyond.positive += value,
+                    BEYOND_EVEN => beyond.negative -= value,
+                    monomial => scratch[monomial as usize] += value,
+                }
             }
         }
-        terms
+        // Products with even exponents lie on one side: the polynomial takes the middle.
+        scratch[0] += (beyond.positive - beyond.negative) / 2.0;
+        for (monomial, sum) in scratch.iter_mut().enumerate() {
+            if *sum != 0.0 {
+                beyond.terms.push((monomial as u32, std::mem::take(sum)));
+            }
+        }
+        beyond
     }
+
+    /// Looks all products of monomials of two polynomials up.
+    fn complete_for(&mut self, left: &[(u32, f64)], right: &[(u32, f64)]) {
+        let last = |terms: &[(u32, f64)]| terms.last().map_or(0, |(monomial, _)| *monomial as usize);
+        if last(left).max(last(right)) < self.tables.complete {
+            return;
+        }
+        for &(a, _) in left {
+            for &(b, _) in right {
+                let known = self.tables.products[a as usize].get(b as usize);
+                if known.is_none_or(|product| *product == UNKNOWN) {
+                    Arc::make_mut(&mut self.tables).find_product(a, b);
+                }
+            }
+        }
+    }
+}
+
+/// A product of polynomials.
+#[derive(Debug, Default)]
+pub(crate) struct Product {
+    /// Its terms up to the degree.
+    pub(crate) terms: Vec<(u32, f64)>,
+    /// Sum of the magnitudes of terms beyond the degree with an odd exponent, in [−1, 1].
+    pub(crate) odd: f64,
+    /// Sum of the positive coefficients beyond the degree with even exponents only, in [0, 1].
+    pub(crate) positive: f64,
+    /// Sum of the magnitudes of the negative ones.
+    pub(crate) negative: f64,
 }
 
 impl Tables {
     /// Returns the tables of all monomials of some variables up to a degree.
     fn new(variables: usize, degree: u32) -> Self {
-        let mut tables = Self { degree, keys: Vec::new(), index: HashMap::new(), products: Vec::new() };
+        let mut tables =
+            Self { degree, keys: Vec::new(), index: HashMap::new(), products: Vec::new(), complete: 0 };
         tables.intern(0);
         for variable in (0..variables).filter(|_| degree > 0) {
             tables.intern(1 << (4 * variable));
@@ -142,10 +159,10 @@ impl Tables {
                 tables.find_product(a, b);
             }
         }
+        tables.complete = tables.keys.len();
         tables
     }
 
-    #[cold]
     fn find_product(&mut self, a: u32, b: u32) -> u32 {
         let (left, right) = (self.keys[a as usize], self.keys[b as usize]);
         let product = if total_degree(left) + total_degree(right) <= self.degree {

@@ -146,6 +146,15 @@ impl Enclosures {
                         Interval::new(least * least, most * most)
                     }
                     Binary::Div if left == right => Interval::point(1.0),
+                    Binary::Add if arena.doubled_positive_part(node).is_some() => {
+                        // Of z and |z| the sum is 2·z or 0.
+                        let z = if matches!(arena.node(right), Node::Unary(Unary::Abs, _)) {
+                            a.hull
+                        } else {
+                            b.hull
+                        };
+                        Interval::new(2.0 * z.lo().max(0.0), 2.0 * z.hi().max(0.0))
+                    }
                     _ => hull::binary(operator, a.hull, b.hull, semantics),
                 };
                 (range, [Some(a), Some(b)])

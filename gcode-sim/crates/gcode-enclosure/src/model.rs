@@ -1,5 +1,5 @@
 //! Taylor models: a polynomial and the bound of everything that it leaves out.
-use crate::basis::{BEYOND_EVEN, BEYOND_ODD, Basis};
+use crate::basis::Basis;
 use crate::interval::{Interval, add_up, mul_up};
 
 /// A polynomial of the variables of a box and a bound of the distance from it.
@@ -152,31 +152,15 @@ impl Model {
     /// Returns the real product.
     pub(crate) fn mul(&self, other: &Self, basis: &mut Basis) -> Self {
         let (short, long) = if self.terms.len() <= other.terms.len() { (self, other) } else { (other, self) };
-        let (mut odd, mut positive, mut negative) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for &(a, x) in &short.terms {
-            for &(b, y) in &long.terms {
-                let value = x * y;
-                match basis.product(a, b) {
-                    BEYOND_ODD => odd += value.abs(),
-                    BEYOND_EVEN if value > 0.0 => positive += value,
-                    BEYOND_EVEN => negative -= value,
-                    monomial => basis.accumulate(monomial, value),
-                }
-            }
-        }
-        // Products with even exponents lie on one side: the polynomial takes the middle.
-        let shift = (positive - negative) / 2.0;
-        if shift != 0.0 {
-            basis.accumulate(0, shift);
-        }
-        let cut = odd + (positive + negative) / 2.0;
+        let product = basis.multiply(&short.terms, &long.terms);
+        let cut = product.odd + (product.positive + product.negative) / 2.0;
         let (norm, other_norm) = (short.norm(), long.norm());
         // A coefficient is a sum of at most as many products as the shorter factor has terms, and of the shift.
         let roundings = (short.terms.len() + 4) as f64;
         let rounded = roundings * HALF_ULP * norm * other_norm + roundings * HALF_ULP * cut;
         let rests = norm * long.rest + other_norm * short.rest + short.rest * long.rest;
         let rest = add_up((cut + rounded + rests) * SUM_MARGIN, LOST);
-        Self { terms: basis.take_sums(), rest }
+        Self { terms: product.terms, rest }
     }
 
     /// Returns the value of a polynomial of one variable with these coefficients, that of the constant first.

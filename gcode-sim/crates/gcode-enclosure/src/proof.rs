@@ -117,6 +117,9 @@ impl<'a> Prover<'a> {
     /// Proves x ≥ y by the operation of x.
     fn ge_by_left(&self, x: NodeId, y: NodeId, depth: u32) -> bool {
         let other = self.arena.node(y);
+        if let Some(part) = self.arena.positive_part(x) {
+            return self.is_negative(y, depth) || self.ge(part, y, depth);
+        }
         let is_below_zero = || self.is_negative(y, depth);
         match self.arena.node(x) {
             Node::Constant(_) | Node::Input(_) => false,
@@ -188,6 +191,9 @@ impl<'a> Prover<'a> {
     /// Proves x ≥ y by the operation of y.
     fn ge_by_right(&self, x: NodeId, y: NodeId, depth: u32) -> bool {
         let is_above_zero = || self.is_positive(x, depth);
+        if let Some(part) = self.arena.positive_part(y) {
+            return is_above_zero() && self.ge(x, part, depth);
+        }
         match self.arena.node(y) {
             Node::Constant(_) | Node::Input(_) => false,
             Node::Unary(function, c) => match function {

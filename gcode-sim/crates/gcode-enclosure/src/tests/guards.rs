@@ -183,3 +183,32 @@ fn what_a_rounding_cuts_off_stays_one_number() {
     let range = path.enclosures.enclose_tightly(&path.arena, difference);
     assert!((range.lo() - 1.0).abs() < 1e-9 && (range.hi() - 1.0).abs() < 1e-9, "{range:?}");
 }
+
+#[test]
+fn the_inner_edge_of_a_tool_is_on_the_surface() {
+    // O8101: #24=#2*SQRT[[#1-#18]*[#1+#18]]/#1, then #26=#18-#11*#20/2, #26=[#26+ABS[#26]]/2 and the root with #26.
+    let mut path = Path::new(&[(500.0, 2000.0), (0.0, 2000.0), (0.0, 1.0), (0.1, 60.0)]);
+    let [a, r, h, t] = [0, 1, 2, 3].map(|input| path.arena.input(input));
+    let two = path.arena.constant(2.0);
+    let width = path.of(Binary::Mul, h, t);
+    let half = path.of(Binary::Div, width, two);
+    let edge = path.of(Binary::Sub, r, half);
+    let magnitude = path.arena.unary(Unary::Abs, edge);
+    let double = path.of(Binary::Add, edge, magnitude);
+    let edge = path.of(Binary::Div, double, two);
+    let root = |path: &mut Path, r: NodeId| {
+        let (difference, sum) = (path.of(Binary::Sub, a, r), path.of(Binary::Add, a, r));
+        let product = path.of(Binary::Mul, difference, sum);
+        path.arena.unary(Unary::Sqrt, product)
+    };
+    let roots = [root(&mut path, r), root(&mut path, edge)];
+    // Without R ≤ A both can lack a value.
+    for root in roots {
+        assert_eq!(path.alarms(root), [OUT_OF_RANGE]);
+    }
+    path.assume(Relation::Le, r, a);
+    for root in roots {
+        assert_eq!(path.alarms(root), []);
+    }
+    assert!(path.enclosures.enclose(&path.arena, edge).lo() >= 0.0);
+}
