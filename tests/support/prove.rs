@@ -104,7 +104,10 @@ impl<'t> Rows<'t> {
             };
             if verdict != *expected {
                 let (point, share) = (&claim.counterexample, answer.undecided_share);
-                wrong.push(format!("{} is {verdict}: {point:?}, share {share:e}, {:?}", claim.claim, answer.unfollowed));
+                wrong.push(format!(
+                    "{} is {verdict}: {point:?}, share {share:e}, {:?}",
+                    claim.claim, answer.unfollowed
+                ));
             }
             if let Some(point) = &claim.counterexample
                 && !self.is_refuted(&claim.claim, point, controls)
@@ -127,7 +130,12 @@ impl<'t> Rows<'t> {
     /// Returns true if the control refutes a claim at a point, alone.
     fn is_refuted(&self, claim: &str, point: &[(u32, f64)], controls: &Controls) -> bool {
         let ranges = point.iter().map(|(variable, value)| format!("#{variable}={value}..{value}"));
-        let ask = Ask { ranges: ranges.collect(), claims: vec![claim.to_owned()], bounds: Vec::new(), ..self.ask.clone() };
+        let ask = Ask {
+            ranges: ranges.collect(),
+            claims: vec![claim.to_owned()],
+            bounds: Vec::new(),
+            ..self.ask.clone()
+        };
         let is_inside = self.ask.ranges.iter().zip(point).all(|(range, (_, value))| {
             let (low, high) = range.split_once('=').unwrap().1.split_once("..").unwrap();
             (low.parse::<f64>().unwrap()..=high.parse::<f64>().unwrap()).contains(value)
@@ -143,7 +151,8 @@ pub(crate) fn run(case: &Case) {
     for entry in text.split("\n== ").skip(1) {
         let (name, rest) = entry.split_once('\n').unwrap();
         let rows = Rows::of(rest.lines().filter_map(|line| line.strip_prefix("-- ")));
-        let blocks: Vec<_> = rest.lines().filter(|line| !line.is_empty() && !line.starts_with("-- ")).collect();
+        let blocks: Vec<_> =
+            rest.lines().filter(|line| !line.is_empty() && !line.starts_with("-- ")).collect();
         let head = if blocks[0].starts_with('O') { "" } else { "O0001\n" };
         let program = format!("{head}{}\n", blocks.join("\n"));
         let request = Request::new("case.nc", program.into_bytes(), Machine::default());

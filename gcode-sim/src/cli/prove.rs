@@ -119,9 +119,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         claims: arguments.claims.clone(),
         bounds: arguments.bounds.clone(),
         max_blocks: request.limits.blocks,
-        threads: arguments
-            .threads
-            .unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
+        threads: arguments.threads.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
     };
     let controls = Controls {
         request: &request,

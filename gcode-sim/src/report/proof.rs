@@ -71,9 +71,10 @@ fn row(answer: &ClaimAnswer) -> ClaimRow {
 impl ProofReport {
     /// Returns the report; `call` is the block that was run instead of the program.
     pub(crate) fn new(answer: &Answer, seconds: f64, program: String, call: Option<String>) -> Self {
-        let bounds = answer.bounds.iter().map(|bounds| {
-            (format!("#{}", bounds.variable), bounds.range.map(|(low, high)| [low, high]))
-        });
+        let bounds = answer
+            .bounds
+            .iter()
+            .map(|bounds| (format!("#{}", bounds.variable), bounds.range.map(|(low, high)| [low, high])));
         Self {
             verdict: name_of(answer.verdict),
             claims: answer.claims.iter().map(row).collect(),
@@ -116,7 +117,9 @@ impl ProofReport {
             _ = writeln!(text, "not followed: {what}");
         }
         if self.never_ends {
-            text.push_str("no run is known to end without an alarm: a condition at the end says nothing then\n");
+            text.push_str(
+                "no run is known to end without an alarm: a condition at the end says nothing then\n",
+            );
         }
         let (boxes, runs) = (count(self.boxes as usize, "box"), count(self.runs as usize, "run"));
         _ = writeln!(text, "{} and {}, {:.2} s", boxes.replace("boxs", "boxes"), runs, self.seconds);

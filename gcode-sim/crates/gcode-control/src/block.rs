@@ -329,7 +329,11 @@ impl Executor {
 
 impl Control {
     /// Carries out the plan of a block of words. Steps that can still raise an alarm come first.
-    pub(super) fn execute_plan<S: EventSink>(&mut self, library: &mut impl Library, sink: &mut S) -> ExecResult<()> {
+    pub(super) fn execute_plan<S: EventSink>(
+        &mut self,
+        library: &mut impl Library,
+        sink: &mut S,
+    ) -> ExecResult<()> {
         let span = self.executor.flow.block;
         let mut flow = std::mem::take(&mut self.plan.flow);
         match &mut flow {

@@ -317,9 +317,10 @@ impl Vars {
         // By their bits: a number that isn't one, as in a symbolic run, equals itself.
         let same = |these: &[StoredValue], others: &[StoredValue]| {
             these.len() == others.len()
-                && these.iter().zip(others).all(|(this, other)| {
-                    this.bits() == other.bits() && this.decimals == other.decimals
-                })
+                && these
+                    .iter()
+                    .zip(others)
+                    .all(|(this, other)| this.bits() == other.bits() && this.decimals == other.decimals)
         };
         same(&direct_values[..], &other.direct_values[..])
             && same(extra_values, &other.extra_values)

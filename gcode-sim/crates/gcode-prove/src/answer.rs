@@ -7,9 +7,10 @@ use gcode_control::symbolic::{SymbolicRun, Term};
 use gcode_enclosure::Domain;
 use gcode_lang::program::Library;
 
+use crate::points::Points;
 use crate::region::ClaimSet;
 use crate::request::{Claim, Range, RequestError, condition, parse_variable};
-use crate::search::Prober;
+use crate::search::{Prober, spread_point};
 use crate::shared::{Rest, Shared};
 use crate::simplify::simplified;
 use crate::tree::{Question, Tree};
@@ -137,15 +138,22 @@ const MAX_CLAIMS: usize = 60;
 /// # Errors
 /// [`ProveError`] if the request can't be used.
 pub fn prove<S: Setup>(setup: &S, ask: &Ask, watch: &Watch<'_>) -> Result<Answer, ProveError> {
+    let (question, claims) = read(setup, ask)?;
+    let mut prover = Prover { setup, watch, threads: ask.threads.get(), question, answer: empty(ask) };
+    prover.prove_claims(&claims)?;
+    prover.prove_bounds()?;
+    Ok(prover.conclude())
+}
+
+/// Reads a request: the question without its claims, and these.
+fn read<S: Setup>(setup: &S, ask: &Ask) -> Result<(Question, Vec<Claim>), ProveError> {
     let ranges = ask.ranges.iter().map(|text| Range::parse(text)).collect::<Result<Vec<_>, _>>()?;
     for (index, range) in ranges.iter().enumerate() {
         if ranges[..index].iter().any(|other| other.variable == range.variable) {
             return Err(RequestError::RangeTwice(ask.ranges[index].clone()).into());
         }
     }
-    let refused = |text: &String| {
-        condition(text).map_err(|why| RequestError::Condition(text.clone(), why))
-    };
+    let refused = |text: &String| condition(text).map_err(|why| RequestError::Condition(text.clone(), why));
     let conditions = ask.conditions.iter().map(refused).collect::<Result<Vec<_>, _>>()?;
     let claims = ask.claims.iter().map(|text| Claim::parse(text)).collect::<Result<Vec<_>, _>>()?;
     let bounds = ask.bounds.iter().map(|text| parse_variable(text)).collect::<Result<Vec<_>, _>>()?;
@@ -154,18 +162,12 @@ pub fn prove<S: Setup>(setup: &S, ask: &Ask, watch: &Watch<'_>) -> Result<Answer
     }
     check_ranges(setup, &ranges)?;
     let question = Question { ranges, conditions, claims: Vec::new(), bounds, max_blocks: ask.max_blocks };
-    let mut prover = Prover { setup, watch, threads: ask.threads.get(), question, answer: empty(ask) };
-    prover.prove_claims(&claims)?;
-    prover.prove_bounds()?;
-    Ok(prover.conclude())
+    Ok((question, claims))
 }
 
 fn empty(ask: &Ask) -> Answer {
-    let claim = |claim: &String| ClaimAnswer {
-        claim: claim.clone(),
-        verdict: Verdict::Proved,
-        counterexample: None,
-    };
+    let claim =
+        |claim: &String| ClaimAnswer { claim: claim.clone(), verdict: Verdict::Proved, counterexample: None };
     Answer {
         verdict: Verdict::Proved,
         claims: ask.claims.iter().map(claim).collect(),
@@ -186,6 +188,33 @@ fn check_ranges<S: Setup>(setup: &S, ranges: &[Range]) -> Result<(), ProveError>
         set.map_err(|alarm| RequestError::Variable(range.variable, alarm.code().to_string()))?;
     }
     Ok(())
+}
+
+/// Runs points spread evenly over the ranges through the followed expressions, without any box; returns the number of those at
+/// which a claim fails.
+///
+/// # Errors
+/// [`ProveError`] if the request can't be used.
+pub fn sample<S: Setup>(setup: &S, ask: &Ask, count: u32, watch: &Watch<'_>) -> Result<u32, ProveError> {
+    let (question, claims) = read(setup, ask)?;
+    let question = Arc::new(Question { claims, bounds: Vec::new(), ..question });
+    let (domain, threads) = (question.domain(), ask.threads.get() as u32);
+    let of_thread = |share: u32| -> Result<u32, ProveError> {
+        let control = setup.control(&[]).map_err(ProveError::Setup)?;
+        let mut tree = Tree::new(control, setup.library(), Arc::clone(&question));
+        let (mut points, mut failed) = (Points::default(), 0);
+        for index in (share..count).step_by(threads as usize) {
+            let way = points.follow(&mut tree, &spread_point(&domain, index + 1), watch, |_, _| {});
+            failed += u32::from(way.is_some_and(|way| way.failed != 0));
+        }
+        Ok(failed)
+    };
+    let of_thread = &of_thread;
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|share| scope.spawn(move || of_thread(share))).collect();
+        let fault = |_| Err(ProveError::Setup(FAULT.to_owned()));
+        workers.into_iter().map(|worker| worker.join().unwrap_or_else(fault)).sum()
+    })
 }
 
 /// Work on a request.
@@ -239,7 +268,10 @@ impl<S: Setup> Prover<'_, S> {
                 })
             };
             let workers: Vec<_> = (0..shares).map(work).collect();
-            workers.into_iter().map(|worker| worker.join().unwrap_or_else(|_| Err(ProveError::Setup(FAULT.to_owned())))).collect::<Vec<_>>()
+            workers
+                .into_iter()
+                .map(|worker| worker.join().unwrap_or_else(|_| Err(ProveError::Setup(FAULT.to_owned()))))
+                .collect::<Vec<_>>()
         });
         results.into_iter().collect::<Result<(), _>>()?;
         let rest = shared.into_rest();
@@ -371,7 +403,7 @@ fn check_values<L: Library>(
     domain: &Domain,
     mut witness: Witness<L>,
 ) -> Option<String> {
-    let mut points = (1..40).map(|index| crate::search::spread_point(domain, index));
+    let mut points = (1..40).map(|index| spread_point(domain, index));
     points.find_map(|point| {
         let values = witness.run(&point).values;
         let outside = bounds.iter().zip(values).find(|(bounds, value)| {

@@ -61,6 +61,6 @@ mod worker;
 
 mod answer;
 
-pub use answer::{Answer, Ask, ClaimAnswer, ProveError, Setup, VariableBounds, Verdict, prove};
+pub use answer::{Answer, Ask, ClaimAnswer, ProveError, Setup, VariableBounds, Verdict, prove, sample};
 pub use request::RequestError;
 pub use watch::Watch;

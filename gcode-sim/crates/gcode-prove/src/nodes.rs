@@ -2,7 +2,9 @@
 use std::collections::{BTreeSet, HashMap};
 
 use gcode_control::symbolic::{Term, TermOperation, Terms, Test};
-use gcode_enclosure::{AlarmKind, Arena, Binary, Condition, Domain, Enclosures, Node, NodeId, Relation, Semantics, Unary};
+use gcode_enclosure::{
+    AlarmKind, Arena, Binary, Condition, Domain, Enclosures, Node, NodeId, Relation, Semantics, Unary,
+};
 use gcode_lang::control::Settings;
 use gcode_lang::syntax::ast;
 

@@ -84,7 +84,13 @@ impl Points {
     /// Returns how far a condition is from failing at the point that was followed last; below 0 where it fails.
     pub(crate) fn margin(&mut self, arena: &Arena, formula: &NodeFormula, point: &[f64]) -> f64 {
         match formula {
-            NodeFormula::Known(known) => if *known { f64::INFINITY } else { f64::NEG_INFINITY },
+            NodeFormula::Known(known) => {
+                if *known {
+                    f64::INFINITY
+                } else {
+                    f64::NEG_INFINITY
+                }
+            }
             NodeFormula::Condition(condition) => {
                 use gcode_enclosure::Relation;
                 let left = self.value(arena, condition.left, point);

@@ -143,9 +143,11 @@ impl Region {
             return;
         }
         self.finding.is_included = true;
-        self.finding.has_end |= leaf.end == End::End;
+        self.finding.has_end |= leaf.end == End::Program;
         let arena = tree.nodes.arena();
-        for (index, state) in leaf.claims.iter().enumerate().filter(|(index, _)| self.claims >> index & 1 == 1) {
+        for (index, state) in
+            leaf.claims.iter().enumerate().filter(|(index, _)| self.claims >> index & 1 == 1)
+        {
             let bit = 1 << index;
             match state {
                 ClaimState::Holds => {}
@@ -244,7 +246,8 @@ fn decide(
 /// Divides a box where it decides most; empty if every input has one value.
 pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<Domain> {
     for condition in finding.undecided.iter().take(8) {
-        let parts = cut_at_limit(arena, domain, *condition).or_else(|| cut_at_turn(arena, domain, *condition));
+        let parts =
+            cut_at_limit(arena, domain, *condition).or_else(|| cut_at_turn(arena, domain, *condition));
         if let Some(parts) = parts {
             return parts;
         }
@@ -293,7 +296,9 @@ fn cut_at_limit(arena: &Arena, domain: &Domain, condition: Condition) -> Option<
 fn cut_at_turn(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
     let input = only_input(arena, domain, &[condition.left, condition.right])?;
     let at_low = holds_at(arena, domain, input, domain.range(input).lo(), condition)?;
-    cut_where(domain, input, |value| holds_at(arena, domain, input, value, condition).map(|holds| holds == at_low))
+    cut_where(domain, input, |value| {
+        holds_at(arena, domain, input, value, condition).map(|holds| holds == at_low)
+    })
 }
 
 fn holds_at(arena: &Arena, domain: &Domain, input: usize, value: f64, condition: Condition) -> Option<bool> {
@@ -304,9 +309,8 @@ fn holds_at(arena: &Arena, domain: &Domain, input: usize, value: f64, condition:
 
 /// Cuts a box exactly where a whole number on which a condition depends has its only step.
 fn cut_at_step(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
-    let is_step = |node: &NodeId| {
-        matches!(arena.node(*node), Node::Unary(Unary::Round | Unary::Fix | Unary::Fup, _))
-    };
+    let is_step =
+        |node: &NodeId| matches!(arena.node(*node), Node::Unary(Unary::Round | Unary::Fix | Unary::Fup, _));
     let steps = cone(arena, &[condition.left, condition.right]).into_iter().filter(is_step);
     steps.take(16).find_map(|node| {
         let input = only_input(arena, domain, &[node])?;
@@ -382,9 +386,8 @@ fn best_input(arena: &Arena, domain: &Domain, condition: Condition) -> Option<us
     };
     let all = margin(domain.clone());
     let ranges = domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
-    let rated = ranges.map(|(input, range)| {
-        (all - margin(domain.with(input, Interval::point(range.midpoint()))), input)
-    });
+    let rated = ranges
+        .map(|(input, range)| (all - margin(domain.with(input, Interval::point(range.midpoint()))), input));
     let best = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 > 0.0).then_some(best.1)
 }

@@ -103,9 +103,12 @@ impl Claim {
         match word.to_ascii_lowercase().as_str() {
             "no-alarm" if rest.is_empty() => Ok(Self::NoAlarm),
             "alarm" => {
-                let codes: Vec<String> = rest.split('|').map(|code| code.trim().to_ascii_uppercase()).collect();
+                let codes: Vec<String> =
+                    rest.split('|').map(|code| code.trim().to_ascii_uppercase()).collect();
                 match codes.iter().find(|code| !is_alarm_code(code)) {
-                    Some(code) => Err(refused(&format!("'{code}' is no alarm code such as MC3001 or PS0112"))),
+                    Some(code) => {
+                        Err(refused(&format!("'{code}' is no alarm code such as MC3001 or PS0112")))
+                    }
                     None => Ok(Self::OnlyAlarms(codes)),
                 }
             }
@@ -128,7 +131,9 @@ impl Claim {
                 });
                 let settings: Option<Vec<_>> = settings.collect();
                 let settings = settings.filter(|settings| !settings.is_empty());
-                settings.map(Self::Travel).ok_or_else(|| refused("the limits are missing: 1320=X100. 1321=X-5."))
+                settings
+                    .map(Self::Travel)
+                    .ok_or_else(|| refused("the limits are missing: 1320=X100. 1321=X-5."))
             }
             _ if trimmed.is_empty() => Err(refused("the claim is empty")),
             _ => condition(trimmed).map(Self::Condition).map_err(|why| refused(&why)),
@@ -184,7 +189,9 @@ mod tests {
         let limit = vec![("1320".to_owned(), "X100.,Y5".to_owned())];
         assert_eq!(Claim::parse("travel 1320=X100.,Y5"), Ok(Claim::Travel(limit)));
         assert!(matches!(Claim::parse("[#1 LE 2]AND[#2 GT 3]"), Ok(Claim::Condition(_))));
-        for unreadable in ["alarm", "alarm 3001", "blocks 5", "travel", "travel 1300=X1", "#100 LE", "#100", "", "x"] {
+        for unreadable in
+            ["alarm", "alarm 3001", "blocks 5", "travel", "travel 1300=X1", "#100 LE", "#100", "", "x"]
+        {
             assert!(matches!(Claim::parse(unreadable), Err(RequestError::Claim(..))), "{unreadable}");
         }
     }

@@ -12,6 +12,9 @@ use crate::tree::{ClaimState, End, Question, Tree};
 use crate::watch::Watch;
 use crate::witness::Witness;
 
+/// Point that is nearest to the edge of a question, with its distance.
+type Nearest = Option<(f64, Vec<f64>)>;
+
 /// One thread's tree with the means to try single points.
 pub(crate) struct Prober<'s, L> {
     pub(crate) tree: Tree<L>,
@@ -52,7 +55,7 @@ impl<'s, L: Library> Prober<'s, L> {
         self.watch.count_run();
         let Some(way) = self.points.follow(&mut self.tree, point, self.watch, |_, _| {}) else { return };
         if way.leaf.end != End::Excluded {
-            self.shared.include(way.leaf.end == End::End);
+            self.shared.include(way.leaf.end == End::Program);
         }
         let open = self.shared.open_claims();
         let suspected = (way.failed | way.unfollowed) & open;
@@ -99,12 +102,23 @@ impl<'s, L: Library> Prober<'s, L> {
         let of_range = |range: &gcode_enclosure::Interval| {
             let mut values = vec![range.lo(), range.hi(), range.midpoint()];
             let neighbours = |value: f64| {
-                [value, -value, value.next_up(), value.next_down(), value + 0.001, value - 0.001, value + 0.0005]
+                [
+                    value,
+                    -value,
+                    value.next_up(),
+                    value.next_down(),
+                    value + 0.001,
+                    value - 0.001,
+                    value + 0.0005,
+                ]
             };
             let ends = [range.lo(), range.hi()].into_iter().flat_map(neighbours);
             let numbers = constants.iter().copied().flat_map(neighbours);
             let whole = (-10..=20).map(f64::from).chain([30.0, 45.0, 60.0, 90.0, 100.0, 180.0, 270.0, 360.0]);
-            values.extend(ends.chain(numbers).chain(whole.flat_map(|value| [value, value.next_up(), value.next_down()])));
+            values.extend(
+                ends.chain(numbers)
+                    .chain(whole.flat_map(|value| [value, value.next_up(), value.next_down()])),
+            );
             values.retain(|value| range.contains(*value));
             let mut seen = BTreeMap::new();
             values.retain(|value| seen.insert((value + 0.0).to_bits(), ()).is_none());
@@ -125,14 +139,19 @@ impl<'s, L: Library> Prober<'s, L> {
         };
         for corner in 0..1_usize << inputs.min(10) {
             let ends = domain.ranges().iter().enumerate();
-            let point: Vec<f64> =
-                ends.map(|(index, range)| if corner >> index.min(9) & 1 == 1 { range.hi() } else { range.lo() }).collect();
+            let point: Vec<f64> = ends
+                .map(|(index, range)| if corner >> index.min(9) & 1 == 1 { range.hi() } else { range.lo() })
+                .collect();
             if is_own() {
                 self.try_point(&point);
             }
         }
         let mut tried = 0;
-        for base in [middle, domain.ranges().iter().map(|range| range.lo()).collect(), domain.ranges().iter().map(|range| range.hi()).collect()] {
+        for base in [
+            middle,
+            domain.ranges().iter().map(|range| range.lo()).collect(),
+            domain.ranges().iter().map(|range| range.hi()).collect(),
+        ] {
             for (input, of_input) in values.iter().enumerate() {
                 for value in of_input {
                     if self.is_enough() {
@@ -147,7 +166,9 @@ impl<'s, L: Library> Prober<'s, L> {
             }
             for (first, of_first) in values.iter().enumerate() {
                 for (second, of_second) in values.iter().enumerate().skip(first + 1) {
-                    for pair in of_first.iter().flat_map(|a| of_second.iter().map(move |b| (*a, *b))).take(600) {
+                    for pair in
+                        of_first.iter().flat_map(|a| of_second.iter().map(move |b| (*a, *b))).take(600)
+                    {
                         tried += 1;
                         if self.is_enough() || tried > SPECIAL {
                             break;
@@ -166,7 +187,7 @@ impl<'s, L: Library> Prober<'s, L> {
     /// Moves points towards the edge of each question that all points have answered alike, and of each claim.
     fn descend(&mut self, domain: &Domain, share: u32, shares: u32) {
         // For each question, the points on either side that are nearest to its edge.
-        let mut sides: BTreeMap<usize, [Option<(f64, Vec<f64>)>; 2]> = BTreeMap::new();
+        let mut sides: BTreeMap<usize, [Nearest; 2]> = BTreeMap::new();
         for index in (share..800).step_by(shares as usize) {
             if self.is_enough() {
                 return;
@@ -259,5 +280,9 @@ pub(crate) fn spread_point(domain: &Domain, index: u32) -> Vec<f64> {
         value
     };
     let ranges = domain.ranges().iter().zip(PRIMES.iter().cycle());
-    ranges.map(|(range, base)| (range.lo() + (range.hi() - range.lo()) * coordinate(*base)).clamp(range.lo(), range.hi())).collect()
+    ranges
+        .map(|(range, base)| {
+            (range.lo() + (range.hi() - range.lo()) * coordinate(*base)).clamp(range.lo(), range.hi())
+        })
+        .collect()
 }

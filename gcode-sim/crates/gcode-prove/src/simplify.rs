@@ -57,7 +57,11 @@ fn rounder(value: f64, low: f64, high: f64) -> Vec<f64> {
         }
     }
     candidates.retain(|candidate| (low..=high).contains(candidate) && length(*candidate) < length(value));
-    candidates.sort_by(|a, b| (length(*a), (a - value).abs()).partial_cmp(&(length(*b), (b - value).abs())).unwrap_or(std::cmp::Ordering::Equal));
+    candidates.sort_by(|a, b| {
+        (length(*a), (a - value).abs())
+            .partial_cmp(&(length(*b), (b - value).abs()))
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
     candidates.dedup();
     candidates.iter().map(|value| value + 0.0).collect()
 }

@@ -31,7 +31,11 @@ impl Question {
             Claim::Blocks(limit) => *limit,
             Claim::Condition(_) | Claim::NoAlarm | Claim::OnlyAlarms(_) | Claim::Travel(_) => u64::MAX,
         };
-        if self.bounds.is_empty() { self.claims.iter().map(limit).max().unwrap_or(u64::MAX) } else { u64::MAX }
+        if self.bounds.is_empty() {
+            self.claims.iter().map(limit).max().unwrap_or(u64::MAX)
+        } else {
+            u64::MAX
+        }
     }
 
     /// Returns the box of all ranges.
@@ -131,7 +135,8 @@ pub(crate) struct Leaf {
 pub(crate) enum End {
     /// The conditions exclude the values of this way.
     Excluded,
-    End,
+    /// M02, M30 or M99.
+    Program,
     Alarm(String),
     Limit,
     /// Something isn't followed.
@@ -142,7 +147,7 @@ impl End {
     /// Returns the end of a run.
     pub(crate) fn of(outcome: &Outcome) -> Self {
         match outcome {
-            Outcome::End => Self::End,
+            Outcome::End => Self::Program,
             Outcome::Alarm(stop) => Self::Alarm(stop.alarm.code().to_string()),
             Outcome::Limit => Self::Limit,
         }
@@ -211,8 +216,7 @@ impl<L: Library> Tree<L> {
         let mut nodes = Nodes::new(semantics(control.settings()), question.domain());
         let mut run = SymbolicRun::new(control);
         for (index, range) in question.ranges.iter().enumerate() {
-            let term =
-                if range.low == range.high { Term::Number(range.low) } else { nodes.input(index) };
+            let term = if range.low == range.high { Term::Number(range.low) } else { nodes.input(index) };
             // A variable that can't be set has been refused with the request.
             _ = run.set_term(range.variable, term);
         }
@@ -353,7 +357,7 @@ impl<L: Library> Tree<L> {
                     return Some(Progress::Ended(leaf));
                 };
                 let state = match (claim, &leaf.end) {
-                    (Claim::Condition(code), End::End) => {
+                    (Claim::Condition(code), End::Program) => {
                         match self.run.condition(code, &mut self.nodes, open.answers()) {
                             Ok((formula, used)) => {
                                 open.used += used;
@@ -419,9 +423,9 @@ impl<L: Library> Tree<L> {
         let mut leaf = Leaf { end, blocks, claims: Vec::new(), bounds: Vec::new() };
         for number in &self.question.bounds {
             leaf.bounds.push(match self.run.variable(*number) {
-                Ok(Some(term)) if leaf.end == End::End => BoundState::Node(self.nodes.id(term)),
+                Ok(Some(term)) if leaf.end == End::Program => BoundState::Node(self.nodes.id(term)),
                 Ok(_) => BoundState::None,
-                Err(_) if leaf.end != End::End => BoundState::None,
+                Err(_) if leaf.end != End::Program => BoundState::None,
                 Err(Halt::Unfollowed(what)) => BoundState::Unfollowed(what),
                 Err(_) => BoundState::None,
             });
@@ -441,7 +445,7 @@ impl<L: Library> Tree<L> {
         let claims = self.question.claims.iter().map(|claim| state_at(claim, &end, blocks)).collect();
         let bound = match &end {
             End::Unfollowed(what) => BoundState::Unfollowed(what.clone()),
-            End::Excluded | End::End | End::Alarm(_) | End::Limit => BoundState::None,
+            End::Excluded | End::Program | End::Alarm(_) | End::Limit => BoundState::None,
         };
         Leaf { end, blocks, claims, bounds: vec![bound; self.question.bounds.len()] }
     }
@@ -455,14 +459,14 @@ impl<L: Library> Tree<L> {
             Formula::Logic(op, left, right) => {
                 let (left, right) = (self.formula(left), self.formula(right));
                 match (op, &left, &right) {
-                    (BinaryOp::And, NodeFormula::Known(true), _) | (BinaryOp::Or, NodeFormula::Known(false), _) => right,
-                    (BinaryOp::And, _, NodeFormula::Known(true)) | (BinaryOp::Or, _, NodeFormula::Known(false)) => left,
-                    (BinaryOp::And, NodeFormula::Known(false), _) | (BinaryOp::And, _, NodeFormula::Known(false)) => {
-                        NodeFormula::Known(false)
-                    }
-                    (BinaryOp::Or, NodeFormula::Known(true), _) | (BinaryOp::Or, _, NodeFormula::Known(true)) => {
-                        NodeFormula::Known(true)
-                    }
+                    (BinaryOp::And, NodeFormula::Known(true), _)
+                    | (BinaryOp::Or, NodeFormula::Known(false), _) => right,
+                    (BinaryOp::And, _, NodeFormula::Known(true))
+                    | (BinaryOp::Or, _, NodeFormula::Known(false)) => left,
+                    (BinaryOp::And, NodeFormula::Known(false), _)
+                    | (BinaryOp::And, _, NodeFormula::Known(false)) => NodeFormula::Known(false),
+                    (BinaryOp::Or, NodeFormula::Known(true), _)
+                    | (BinaryOp::Or, _, NodeFormula::Known(true)) => NodeFormula::Known(true),
                     _ => NodeFormula::Logic(*op, Box::new(left), Box::new(right)),
                 }
             }
@@ -483,15 +487,15 @@ pub(crate) fn state_at(claim: &Claim, end: &End, blocks: u64) -> ClaimState {
         (_, End::Excluded) => true,
         (Claim::Blocks(limit), End::Unfollowed(_) | End::Limit) if blocks > *limit => false,
         (_, End::Unfollowed(what)) => return ClaimState::Unfollowed(what.clone()),
-        (Claim::Condition(_), End::End) => return ClaimState::Unfollowed("a condition".to_owned()),
+        (Claim::Condition(_), End::Program) => return ClaimState::Unfollowed("a condition".to_owned()),
         (Claim::Condition(_), End::Alarm(_) | End::Limit) => true,
         (Claim::NoAlarm, end) => !matches!(end, End::Alarm(_)),
         (Claim::OnlyAlarms(codes), End::Alarm(code)) => codes.contains(code),
-        (Claim::OnlyAlarms(_), End::End | End::Limit) => true,
+        (Claim::OnlyAlarms(_), End::Program | End::Limit) => true,
         (Claim::Blocks(_), End::Limit) => false,
-        (Claim::Blocks(limit), End::End | End::Alarm(_)) => blocks <= *limit,
+        (Claim::Blocks(limit), End::Program | End::Alarm(_)) => blocks <= *limit,
         (Claim::Travel(_), End::Alarm(code)) => !code.starts_with("OT"),
-        (Claim::Travel(_), End::End | End::Limit) => true,
+        (Claim::Travel(_), End::Program | End::Limit) => true,
     };
     if holds { ClaimState::Holds } else { ClaimState::Fails }
 }

@@ -97,7 +97,8 @@ impl<L: Library> BoundSearch<'_, L> {
         self.watch.count_run();
         let way = self.points.follow(self.tree, point, self.watch, |_, _| {})?;
         let state = way.leaf.bounds.get(self.index)?;
-        let value = self.points.bound(self.tree.nodes.arena(), state, point).filter(|value| value.is_finite())?;
+        let value =
+            self.points.bound(self.tree.nodes.arena(), state, point).filter(|value| value.is_finite())?;
         let (low, high) = self.values.unwrap_or((value, value));
         self.values = Some((low.min(value), high.max(value)));
         Some(value)
@@ -116,7 +117,11 @@ impl<L: Library> BoundSearch<'_, L> {
         self.add(&mut boxes, &mut settled, whole.clone(), first, f64::INFINITY, &finding);
         let mut findings_left = 2_000_000_u64;
         while let Some(worst) = boxes.pop() {
-            if self.is_close(worst.bound) || worst.bound <= settled || self.watch.is_over() || findings_left == 0 {
+            if self.is_close(worst.bound)
+                || worst.bound <= settled
+                || self.watch.is_over()
+                || findings_left == 0
+            {
                 settled = settled.max(worst.bound);
                 break;
             }

@@ -13,20 +13,17 @@ pub struct Watch<'a> {
 
 impl std::fmt::Debug for Watch<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Watch").field("limit", &self.limit).field("boxes", &self.boxes).finish_non_exhaustive()
+        f.debug_struct("Watch")
+            .field("limit", &self.limit)
+            .field("boxes", &self.boxes)
+            .finish_non_exhaustive()
     }
 }
 
 impl<'a> Watch<'a> {
     /// Returns the watch of work that ends when the clock, which counts from its start, reaches a limit.
     pub fn new(clock: &'a (dyn Fn() -> Duration + Sync), limit: Duration) -> Self {
-        Self {
-            clock,
-            limit,
-            stop: AtomicBool::new(false),
-            boxes: AtomicU64::new(0),
-            runs: AtomicU64::new(0),
-        }
+        Self { clock, limit, stop: AtomicBool::new(false), boxes: AtomicU64::new(0), runs: AtomicU64::new(0) }
     }
 
     /// Ends the work; what is decided so far stays.

@@ -75,7 +75,7 @@ impl<L: Library> Witness<L> {
         let mut failed = 0;
         for (index, claim) in self.question.claims.iter().enumerate() {
             let holds = match (claim, &end) {
-                (Claim::Condition(code), End::End) => {
+                (Claim::Condition(code), End::Program) => {
                     let formula = self.run.condition(code, &mut NoTerms, &[]);
                     matches!(formula.map(|(formula, _)| value(&formula)), Ok(Some(true)))
                 }
@@ -83,12 +83,17 @@ impl<L: Library> Witness<L> {
             };
             failed |= u64::from(!holds) << index;
         }
-        let is_end = end == End::End;
+        let is_end = end == End::Program;
         let number = |number: &u32| {
             let term = self.run.variable(*number).ok().flatten().filter(|_| is_end);
             term.and_then(Term::number)
         };
-        PointResult { values: self.question.bounds.iter().map(number).collect(), end: Some(end), blocks, failed }
+        PointResult {
+            values: self.question.bounds.iter().map(number).collect(),
+            end: Some(end),
+            blocks,
+            failed,
+        }
     }
 }
 

@@ -76,7 +76,7 @@ impl<L: Library> Prober<'_, L> {
             self.watch.count_run();
             let result = self.witness.run(point);
             if let Some(end) = &result.end {
-                self.shared.include(*end == End::End);
+                self.shared.include(*end == End::Program);
             }
             self.shared.refute(result.failed & claims, point);
         }
@@ -109,7 +109,8 @@ fn doubles(domain: &Domain) -> Option<Vec<Vec<f64>>> {
             return None;
         }
         let with = |point: &Vec<f64>, value: f64| point.iter().copied().chain([value]).collect();
-        points = points.iter().flat_map(|point| values.iter().map(move |value| with(point, *value))).collect();
+        points =
+            points.iter().flat_map(|point| values.iter().map(move |value| with(point, *value))).collect();
     }
     Some(points)
 }

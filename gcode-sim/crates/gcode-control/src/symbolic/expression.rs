@@ -193,7 +193,9 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
         let left = self.fetch(left, last)?;
         let right = self.fetch(right, last)?;
         let keeps_vacancy = matches!(relation, Relation::Eq | Relation::Ne);
-        let known = |left: Value, right: Value| Ok(SymbolicValue::Truth(Formula::Known(compare(relation, left, right))));
+        let known = |left: Value, right: Value| {
+            Ok(SymbolicValue::Truth(Formula::Known(compare(relation, left, right))))
+        };
         match (&left, &right) {
             (SymbolicValue::Vacant, SymbolicValue::Vacant) => return known(Value::Vacant, Value::Vacant),
             (SymbolicValue::Vacant, _) | (_, SymbolicValue::Vacant) if keeps_vacancy => {
@@ -236,7 +238,7 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
             UncommonOp::NegateWord if last == SymbolicValue::Vacant => last,
             UncommonOp::Negate | UncommonOp::NegateWord => SymbolicValue::Term(match self.term(last)? {
                 Term::Number(number) => Term::Number(-number),
-                node => self.oracle.terms.node(TermOperation::Negate, [node, node]),
+                node @ Term::Node(_) => self.oracle.terms.node(TermOperation::Negate, [node, node]),
             }),
             UncommonOp::Bracket if last == SymbolicValue::Vacant && !undocumented.brackets_keep_vacancy => {
                 SymbolicValue::Term(Term::Number(0.0))
@@ -304,7 +306,7 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
     pub(super) fn variable_number(&mut self, value: SymbolicValue, span: Span) -> Symbolic<u32> {
         let number = match self.term(value)? {
             Term::Number(number) => number,
-            node => self.oracle.pin(node)?,
+            node @ Term::Node(_) => self.oracle.pin(node)?,
         };
         Ok(locate(variable_number(Value::Number(number)), span)?)
     }
@@ -312,7 +314,9 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
     pub(super) fn rounded(&mut self, term: Term) -> Symbolic<Term> {
         Ok(match term {
             Term::Number(number) => Term::Number(round(number)),
-            node => self.oracle.terms.node(TermOperation::Function(Function::Round), [node, node]),
+            node @ Term::Node(_) => {
+                self.oracle.terms.node(TermOperation::Function(Function::Round), [node, node])
+            }
         })
     }
 
@@ -347,7 +351,7 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
             _ if rounds == RoundingTarget::Whole => self.rounded(value),
             b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
                 let decimals = self.registers.data.decimals(letter, self.registers.state.modal.unit);
-                self.oracle.to_increment(value, POWERS[decimals])
+                self.oracle.rounded_to_increment(value, POWERS[decimals])
             }
             b'F' | b'E' => Ok(value),
             _ => self.rounded(value),
@@ -391,4 +395,3 @@ impl Registers {
         self.state.modal.unit == gcode_lang::program::modes::Unit::Inch
     }
 }
-

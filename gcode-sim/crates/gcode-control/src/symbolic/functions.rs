@@ -16,9 +16,7 @@ impl<T: Terms> Evaluation<'_, '_, T> {
             | Function::Fup
             | Function::Atan
             | Function::Sin
-            | Function::Cos => {
-                Ok(self.apply(name, x))
-            }
+            | Function::Cos => Ok(self.apply(name, x)),
             Function::Sqrt => {
                 self.refuse(name, Relation::Lt, x, 0.0, span)?;
                 Ok(self.apply(name, x))

@@ -11,6 +11,8 @@ mod moves;
 mod oracle;
 mod statements;
 mod term;
+#[cfg(test)]
+mod tests;
 mod words;
 
 pub use self::oracle::Halt;
@@ -175,7 +177,8 @@ impl SymbolicRun {
     ) -> Symbolic<Option<Outcome>> {
         let Control { memory, executor, loop_detector, .. } = &mut self.control;
         let CallFrame { program, next, .. } = executor.flow.frame;
-        let Some((program, op)) = memory.get_mut(program).and_then(|program| program.lower_block(next)) else {
+        let Some((program, op)) = memory.get_mut(program).and_then(|program| program.lower_block(next))
+        else {
             return Ok(self.control.step(library, &mut ()));
         };
         executor.flow.block = op.span;

@@ -17,6 +17,7 @@ use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Motion, Polar};
 use gcode_lang::program::{Library, Words};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Function, Relation};
+use gcode_lang::units::POWERS;
 
 /// Largest number of increments in a word (PS0003).
 const MAX_INCREMENTS: f64 = 999_999_999.0;
@@ -163,11 +164,16 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 | Effect::Cutting(_)
                 | Effect::Call => true,
                 Effect::OneShot(OneShot::Dwell) => self.terms.axes.is_empty(),
+                // Only its feed may depend on the ranges.
+                Effect::OneShot(OneShot::Skip) => !self.moves_terms(),
                 Effect::Motion(_) => !names_axis && !self.words.has_any(b"IJKR"),
                 effect => shifts_coordinates(effect) && !(names_axis && has_terms),
             };
             if !is_followed {
-                return Err(Halt::unfollowed(format!("G{}", gcode_lang::program::g_codes::spelled(row.code))));
+                return Err(Halt::unfollowed(format!(
+                    "G{}",
+                    gcode_lang::program::g_codes::spelled(row.code)
+                )));
             }
         }
         let state = &self.plan.state;
@@ -177,8 +183,11 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             (!self.is_plain_cycle(), "a canned cycle"),
             (state.modal.cutter != CutterSide::Off && names_axis, "a move in cutter compensation"),
             (self.plan.corner.is_some(), "a corner"),
-            (self.plan.uses_lookahead || !self.registers.lookahead.is_idle(), "a move that waits for the next"),
-            (self.plan.skip_plan.is_some(), "a skip"),
+            (
+                self.plan.uses_lookahead || !self.registers.lookahead.is_idle(),
+                "a move that waits for the next",
+            ),
+            (self.plan.skip_plan.is_some() && self.moves_terms(), "a skip"),
             (names_axis && state.modal.polar == Polar::On, "polar coordinates"),
             (names_axis && state.controls_tip(), "tool centre point control"),
             (names_axis && !state.transform.is_identity(), "mirrored, scaled or rotated coordinates"),
@@ -195,6 +204,14 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             Some((_, what)) => Err(Halt::unfollowed(*what)),
             None => Ok(()),
         }
+    }
+
+    /// Returns true if an axis word or a position depends on the ranges.
+    fn moves_terms(&self) -> bool {
+        let state = &self.registers.state;
+        let positions = [&state.programmed_position, &state.machine_position];
+        !self.terms.axes.is_empty()
+            || positions.iter().any(|position| position.0.iter().any(|at| at.is_nan()))
     }
 
     /// Returns true if the block drills by no cycle, or by one of which only the place of the hole depends on the ranges.
@@ -242,7 +259,8 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 });
                 continue;
             }
-            ends.push(match self.plan.commands_axes && self.words.has(*letter) {
+            let is_named = self.plan.skip_plan.is_none() && self.words.has(*letter);
+            ends.push(match self.plan.commands_axes && is_named {
                 true => self.end(*axis, *letter)?,
                 false => self.unchanged(*axis),
             });
@@ -252,10 +270,9 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             self.check_feed()?;
             self.check_stroke(&ends)?;
         }
-        let is_term = |end: &AxisEnd| !matches!(
-            (end.programmed, end.machine),
-            (Some(Term::Number(_)), Some(Term::Number(_)))
-        );
+        let is_term = |end: &AxisEnd| {
+            !matches!((end.programmed, end.machine), (Some(Term::Number(_)), Some(Term::Number(_))))
+        };
         ends.retain(is_term);
         Ok(ends)
     }
@@ -323,7 +340,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
 
     /// Returns a word in mm or degrees, a multiple of the increment.
     fn dimension(&mut self, term: Term, letter: u8) -> Symbolic<Term> {
-        let scale = 10_f64.powi(self.registers.data.decimals(letter, self.plan.state.modal.unit) as i32);
+        let scale = POWERS[self.registers.data.decimals(letter, self.plan.state.modal.unit)];
         let magnitude = self.node(TermOperation::Function(Function::Abs), term, term);
         if self.oracle.ask(Test::Compare(Relation::Gt, magnitude, Term::Number(SURELY_TOO_LARGE)))? {
             return self.alarm(Alarm::TooManyDigits, letter);
@@ -376,7 +393,10 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
     /// Raises the alarm of a straight cut without a feed.
     fn check_feed(&mut self) -> Symbolic<()> {
         let state = &self.plan.state;
-        if state.modal.motion != Motion::Linear && self.plan.cycle_plan.is_none() {
+        let feeds = state.modal.motion == Motion::Linear
+            || self.plan.cycle_plan.is_some()
+            || self.plan.skip_plan.is_some();
+        if !feeds {
             return Ok(());
         }
         let depends = self.terms.feed.is_some() || state.modal_words.f.is_nan();

@@ -82,11 +82,11 @@ impl<'o, T: Terms> Oracle<'o, T> {
     pub(super) fn pin(&mut self, term: Term) -> Symbolic<f64> {
         let node = match term {
             Term::Number(number) => return Ok(number),
-            node => self.terms.node(TermOperation::Function(Function::Round), [node, node]),
+            node @ Term::Node(_) => self.terms.node(TermOperation::Function(Function::Round), [node, node]),
         };
         let (mut low, mut high) = self.terms.bounds(node);
-        // Also false for bounds that aren't finite.
-        if !(high - low <= MAX_WHOLE_NUMBERS) {
+        let width = high - low;
+        if width > MAX_WHOLE_NUMBERS || !width.is_finite() {
             return Err(Halt::unfollowed("a whole number of more than 4096 values"));
         }
         (low, high) = (low.ceil(), high.floor());
@@ -102,7 +102,7 @@ impl<'o, T: Terms> Oracle<'o, T> {
     }
 
     /// Returns a term as a multiple of 1/scale, as the control rounds a word.
-    pub(super) fn to_increment(&mut self, term: Term, scale: f64) -> Symbolic<Term> {
+    pub(super) fn rounded_to_increment(&mut self, term: Term, scale: f64) -> Symbolic<Term> {
         let whole = self.terms.node(TermOperation::Scaled(scale), [term, term]);
         Ok(self.terms.node(TermOperation::Divide, [whole, Term::Number(scale)]))
     }

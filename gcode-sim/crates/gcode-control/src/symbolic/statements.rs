@@ -132,7 +132,9 @@ impl Executor {
         oracle: &mut Oracle<'_, T>,
     ) -> Symbolic<()> {
         for value in values {
-            if let SymbolicValue::Term(Term::Node(_)) = Evaluation::new(&self.registers, oracle).operand(value)? {
+            if let SymbolicValue::Term(Term::Node(_)) =
+                Evaluation::new(&self.registers, oracle).operand(value)?
+            {
                 return Err(Halt::unfollowed(what));
             }
         }
@@ -156,10 +158,13 @@ impl Executor {
         };
         let is = |relation, limit| Test::Compare(relation, whole, Term::Number(limit));
         let (low, high) = oracle.terms.bounds(whole);
-        if oracle.ask(is(Relation::Gt, 999_999_999_999.0))? || oracle.ask(is(Relation::Lt, -999_999_999_999.0))? {
+        if oracle.ask(is(Relation::Gt, 999_999_999_999.0))?
+            || oracle.ask(is(Relation::Lt, -999_999_999_999.0))?
+        {
             return Err(Alarm::IntegerOverflow.located_at(to.span).into());
         }
-        let (below, above) = (oracle.ask(is(Relation::Lt, 1.0))?, oracle.ask(is(Relation::Gt, 99_999_999.0))?);
+        let (below, above) =
+            (oracle.ask(is(Relation::Lt, 1.0))?, oracle.ask(is(Relation::Gt, 99_999_999.0))?);
         if below || above {
             if self.registers.data.settings.undocumented.minus_searches_up {
                 return Err(Halt::unfollowed("a jump to a negative number"));
@@ -210,9 +215,7 @@ impl Executor {
 /// Returns a value as a control stores it.
 fn stored<T: Terms>(value: SymbolicValue, oracle: &mut Oracle<'_, T>) -> Symbolic<Value> {
     match value {
-        SymbolicValue::Truth(formula) => {
-            Ok(Value::Number(if oracle.is_true(&formula)? { 1.0 } else { 0.0 }))
-        }
+        SymbolicValue::Truth(formula) => Ok(Value::Number(if oracle.is_true(&formula)? { 1.0 } else { 0.0 })),
         value => value.stored().ok_or_else(|| Halt::unfollowed("a condition as a number")),
     }
 }

@@ -64,7 +64,10 @@ impl SymbolicRun {
         }
         let has_terms = executor.registers.has_terms_in_state();
         let is_special = executor.registers.state.is_in_parameter_input
-            || executor.flow.triggered_call().is_some_and(|call| executor.flow.modal_calls[call].is_every_block);
+            || executor
+                .flow
+                .triggered_call()
+                .is_some_and(|call| executor.flow.modal_calls[call].is_every_block);
         if is_known && !is_computed && !has_terms && !is_conditional {
             return Ok(self.control.step(library, &mut ()));
         }

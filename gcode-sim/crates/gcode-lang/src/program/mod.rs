@@ -367,7 +367,8 @@ impl Program {
     pub fn sequence_numbers(&self) -> impl Iterator<Item = u32> + '_ {
         let numbers = self.numbers();
         let is_first = |index: usize| index == 0 || numbers[index - 1].0 != numbers[index].0;
-        let first = numbers.iter().enumerate().filter(move |(index, (number, _))| *number != 0 && is_first(*index));
+        let first =
+            numbers.iter().enumerate().filter(move |(index, (number, _))| *number != 0 && is_first(*index));
         first.map(|(_, (number, _))| *number)
     }
 
