@@ -14,6 +14,7 @@ mod decisions;
 mod domain;
 mod elementary;
 mod enclosures;
+mod factors;
 mod form;
 mod hull;
 mod interval;
