@@ -1,6 +1,7 @@
 //! The arena: every expression once, its operands before it.
 use std::collections::HashMap;
 
+use crate::factors::Factors;
 use crate::node::{AlarmKind, Binary, Condition, Node, NodeId, Relation, Semantics, Unary};
 use crate::values;
 
@@ -12,6 +13,7 @@ use crate::values;
 pub struct Arena {
     nodes: Vec<Node>,
     index: HashMap<Key, NodeId>,
+    factors: Vec<Factors>,
     semantics: Semantics,
 }
 
@@ -34,7 +36,7 @@ impl Arena {
 
     /// Returns an arena for a control with these settings.
     pub fn new(semantics: Semantics) -> Self {
-        let mut arena = Self { nodes: Vec::new(), index: HashMap::new(), semantics };
+        let mut arena = Self { nodes: Vec::new(), index: HashMap::new(), factors: Vec::new(), semantics };
         arena.constant(0.0);
         arena.constant(1.0);
         arena.constant(-1.0);
@@ -258,11 +260,19 @@ impl Arena {
             Node::Unary(function, x) => Key::Unary(function, x),
             Node::Binary(operator, a, b) => Key::Binary(operator, a, b),
         };
-        let nodes = &mut self.nodes;
-        *self.index.entry(key).or_insert_with(|| {
-            nodes.push(node);
-            NodeId(nodes.len() as u32 - 1)
-        })
+        if let Some(&known) = self.index.get(&key) {
+            return known;
+        }
+        let id = NodeId(self.nodes.len() as u32);
+        self.factors.push(Factors::of(id, node, &self.factors));
+        self.nodes.push(node);
+        self.index.insert(key, id);
+        id
+    }
+
+    /// Returns the factors of a node.
+    pub(crate) fn factors(&self, id: NodeId) -> &Factors {
+        &self.factors[id.index()]
     }
 }
 

@@ -111,6 +111,10 @@ fn unary_operand(function: Unary, result: Interval) -> Option<Interval> {
 
 /// Returns the operands of an operator whose values lie in a range; `None` if that says nothing.
 fn binary_operands(operator: Binary, a: Interval, b: Interval, result: Interval) -> Option<[Interval; 2]> {
+    // Real numbers beyond the largest double round to it.
+    if result.magnitude() > 1e300 {
+        return None;
+    }
     let wide = unrounded(result);
     let sum = |x: Interval, y: Interval| Interval::new(sub_down(x.lo(), -y.lo()), add_up(x.hi(), y.hi()));
     let minus = |x: Interval| Interval::new(-x.hi(), -x.lo());

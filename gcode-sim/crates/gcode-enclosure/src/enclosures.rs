@@ -25,6 +25,8 @@ pub struct Enclosures {
     /// Variable of each input; none for an input with one value.
     variables: Vec<Option<usize>>,
     pub(crate) next_variable: usize,
+    /// Nodes whose own variables follow those of the inputs.
+    sources: Vec<NodeId>,
 }
 
 /// Largest number of inputs with a variable; the others are ranges only.
@@ -57,7 +59,15 @@ impl Enclosures {
         });
         let variables = variables.collect();
         let basis = Basis::new(next_variable, degree);
-        Self { domain, conditions: Vec::new(), forms: Vec::new(), basis, variables, next_variable }
+        Self {
+            domain,
+            conditions: Vec::new(),
+            forms: Vec::new(),
+            basis,
+            variables,
+            next_variable,
+            sources: Vec::new(),
+        }
     }
 
     /// Returns the box.
@@ -166,7 +176,9 @@ impl Enclosures {
         let mut modeller = Modeller { basis: &mut self.basis, semantics };
         let model = match (content, &operands) {
             (Node::Unary(function @ (Unary::Fix | Unary::Fup | Unary::Round), _), [Some(x), _]) => {
-                let variable = (self.next_variable < MAX_VARIABLES && x.model.is_some()).then(|| {
+                let is_free = self.next_variable < MAX_VARIABLES && x.model.is_some();
+                let variable = is_free.then(|| {
+                    self.sources.push(node);
                     self.next_variable += 1;
                     self.next_variable - 1
                 });
@@ -186,8 +198,9 @@ impl Enclosures {
             (Node::Binary(operator, ..), [Some(a), Some(b)]) => modeller.binary(operator, a, b, natural),
             _ => None,
         };
+        let model = self.best_model(arena, node, natural, model);
         let Some(model) = model.filter(Model::is_finite) else {
-            return self.free_form(natural);
+            return self.free_form(node, natural);
         };
         let hull = natural.intersect(model.bound(&self.basis));
         if hull.lo() >= hull.hi() {
@@ -195,14 +208,37 @@ impl Enclosures {
         }
         // A polynomial within its own rest says nothing.
         let is_useful = model.rest < hull.width() * 0.4999 && !model.is_constant();
-        if is_useful { Form { hull, model: Some(model) } } else { self.free_form(hull) }
+        if is_useful { Form { hull, model: Some(model) } } else { self.free_form(node, hull) }
+    }
+
+    /// Returns the better of a model and that of the node's factors, if these are simpler.
+    fn best_model(
+        &mut self,
+        arena: &Arena,
+        node: NodeId,
+        result: Interval,
+        model: Option<Model>,
+    ) -> Option<Model> {
+        let factors = arena.factors(node);
+        if !factors.is_simpler || !matches!(arena.node(node), Node::Binary(..)) {
+            return model;
+        }
+        let forms = factors.powers.iter().map(|(factor, _)| self.forms[factor.index()].clone());
+        let forms: Option<Vec<_>> = forms.collect();
+        let mut modeller = Modeller { basis: &mut self.basis, semantics: arena.semantics() };
+        let by_factors = forms.and_then(|forms| modeller.product_of_powers(factors, &forms, result));
+        match (model, by_factors) {
+            (Some(model), Some(by_factors)) if by_factors.rest >= model.rest => Some(model),
+            (model, by_factors) => by_factors.or(model),
+        }
     }
 
     /// Returns the form of a value without a relation to the inputs: a variable of its own, if there is one left.
-    fn free_form(&mut self, hull: Interval) -> Form {
+    fn free_form(&mut self, node: NodeId, hull: Interval) -> Form {
         if self.next_variable >= MAX_VARIABLES || hull.magnitude() > 1e20 {
             return Form { hull, model: None };
         }
+        self.sources.push(node);
         self.next_variable += 1;
         let model = Model::of_variable(&mut self.basis, self.next_variable - 1, hull);
         Form { hull, model: Some(model) }
@@ -241,32 +277,58 @@ impl Enclosures {
             if weight == 0.0 || form.hull.as_point().is_some() {
                 continue;
             }
-            let own = match &form.model {
-                Some(model) => self.variables.iter().map(|variable| self.effect(model, *variable)).collect(),
-                None => vec![0.0; inputs],
-            };
-            let sum: f64 = own.iter().sum();
-            if sum > 0.0 {
-                for (effect, own) in effects.iter_mut().zip(own) {
-                    *effect += weight * own / sum;
+            let first = self.next_variable - self.sources.len();
+            let Some(model) = &form.model else {
+                if let Node::Input(input) = arena.node(id) {
+                    effects[input] += weight;
+                }
+                for operand in arena.operands(id) {
+                    weights[operand.index()] += weight;
                 }
                 continue;
+            };
+            let of_sources = self
+                .sources
+                .iter()
+                .enumerate()
+                .map(|(place, source)| (*source, self.effect(model, Some(first + place))));
+            let of_sources: Vec<_> = of_sources.filter(|(_, effect)| *effect > 0.0).collect();
+            let of_inputs: Vec<f64> =
+                self.variables.iter().map(|variable| self.effect(model, *variable)).collect();
+            let all =
+                of_inputs.iter().chain(of_sources.iter().map(|(_, effect)| effect)).sum::<f64>() + model.rest;
+            if all <= 0.0 {
+                continue;
             }
-            if let Node::Input(input) = arena.node(id) {
-                effects[input] += weight;
+            for (effect, own) in effects.iter_mut().zip(of_inputs) {
+                *effect += weight * own / all;
+            }
+            // What the polynomial leaves out comes of the operands.
+            let mut left_out = model.rest;
+            for (source, effect) in of_sources {
+                if source == id {
+                    left_out += effect;
+                } else {
+                    weights[source.index()] += weight * effect / all;
+                }
             }
             for operand in arena.operands(id) {
-                weights[operand.index()] += weight;
+                weights[operand.index()] += weight * left_out / all;
             }
         }
         effects
     }
 
-    /// Returns true for a node with a polynomial of inputs.
+    /// Returns true for a node that is a polynomial of inputs for its larger part.
     pub(crate) fn is_modelled(&self, node: NodeId) -> bool {
         let form = self.forms.get(node.index()).and_then(Option::as_ref);
-        form.and_then(|form| form.model.as_ref())
-            .is_some_and(|model| self.variables.iter().any(|variable| self.effect(model, *variable) > 0.0))
+        form.and_then(|form| form.model.as_ref()).is_some_and(|model| {
+            let first = self.next_variable - self.sources.len();
+            let inputs: f64 = self.variables.iter().map(|variable| self.effect(model, *variable)).sum();
+            let others: f64 =
+                (first..self.next_variable).map(|variable| self.effect(model, Some(variable))).sum();
+            inputs > others + model.rest
+        })
     }
 
     /// Returns how much a variable changes a polynomial.

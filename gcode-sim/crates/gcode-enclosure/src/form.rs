@@ -1,7 +1,10 @@
 //! The form of a node: its range and its Taylor model, from those of its operands.
+use std::sync::Arc;
+
 use crate::approximation::Approximation;
 use crate::basis::Basis;
 use crate::elementary::Elementary;
+use crate::factors::Factors;
 use crate::hull::{FUNCTION_ERROR, UNDERFLOW};
 use crate::interval::{Interval, add_up, mul_up};
 use crate::model::{HALF_ULP, Model, is_power_of_two};
@@ -117,6 +120,36 @@ impl Modeller<'_> {
             Binary::Atan => self.angle(a, b),
             Binary::Mod | Binary::And | Binary::Or | Binary::Xor | Binary::Compare(_) => None,
         }
+    }
+
+    /// Returns the model of a node by its factors, whose forms are given in their order.
+    pub(crate) fn product_of_powers(
+        &mut self,
+        factors: &Factors,
+        forms: &[Arc<Form>],
+        result: Interval,
+    ) -> Option<Model> {
+        let mut product = Model::constant(factors.constant);
+        for ((_, halves), form) in factors.powers.iter().zip(forms) {
+            // Within these magnitudes no result of the operations overflows, and what underflows stays below 1e-60.
+            let is_small = *halves < 0 && form.hull.mignitude() < 1e-10;
+            if is_small || form.hull.magnitude() > 1e10 {
+                return None;
+            }
+            let factor = form.as_model()?;
+            if halves % 2 != 0 {
+                product = product.mul(&self.compose(Elementary::Sqrt, &factor, form.hull)?, self.basis);
+            }
+            let whole = halves.div_euclid(2);
+            let base =
+                if whole < 0 { self.compose(Elementary::Reciprocal, &factor, form.hull)? } else { factor };
+            for _ in 0..whole.unsigned_abs() {
+                product = product.mul(&base, self.basis);
+            }
+        }
+        let rounding = result.magnitude() * HALF_ULP * f64::from(factors.roundings) * (1.0 + 1e-9);
+        product.widen(add_up(rounding, 1e-60));
+        product.is_finite().then_some(product)
     }
 
     /// Returns the model of a real function of a value in a range.

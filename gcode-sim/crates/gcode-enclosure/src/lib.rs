@@ -15,6 +15,7 @@ mod decisions;
 mod domain;
 mod elementary;
 mod enclosures;
+mod factors;
 mod form;
 mod hull;
 mod interval;

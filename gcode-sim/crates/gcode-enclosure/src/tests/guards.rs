@@ -212,3 +212,30 @@ fn the_inner_edge_of_a_tool_is_on_the_surface() {
     }
     assert!(path.enclosures.enclose(&path.arena, edge).lo() >= 0.0);
 }
+
+#[test]
+fn a_point_on_the_surface_keeps_its_equation() {
+    // Y = B*SQRT[[A-R]*[A+R]]/A: R*R/[A*A] + Y*Y/[B*B] is 1 within some roundings of 1.1e-16.
+    let mut path = Path::new(&[(500.0, 2000.0), (300.0, 1200.0), (0.0, 0.999)]);
+    let [a, b, share] = [0, 1, 2].map(|input| path.arena.input(input));
+    let r = path.of(Binary::Mul, share, a);
+    let (difference, sum) = (path.of(Binary::Sub, a, r), path.of(Binary::Add, a, r));
+    let product = path.of(Binary::Mul, difference, sum);
+    let root = path.arena.unary(Unary::Sqrt, product);
+    let y = path.of(Binary::Mul, b, root);
+    let y = path.of(Binary::Div, y, a);
+    let [rr, aa, yy, bb] = [r, a, y, b].map(|x| path.of(Binary::Mul, x, x));
+    let (x_part, y_part) = (path.of(Binary::Div, rr, aa), path.of(Binary::Div, yy, bb));
+    let surface = path.of(Binary::Add, x_part, y_part);
+    let search = BoundsSearch {
+        tolerance: 1e-9,
+        relative_tolerance: 0.0,
+        max_boxes: 4000,
+        threads: 2,
+        is_over: &|| false,
+    };
+    let bounds = bounds(&path.arena, surface, path.enclosures.domain(), &search);
+    println!("surface: {:?}, {} boxes", bounds.range, bounds.boxes);
+    assert!(bounds.is_complete);
+    assert!(bounds.range.lo() > 1.0 - 2e-9 && bounds.range.hi() < 1.0 + 2e-9, "{:?}", bounds.range);
+}
