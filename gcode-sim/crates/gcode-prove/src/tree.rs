@@ -81,6 +81,8 @@ struct Expansion {
     phase: Phase,
     /// Number of answers in `from` that belong to what has been done.
     used: usize,
+    /// Number of answers used in all.
+    all_used: usize,
     blocks: u64,
 }
 
@@ -88,6 +90,12 @@ impl Expansion {
     /// Returns the answers to what is done next.
     fn answers(&self) -> &[bool] {
         &self.from.answers[self.used..]
+    }
+
+    /// Counts answers as used.
+    fn count(&mut self, used: usize) {
+        self.used += used;
+        self.all_used += used;
     }
 }
 
@@ -269,10 +277,11 @@ impl<L: Library> Tree<L> {
             phase: open.phase.clone(),
             from: open.clone(),
             used: 0,
+            all_used: 0,
             blocks: self.run.control().blocks(),
         };
         let state = loop {
-            let before = expansion.used;
+            let before = expansion.all_used;
             match self.advance(&mut expansion, watch) {
                 Some(Progress::Ended(leaf)) => break SegmentState::Leaf(Rc::new(leaf)),
                 Some(Progress::Asked(_)) if self.segments.len() >= MAX_SEGMENTS => {
@@ -288,7 +297,7 @@ impl<L: Library> Tree<L> {
                     break self.unfollowed("a loop that computes without an end");
                 }
                 None => {
-                    for (test, answer) in again.by_ref().take(expansion.used - before) {
+                    for (test, answer) in again.by_ref().take(expansion.all_used - before) {
                         self.nodes.add_answer(test, *answer);
                     }
                 }
@@ -339,7 +348,7 @@ impl<L: Library> Tree<L> {
                 match self.run.decide(code, &mut self.nodes, open.answers()) {
                     Ok((true, used)) => {
                         open.phase = Phase::Conditions(index + 1);
-                        open.used += used;
+                        open.count(used);
                         None
                     }
                     // A condition without a value excludes its values.
@@ -360,7 +369,7 @@ impl<L: Library> Tree<L> {
                     (Claim::Condition(code), End::Program) => {
                         match self.run.condition(code, &mut self.nodes, open.answers()) {
                             Ok((formula, used)) => {
-                                open.used += used;
+                                open.count(used);
                                 match self.formula(&formula) {
                                     NodeFormula::Known(true) => ClaimState::Holds,
                                     NodeFormula::Known(false) => ClaimState::Fails,
@@ -396,7 +405,7 @@ impl<L: Library> Tree<L> {
         }
         match self.run.advance(&mut self.nodes, open.answers(), &mut self.library) {
             Advance::Next(used) => {
-                open.used += used;
+                open.count(used);
                 None
             }
             Advance::Fork(test) => Some(Progress::Asked(test)),
@@ -431,7 +440,7 @@ impl<L: Library> Tree<L> {
             });
         }
         // The answers to the questions of a last block that ends the run.
-        open.used += used;
+        open.count(used);
         open.from.answers.drain(..open.used);
         open.used = 0;
         open.from.snapshot = Rc::new(self.run.snapshot());
