@@ -223,6 +223,15 @@ impl Enclosures {
         if !factors.is_simpler || !matches!(arena.node(node), Node::Binary(..)) {
             return model;
         }
+        // Within these magnitudes no operation on the factors overflows, and what underflows stays below 1e-60: a dozen
+        // factors multiply it by 1e120 at most.
+        let is_moderate = |&(factor, is_divisor): &(NodeId, bool)| {
+            let hull = self.hull(factor);
+            hull.magnitude() <= 1e10 && (!is_divisor || hull.mignitude() >= 1e-10)
+        };
+        if !factors.used.iter().all(is_moderate) {
+            return model;
+        }
         let forms = factors.powers.iter().map(|(factor, _)| self.forms[factor.index()].clone());
         let forms: Option<Vec<_>> = forms.collect();
         let mut modeller = Modeller { basis: &mut self.basis, semantics: arena.semantics() };

@@ -11,29 +11,45 @@ pub(crate) struct Factors {
     pub(crate) constant: f64,
     /// Factors in the order of their nodes, with twice their exponents.
     pub(crate) powers: Vec<(NodeId, i32)>,
+    /// All factors, those that cancelled as well; true for one that is part of a divisor somewhere.
+    pub(crate) used: Vec<(NodeId, bool)>,
     /// Number of roundings, those of the constant included.
     pub(crate) roundings: u32,
     /// True if factors cancelled or a root was squared.
     pub(crate) is_simpler: bool,
 }
 
-/// Largest sum of the magnitudes of doubled exponents before cancellation.
+/// Largest number of roundings: every operation has two, so that there are no more than a dozen factors.
 const MOST: u32 = 24;
 
 impl Factors {
     /// Returns the factors of a node from those of its operands.
     pub(crate) fn of(id: NodeId, node: Node, known: &[Self]) -> Self {
-        let whole = Self { constant: 1.0, powers: vec![(id, 2)], roundings: 0, is_simpler: false };
+        let whole = Self {
+            constant: 1.0,
+            powers: vec![(id, 2)],
+            used: vec![(id, false)],
+            roundings: 0,
+            is_simpler: false,
+        };
         let factors = |x: NodeId| &known[x.index()];
         let found = match node {
-            Node::Constant(value) if value != 0.0 => {
-                Some(Self { constant: value, powers: Vec::new(), roundings: 0, is_simpler: false })
-            }
+            Node::Constant(value) if value != 0.0 => Some(Self {
+                constant: value,
+                powers: Vec::new(),
+                used: Vec::new(),
+                roundings: 0,
+                is_simpler: false,
+            }),
             Node::Unary(Unary::Neg, x) => Some(Self { constant: -factors(x).constant, ..factors(x).clone() }),
             // The root of a node, which is 0 or more where the root has a value.
-            Node::Unary(Unary::Sqrt, x) => {
-                Some(Self { constant: 1.0, powers: vec![(x, 1)], roundings: 1, is_simpler: false })
-            }
+            Node::Unary(Unary::Sqrt, x) => Some(Self {
+                constant: 1.0,
+                powers: vec![(x, 1)],
+                used: vec![(x, false)],
+                roundings: 1,
+                is_simpler: false,
+            }),
             Node::Binary(Binary::Mul, a, b) => factors(a).product(factors(b), 1),
             Node::Binary(Binary::Div, a, b) => factors(a).product(factors(b), -1),
             _ => None,
@@ -57,11 +73,18 @@ impl Factors {
         }
         powers.retain(|(_, halves)| *halves != 0);
         powers.sort_unstable();
+        let mut used = self.used.clone();
+        for &(factor, is_divisor) in &other.used {
+            let is_divisor = is_divisor || sign < 0;
+            match used.iter_mut().find(|(known, _)| *known == factor) {
+                Some((_, known)) => *known |= is_divisor,
+                None => used.push((factor, is_divisor)),
+            }
+        }
         let constant = if sign > 0 { self.constant * other.constant } else { self.constant / other.constant };
         // One rounding of the operation, one of the constant.
         let roundings = self.roundings + other.roundings + 2;
-        let size: u32 = powers.iter().map(|(_, halves)| halves.unsigned_abs()).sum();
-        let is_usable = (1e-10..1e10).contains(&constant.abs()) && size <= MOST && roundings <= MOST;
-        is_usable.then_some(Self { constant, powers, roundings, is_simpler })
+        let is_usable = (1e-10..1e10).contains(&constant.abs()) && roundings <= MOST;
+        is_usable.then_some(Self { constant, powers, used, roundings, is_simpler })
     }
 }

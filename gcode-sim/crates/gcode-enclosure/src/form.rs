@@ -131,11 +131,6 @@ impl Modeller<'_> {
     ) -> Option<Model> {
         let mut product = Model::constant(factors.constant);
         for ((_, halves), form) in factors.powers.iter().zip(forms) {
-            // Within these magnitudes no result of the operations overflows, and what underflows stays below 1e-60.
-            let is_small = *halves < 0 && form.hull.mignitude() < 1e-10;
-            if is_small || form.hull.magnitude() > 1e10 {
-                return None;
-            }
             let factor = form.as_model()?;
             if halves % 2 != 0 {
                 product = product.mul(&self.compose(Elementary::Sqrt, &factor, form.hull)?, self.basis);

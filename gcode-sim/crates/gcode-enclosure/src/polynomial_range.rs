@@ -45,7 +45,7 @@ impl Model {
             let size = degree + 1;
             steps += size + 4;
             stride /= size;
-            for start in (0..count).filter(|start| start / stride % size == 0) {
+            for start in (0..count).filter(|start| (start / stride).is_multiple_of(size)) {
                 column.clear();
                 column.extend((0..size).map(|power| coefficients[start + power * stride]));
                 for (index, row) in matrix.chunks(size).enumerate() {

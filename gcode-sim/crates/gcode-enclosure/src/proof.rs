@@ -328,10 +328,10 @@ impl<'a> Prover<'a> {
                     return true;
                 }
             }
-            Node::Binary(Binary::Div, c, d) if self.range(d).mignitude() >= 1.0 => {
-                if self.abs_ge(a, c, depth) {
-                    return true;
-                }
+            Node::Binary(Binary::Div, c, d)
+                if self.range(d).mignitude() >= 1.0 && self.abs_ge(a, c, depth) =>
+            {
+                return true;
             }
             _ => {}
         }

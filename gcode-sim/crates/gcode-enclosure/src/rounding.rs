@@ -74,7 +74,7 @@ fn of_unary(function: Unary, (x, error): Operand, result: Interval) -> Option<f6
             let rest = (1.0 - most) * (1.0 + most) * (1.0 - 1e-12);
             // A jump from 0° to 360° has no bound.
             let is_continuous =
-                function == Unary::Acos || x.lo() > error || x.hi() < -error || result.hi() <= 90.0;
+                function == Unary::Acos || error == 0.0 || x.mignitude() > error || result.lo() < 0.0;
             let moved = if error == 0.0 { 0.0 } else { error / rest.max(0.0).sqrt() };
             (is_continuous && (rest > 0.0 || error == 0.0))
                 .then(|| degrees(moved) + result.magnitude() * 2.0 * f64::EPSILON)
@@ -109,12 +109,15 @@ fn of_binary(operator: Binary, (a, of_a): Operand, (b, of_b): Operand, result: I
             // The slope of the direction is one over the distance from the origin.
             let (y, x) = (b.mignitude() - of_b, a.mignitude() - of_a);
             let distance = (y.max(0.0) * y.max(0.0) + x.max(0.0) * x.max(0.0)).sqrt();
-            let is_continuous =
-                a.mignitude() > of_a || b.hi() < -of_b && result.lo() >= 0.0 || of_a + of_b == 0.0;
+            // Across the x axis the angle jumps on one side: on the left if some are negative, else on the right.
+            let is_continuous = of_a + of_b == 0.0
+                || a.mignitude() > of_a
+                || b.lo() > of_b && result.lo() < 0.0
+                || b.hi() < -of_b && result.lo() >= 0.0 && a.lo() < 0.0;
             let moved = if of_a + of_b == 0.0 { 0.0 } else { (of_a + of_b) / distance };
             let (_, to_degrees) = conversions();
             let rounding = (360.0 + moved * to_degrees) * 2.0 * FUNCTION_ERROR;
-            (is_continuous && moved.is_finite()).then(|| moved * to_degrees + rounding)
+            (is_continuous && moved.is_finite()).then_some(moved * to_degrees + rounding)
         }
         Binary::Pow => {
             let (lo, hi) = (a.lo() - of_a, a.hi() + of_a);

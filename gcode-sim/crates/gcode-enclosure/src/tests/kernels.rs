@@ -259,7 +259,7 @@ fn kernels_of_one_input() {
     let head = b.sub(x, t3);
     let head = b.add(head, t5);
     let node = b.sub(head, t7);
-    check("sine", &b.arena, node, &[(-1.57079632679, 1.57079632679)], KERNEL);
+    check("sine", &b.arena, node, &[(-1.570_796, 1.570_796)], KERNEL);
     // sqroot: 1 + 0.5x − 0.125xx + 0.0625xxx − 0.0390625xxxx
     let terms = [
         one,
