@@ -11,6 +11,7 @@ use crate::report::changes::ChangesReport;
 use crate::report::check::CheckReport;
 use crate::report::explain::ExplainReport;
 use crate::report::pictures::{CompareReport, RenderReport};
+use crate::report::proof::ProofReport;
 use crate::report::readings::ReadingsReport;
 use crate::report::run::RunReport;
 use crate::report::settings::SettingsReport;
@@ -65,6 +66,7 @@ pub const FORMATS: &[Format] = &[
     result::<ChangesReport>("diff", "the result of diff"),
     result::<TestReport>("test", "the result of test, which test --merge reads"),
     result::<BudgetReport>("budget", "the result of budget"),
+    result::<ProofReport>("prove", "the result of prove"),
     result::<RenderReport>("render", "the result of render, in addition to the picture"),
     result::<CompareReport>("compare", "the result of compare"),
     result::<SettingsReport>("settings", "the result of settings"),

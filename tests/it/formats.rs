@@ -15,6 +15,7 @@ const COMMANDS: &[(&str, &str, &[&str])] = &[
     ("gcode-sim", "test", &["text", "json", "junit", "sarif"]),
     ("gcode-sim", "new", &[]),
     ("gcode-sim", "budget", &["text", "json"]),
+    ("gcode-sim", "prove", &["text", "json"]),
     ("gcode-sim", "settings", &["text", "json"]),
     ("gcode-sim", "dap", &[]),
     ("gcode-sim", "explain", &["text", "json"]),

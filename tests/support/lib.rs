@@ -21,6 +21,7 @@ mod lsp;
 mod macros;
 mod picture;
 pub mod programs;
+mod prove;
 pub mod sheet;
 mod syntax;
 pub mod verify;
@@ -43,6 +44,7 @@ pub const KINDS: &[(&str, Run)] = &[
     ("lsp", lsp::run),
     ("macro", macros::run),
     ("picture", picture::run),
+    ("prove", prove::run),
     ("sheet", sheet::run),
     ("syntax", syntax::run),
     ("verify", verify::run),

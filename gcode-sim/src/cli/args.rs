@@ -4,8 +4,7 @@ use clap::{Parser, Subcommand};
 
 use super::common::Colours;
 use super::{
-    budget, check, compare, diff, explain, holes, lsp, new, packaging, page_command, readings, reference,
-    render, run, schema, settings, sheet, test, verify,
+    budget, check, compare, diff, explain, holes, lsp, new, packaging, page_command, prove, readings, reference, render, run, schema, settings, sheet, test, verify,
 };
 
 /// Executes Fanuc Custom Macro B programs as the control does, follows the tool on the part, and compares the holes
@@ -166,6 +165,20 @@ Examples:
   gcode-sim budget job.toml --errors errors.toml --format json
   gcode-sim budget job.toml --errors errors.toml --picture shares.png")]
     Budget(budget::Arguments),
+
+    /// Prove a claim on a program for all values of its variables at once, or refute it by a run
+    #[command(after_help = "\
+Examples:
+  gcode-sim prove O9010.nc --range '#1=0.1..9.9' --range '#2=-180..180' --claim '#100 LE 12.1'
+  gcode-sim prove O9010.nc --range '#1=0..50' --where '#1 NE 10' --claim no-alarm --claim 'blocks LE 500'
+  gcode-sim prove O8101.nc --lib macros --range '#101=500..2000' --call 'G65 P8101 A#101 B700.' --claim 'alarm MC3003'
+  gcode-sim prove O9010.nc --range '#1=0..50' --claim 'travel 1320=X100.,Y50. 1321=X-5.'
+  gcode-sim prove O9010.nc --range '#1=0.1..9.9' --bounds '#100' --format json
+
+Claims: a condition as in IF, at the end of every run that ends without an alarm; no-alarm; 'alarm CODE|CODE', no other alarm;
+'blocks LE N'; 'travel 1320=… 1321=…', no overtravel with these stroke limits. Each is proved, refuted with a counterexample
+that run confirms, or undecided with the share of the values that is left (see docs/prove.md). Exit code 0: all are proved.")]
+    Prove(prove::Arguments),
 
     /// List the control settings for --control
     #[command(after_help = "\

@@ -25,6 +25,7 @@ mod page_command;
 mod picture_file;
 pub mod progress;
 mod project;
+mod prove;
 mod readings;
 mod reference;
 mod render;
@@ -147,6 +148,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::Test(arguments) => test::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Budget(arguments) => budget::run(&arguments),
+        Command::Prove(arguments) => prove::run(&arguments),
         Command::Settings(arguments) => settings::run(&arguments),
         Command::Lsp(arguments) => lsp::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use super::output;
 use gcode_control::Progress;
+use gcode_prove::Watch;
 use gcode_session::Request;
 
 /// Width of the line; larger than any line shown.
@@ -43,6 +44,12 @@ pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T)
     });
     let count = || format!("{} blocks; Ctrl-C ends the run", run.blocks.load(Ordering::Relaxed));
     showing(count, || work(request))
+}
+
+/// Proves claims and shows how many boxes and runs there have been.
+pub(super) fn of_proof<T>(watch: &Watch<'_>, work: impl FnOnce() -> T) -> T {
+    let line = || format!("{} boxes, {} runs, {} s", watch.boxes(), watch.runs(), watch.elapsed().as_secs());
+    showing(line, work)
 }
 
 /// Does work without a measure of its progress, and shows what it is and how long it takes.

@@ -14,6 +14,7 @@ pub(crate) mod holes;
 pub(crate) mod junit;
 pub(crate) mod page;
 pub(crate) mod pictures;
+pub(crate) mod proof;
 pub(crate) mod readings;
 pub(crate) mod run;
 pub(crate) mod sarif;

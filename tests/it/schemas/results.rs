@@ -53,6 +53,7 @@ diff gcode-sim diff examples/melon-mould/O8100.nc examples/one-digit-wrong/O8100
 test gcode-sim test examples/nc-repository/parts --lib examples/nc-repository/macros --shard 1/1 --format json
 test gcode-sim test examples/melon-mould --format json
 budget gcode-sim budget examples/melon-mould/job.toml --errors examples/error-budget/before.toml --samples 50 --format json
+prove gcode-sim prove macros/O8231_sine_table.nc --range '#101=0..45' --call 'G65 P8231 A#101 B200. C0.001 U1.' --claim no-alarm --claim 'blocks LE 100' --bounds '#586' --time 5 --format json
 settings gcode-sim settings --format json
 explain gcode-sim explain hole-depth --format json
 explain gcode-sim explain --list --format json

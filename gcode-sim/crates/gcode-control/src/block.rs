@@ -157,7 +157,7 @@ impl Executor {
     }
 
     /// Checks a block of words and makes its plan. An alarm leaves no trace.
-    fn plan_words(
+    pub(super) fn plan_words(
         &self,
         words: &Words,
         block_words: &mut BlockWords,
@@ -303,7 +303,7 @@ impl Executor {
 
     /// Checks block skip and syntax that some controls refuse; returns true if the block is skipped.
     #[inline(never)]
-    fn is_skipped_or_refused(&mut self, guarded: &GuardedOp) -> ExecResult<bool> {
+    pub(super) fn is_skipped_or_refused(&mut self, guarded: &GuardedOp) -> ExecResult<bool> {
         if let Some(switch) = guarded.skip {
             let is_on = self.registers.data.is_skip_on(switch);
             self.log.note(Note::BlockSkip { switch: switch.max(1), is_on }, self.flow.block);
@@ -330,7 +330,11 @@ impl Executor {
 
 impl Control {
     /// Carries out the plan of a block of words. Steps that can still raise an alarm come first.
-    fn execute_plan<S: EventSink>(&mut self, library: &mut impl Library, sink: &mut S) -> ExecResult<()> {
+    pub(super) fn execute_plan<S: EventSink>(
+        &mut self,
+        library: &mut impl Library,
+        sink: &mut S,
+    ) -> ExecResult<()> {
         let span = self.executor.flow.block;
         let mut flow = std::mem::take(&mut self.plan.flow);
         match &mut flow {

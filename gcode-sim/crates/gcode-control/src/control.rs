@@ -249,6 +249,11 @@ impl Control {
         Some(Box::new(outcome))
     }
 
+    /// Lets the run continue from a state before its end.
+    pub(super) fn reopen(&mut self) {
+        self.outcome = None;
+    }
+
     /// Returns the memory.
     pub fn memory(&self) -> &Memory {
         &self.memory

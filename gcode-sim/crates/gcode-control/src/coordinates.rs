@@ -3,7 +3,7 @@ use super::data::ControlData;
 use super::kinematics::{scaled, sum};
 use super::state::{EndBeforeTransform, State};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::StrokeLimits;
+use gcode_lang::control::{Increment, StrokeLimits};
 use gcode_lang::motion::{AxisIndex, EventKind, MAX_AXES, PlanarArc, Position};
 use gcode_lang::program::modes::{Length, Unit};
 use gcode_lang::units::{Deg, round, round_scaled};
@@ -140,7 +140,7 @@ impl ControlData {
     /// Returns a coordinate without the rounding errors of sums: a hundredth of the increment carries mm and inches exactly.
     #[inline]
     pub(super) fn remove_residue(&self, value: f64) -> f64 {
-        let grid = self.settings.increment.per_unit() * 100.0;
+        let grid = residue_grid(self.settings.increment);
         round(value * grid) / grid
     }
 
@@ -287,6 +287,12 @@ fn extremes(arc: &PlanarArc, to: &Position) -> [Option<Position>; 4] {
             })
         },
     )
+}
+
+/// Returns the number of steps in a unit to which sums of coordinates are rounded.
+#[inline]
+pub(super) fn residue_grid(increment: Increment) -> f64 {
+    increment.per_unit() * 100.0
 }
 
 /// Returns a coordinate that kinematics computes, to 1e-9: finer than any increment, coarser than rounding errors.

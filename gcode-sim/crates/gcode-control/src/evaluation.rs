@@ -197,7 +197,7 @@ impl Registers {
 
     /// Evaluates an instruction that few expressions have, out of line so that the others don't save registers for it.
     #[inline(never)]
-    fn uncommon_op(
+    pub(super) fn uncommon_op(
         &self,
         operation: &UncommonOp,
         before: Accumulator,
@@ -300,7 +300,7 @@ fn is_true(condition: Value) -> bool {
 
 impl Registers {
     /// Rounds to the increment of an address: ROUND in a word.
-    fn round_to_address(&self, letter: u8, value: f64) -> f64 {
+    pub(super) fn round_to_address(&self, letter: u8, value: f64) -> f64 {
         match letter {
             b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
                 let scale = POWERS[self.data.decimals(letter, self.state.modal.unit)];

@@ -116,6 +116,7 @@ pub mod static_plan;
 mod unknown_position;
 
 pub mod slice;
+pub mod symbolic;
 
 pub use self::checkpoint::Checkpoint;
 pub use self::control::{Control, Observer};

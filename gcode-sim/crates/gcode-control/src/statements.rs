@@ -133,7 +133,7 @@ impl Executor {
 
     /// Executes the DO or WHILE of a loop; `end` is the operation of its END.
     #[inline]
-    fn begin_iteration(&mut self, number: u8, end: OpIndex, is_true: bool) {
+    pub(super) fn begin_iteration(&mut self, number: u8, end: OpIndex, is_true: bool) {
         let frame = &mut self.flow.frame;
         let open = &mut frame.loops[usize::from(number) - 1];
         if is_true {
@@ -146,7 +146,7 @@ impl Executor {
 
     /// Executes the END of a loop; `start` is the operation of its DO or WHILE.
     #[inline]
-    fn end_iteration(&mut self, number: u8, start: OpIndex) -> ExecResult<()> {
+    pub(super) fn end_iteration(&mut self, number: u8, start: OpIndex) -> ExecResult<()> {
         let open = self.flow.frame.loops[usize::from(number) - 1];
         if open.is_none_or(|(first, _)| first != start) {
             return Err(Alarm::MissingDo { number }.located_at(self.flow.block));
@@ -164,11 +164,16 @@ impl Executor {
     #[inline(never)]
     fn goto(&mut self, program: &Program, to: &Spanned<Operand>) -> ExecResult<()> {
         let number = locate(integer(self.registers.operand(&to.node)?.number()), to.span)?;
+        self.jump_to_number(program, number, to.span)
+    }
+
+    /// Jumps to a sequence number, which `span` shows.
+    pub(super) fn jump_to_number(&mut self, program: &Program, number: i64, span: Span) -> ExecResult<()> {
         let undocumented = &self.registers.data.settings.undocumented;
         let next = self.flow.frame.next;
         let missing = |number| match undocumented.missing_target_is_78 {
-            true => Alarm::SequenceNumberNotFound { number }.located_at(to.span),
-            false => Alarm::JumpTargetNotFound { number }.located_at(to.span),
+            true => Alarm::SequenceNumberNotFound { number }.located_at(span),
+            false => Alarm::JumpTargetNotFound { number }.located_at(span),
         };
         if undocumented.minus_searches_up && (-99_999_999..0).contains(&number) {
             let number = number.unsigned_abs() as u32;
@@ -177,7 +182,7 @@ impl Executor {
             return Ok(());
         }
         if !(1..=99_999_999).contains(&number) {
-            return Err(Alarm::SequenceNumberRange { number }.located_at(to.span));
+            return Err(Alarm::SequenceNumberRange { number }.located_at(span));
         }
         let number = number as u32;
         let from = if undocumented.goto_takes_first_number { 0 } else { next };

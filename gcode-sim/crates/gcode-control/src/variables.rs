@@ -316,9 +316,18 @@ impl Vars {
             extra_ranges: _,
             aliases_commons: _,
         } = self;
-        *direct_values == other.direct_values
-            && *extra_values == other.extra_values
-            && *outer_locals == other.outer_locals
+        // By their bits: a number that isn't one, as in a symbolic run, equals itself.
+        let same = |these: &[StoredValue], others: &[StoredValue]| {
+            these.len() == others.len()
+                && these
+                    .iter()
+                    .zip(others)
+                    .all(|(this, other)| this.bits() == other.bits() && this.decimals == other.decimals)
+        };
+        same(&direct_values[..], &other.direct_values[..])
+            && same(extra_values, &other.extra_values)
+            && outer_locals.len() == other.outer_locals.len()
+            && outer_locals.iter().zip(&other.outer_locals).all(|(these, others)| same(&these.0, &others.0))
             && *names == other.names
     }
 

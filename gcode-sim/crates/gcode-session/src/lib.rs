@@ -149,7 +149,8 @@ pub fn run_observed<S: EventSink>(
     sink: &mut S,
     observer: &mut impl Observer,
 ) -> Result<Run, SessionError> {
-    let (mut control, main_note) = load(request)?;
+    let (memory, main_note) = load(request)?;
+    let mut control = set_up_control(request, memory)?;
     if let Some(progress) = &request.progress {
         control.set_progress(Arc::clone(progress));
     }
@@ -157,16 +158,24 @@ pub fn run_observed<S: EventSink>(
     Ok(Run { control, outcome, main_note })
 }
 
-/// Returns a control before its run, with the program in memory, set up as the request states.
+/// Returns a control before its first block, set up as [`run`] does; `call` is a block to run instead of the program, which it
+/// can call.
 ///
 /// # Errors
-/// [`SessionError`] if the run cannot begin.
-pub fn set_up(request: &Request) -> Result<Control, SessionError> {
-    load(request).map(|(control, _)| control)
+/// See [`run`].
+pub fn set_up(request: &Request, call: Option<&str>) -> Result<Control, SessionError> {
+    let (mut memory, _) = load(request)?;
+    if let Some(call) = call {
+        memory.load("--call", format!("{call}\nM30\n").into_bytes());
+        if let Some(main) = memory.ids().last() {
+            memory.set_main(main);
+        }
+    }
+    set_up_control(request, memory)
 }
 
-/// Returns the control of a request before its run, and the note that the file has further main programs.
-fn load(request: &Request) -> Result<(Control, Option<Diagnostic>), SessionError> {
+/// Loads the programs of a request; returns the note that the file has further main programs.
+fn load(request: &Request) -> Result<(Memory, Option<Diagnostic>), SessionError> {
     let mut memory = Memory::default();
     memory.load(request.name.clone(), request.bytes.clone());
     if memory.programs().is_empty() {
@@ -182,7 +191,7 @@ fn load(request: &Request) -> Result<(Control, Option<Diagnostic>), SessionError
     }
     let is_choice_open = request.main.is_none() && memory.programs().len() > 1;
     let main_note = is_choice_open.then(|| causes::choose_main(&mut memory, request)).flatten();
-    Ok((set_up_control(request, memory)?, main_note))
+    Ok((memory, main_note))
 }
 
 /// Returns a control with these programs, set up as the request states.

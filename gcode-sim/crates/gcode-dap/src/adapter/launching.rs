@@ -64,7 +64,7 @@ impl<H: Host> Adapter<H> {
     /// Makes a session of a program, with the breakpoints requested so far.
     fn load(&mut self, arguments: &Launch) -> Result<(), String> {
         let launched = self.host.launch(arguments)?;
-        let control = gcode_session::set_up(&launched.request).map_err(|error| error.to_string())?;
+        let control = gcode_session::set_up(&launched.request, None).map_err(|error| error.to_string())?;
         let run = ReversibleRun::new(control, launched.library);
         let mut debuggee = Debuggee::new(run, Rc::clone(&self.canonical));
         if arguments.no_debug {

@@ -57,7 +57,7 @@ pub(crate) fn find(
 ) -> Result<BadHoles, SessionError> {
     let extractor = gcode_session::extractor(request, request.metal(reference));
     let mut events = MarkedEvents { sink: extractor, position: 0 };
-    run.run_again(gcode_session::set_up(request)?, request.limits.blocks, &mut events);
+    run.run_again(gcode_session::set_up(request, None)?, request.limits.blocks, &mut events);
     let extraction = events.sink.finish();
     let memory = run.control().memory();
     let locate = |span: Span| match memory.sources().iter().nth(span.source.0 as usize) {

@@ -33,7 +33,7 @@ pub use bytecode::{
 pub use dialect_syntax::DialectSyntax;
 pub use expression::{Expression, parse_target};
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
-pub use words::{CallCode, CallOp, CallTarget, LoweredWord, WordOperand, Words};
+pub use words::{CallCode, CallOp, CallTarget, LoweredWord, WordOperand, WordUse, Words};
 
 use std::sync::OnceLock;
 
@@ -375,6 +375,15 @@ impl Program {
     /// Returns true if two blocks have the same sequence number, other than 0.
     pub fn has_duplicate_numbers(&self) -> bool {
         self.numbers().windows(2).any(|pair| pair[0].0 != 0 && pair[0].0 == pair[1].0)
+    }
+
+    /// Iterates over the sequence numbers to which a jump can lead, in ascending order, each once.
+    pub fn sequence_numbers(&self) -> impl Iterator<Item = u32> + '_ {
+        let numbers = self.numbers();
+        let is_first = |index: usize| index == 0 || numbers[index - 1].0 != numbers[index].0;
+        let first =
+            numbers.iter().enumerate().filter(move |(index, (number, _))| *number != 0 && is_first(*index));
+        first.map(|(_, (number, _))| *number)
     }
 
     /// Returns true if several blocks have this sequence number.

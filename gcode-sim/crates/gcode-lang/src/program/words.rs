@@ -21,7 +21,7 @@ pub(super) fn is_call(code: u32) -> bool {
 }
 
 /// Words of one block.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Words {
     /// Words in the order written, without those of a call.
     pub list: Vec<LoweredWord>,
@@ -30,7 +30,7 @@ pub struct Words {
 }
 
 /// Content that few blocks of words have.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct UncommonWords {
     call: Option<CallOp>,
     /// Switch of `/n` inside the block, and the words left while it is on.
@@ -56,6 +56,17 @@ pub struct LoweredWord {
     pub value: WordOperand,
     /// Span of the word.
     pub span: Span,
+}
+
+/// Use that a block makes of a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WordUse {
+    /// Word outside a call.
+    Plain,
+    /// Whole number of a call: its program, its start, its repeats.
+    Count,
+    /// Argument of a macro call.
+    Argument,
 }
 
 /// Value of a word.
@@ -111,7 +122,7 @@ pub enum CallTarget {
 }
 
 /// Call or return.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct CallOp {
     /// Kind of call.
     pub kind: CallCode,
@@ -189,6 +200,20 @@ impl Words {
             | WordOperand::Variable { .. }
             | WordOperand::Code(_) => None,
         })
+    }
+
+    /// Calls `each` with every word that is evaluated, those of a call included, to change its value.
+    pub fn for_each_word(&mut self, mut each: impl FnMut(WordUse, &mut LoweredWord)) {
+        self.list.iter_mut().for_each(|word| each(WordUse::Plain, word));
+        let Some(call) = self.uncommon.as_mut().and_then(|uncommon| uncommon.call.as_mut()) else { return };
+        let target = match &mut call.target {
+            CallTarget::Number(word) => Some(word),
+            CallTarget::Name(_) | CallTarget::None => None,
+        };
+        target.into_iter().chain(&mut call.start).chain(&mut call.repeats).for_each(|word| {
+            each(WordUse::Count, word);
+        });
+        call.arguments.iter_mut().for_each(|word| each(WordUse::Argument, word));
     }
 
     /// Returns the call of the block.

@@ -1,0 +1,310 @@
+//! The arena: every expression once, its operands before it.
+use std::collections::HashMap;
+
+use crate::factors::Factors;
+use crate::node::{AlarmKind, Binary, Condition, Node, NodeId, Relation, Semantics, Unary};
+use crate::values;
+
+/// Expressions that share their common parts.
+///
+/// A node is what a control computes in doubles, not a real number: `a + b` and `b + a` are one node, `[a + b] + c` and
+/// `a + [b + c]` are two. An operation on constants becomes its value.
+#[derive(Clone, Debug)]
+pub struct Arena {
+    nodes: Vec<Node>,
+    index: HashMap<Key, NodeId>,
+    factors: Vec<Factors>,
+    semantics: Semantics,
+}
+
+/// A node as a key: a number by its bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Key {
+    Constant(u64),
+    Input(usize),
+    Unary(Unary, NodeId),
+    Binary(Binary, NodeId, NodeId),
+}
+
+impl Arena {
+    /// The constant 0 of every arena.
+    pub const ZERO: NodeId = NodeId(0);
+    /// The constant 1 of every arena.
+    pub const ONE: NodeId = NodeId(1);
+    /// The constant −1 of every arena.
+    pub const MINUS_ONE: NodeId = NodeId(2);
+
+    /// Returns an arena for a control with these settings.
+    pub fn new(semantics: Semantics) -> Self {
+        let mut arena = Self { nodes: Vec::new(), index: HashMap::new(), factors: Vec::new(), semantics };
+        arena.constant(0.0);
+        arena.constant(1.0);
+        arena.constant(-1.0);
+        arena
+    }
+
+    /// Returns the settings.
+    pub fn semantics(&self) -> Semantics {
+        self.semantics
+    }
+
+    /// Returns the number of nodes.
+    #[expect(clippy::len_without_is_empty, reason = "an arena always has the constants 0 and 1")]
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Returns the content of a node.
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes[id.index()]
+    }
+
+    /// Returns the number of a constant node.
+    pub fn as_constant(&self, id: NodeId) -> Option<f64> {
+        match self.node(id) {
+            Node::Constant(value) => Some(value),
+            Node::Input(_) | Node::Unary(..) | Node::Binary(..) => None,
+        }
+    }
+
+    /// Returns the input of the node at a place.
+    pub(crate) fn as_input(&self, place: usize) -> Option<usize> {
+        match self.nodes[place] {
+            Node::Input(input) => Some(input),
+            Node::Constant(_) | Node::Unary(..) | Node::Binary(..) => None,
+        }
+    }
+
+    /// Returns the node of a finite number.
+    pub fn constant(&mut self, value: f64) -> NodeId {
+        // Zeros of either sign are one number.
+        self.insert(Node::Constant(value + 0.0))
+    }
+
+    /// Returns the node of an input of the domain.
+    pub fn input(&mut self, index: usize) -> NodeId {
+        self.insert(Node::Input(index))
+    }
+
+    /// Returns the node of a function of one value.
+    ///
+    /// With [`Semantics::zeroes_residues`], that of SIN, COS and TAN includes the zeroing.
+    pub fn unary(&mut self, function: Unary, x: NodeId) -> NodeId {
+        let simpler = match (function, self.node(x)) {
+            (_, Node::Constant(value)) => {
+                let value = values::unary(function, value, self.semantics).ok();
+                value.map(|value| self.constant(value))
+            }
+            (Unary::Neg, Node::Unary(Unary::Neg, inner)) => Some(inner),
+            (Unary::Abs, Node::Unary(Unary::Neg, inner)) => Some(self.unary(Unary::Abs, inner)),
+            (Unary::Abs, Node::Unary(Unary::Abs | Unary::Sqrt, _)) => Some(x),
+            (Unary::Fix | Unary::Fup | Unary::Round, _) if self.is_whole(x) => Some(x),
+            _ => None,
+        };
+        let value = simpler.unwrap_or_else(|| self.insert(Node::Unary(function, x)));
+        match function {
+            Unary::Sin | Unary::Cos | Unary::Tan if self.semantics.zeroes_residues => {
+                self.unary(Unary::Residue, value)
+            }
+            _ => value,
+        }
+    }
+
+    /// Returns the node of an operator or a function of two values.
+    pub fn binary(&mut self, operator: Binary, a: NodeId, b: NodeId) -> NodeId {
+        if let (Some(left), Some(right)) = (self.as_constant(a), self.as_constant(b))
+            && let Ok(value) = values::binary(operator, left, right, self.semantics)
+        {
+            return self.constant(value);
+        }
+        match operator {
+            Binary::Add if a == Self::ZERO => b,
+            Binary::Add | Binary::Sub if b == Self::ZERO => a,
+            Binary::Sub if a == b => Self::ZERO,
+            Binary::Sub if a == Self::ZERO => self.unary(Unary::Neg, b),
+            Binary::Mul if a == Self::ZERO || b == Self::ZERO => Self::ZERO,
+            Binary::Mul if a == Self::ONE => b,
+            Binary::Mul | Binary::Div if b == Self::ONE => a,
+            // Their value doesn't depend on the order.
+            Binary::Add | Binary::Mul if b < a => self.insert(Node::Binary(operator, b, a)),
+            Binary::Compare(relation) if b < a => {
+                self.insert(Node::Binary(Binary::Compare(relation.swapped()), b, a))
+            }
+            _ => self.insert(Node::Binary(operator, a, b)),
+        }
+    }
+
+    /// Returns the node of a condition's value, 1 or 0.
+    pub fn compare(&mut self, condition: Condition) -> NodeId {
+        self.binary(Binary::Compare(condition.relation), condition.left, condition.right)
+    }
+
+    /// Returns the number of least increments to which the control rounds a value: `units::round_scaled`.
+    ///
+    /// `scale` is the number of increments in a unit, 1000 for IS-B in mm; the quotient by it is the rounded value.
+    pub fn round_scaled(&mut self, value: NodeId, scale: f64) -> NodeId {
+        let (scale, correction) = (self.constant(scale), self.constant(1.0 + 4.0 * f64::EPSILON));
+        let product = self.binary(Binary::Mul, value, scale);
+        let corrected = self.binary(Binary::Mul, product, correction);
+        self.unary(Unary::Round, corrected)
+    }
+
+    /// Returns true for a node that has whole numbers only, whatever its inputs.
+    pub fn is_whole(&self, id: NodeId) -> bool {
+        match self.node(id) {
+            Node::Constant(value) => value.trunc() == value,
+            Node::Input(_) => false,
+            Node::Unary(function, x) => match function {
+                Unary::Fix | Unary::Fup | Unary::Round | Unary::Bin | Unary::Bcd => true,
+                Unary::Neg | Unary::Abs => self.is_whole(x),
+                _ => false,
+            },
+            Node::Binary(operator, a, b) => match operator {
+                Binary::Mod | Binary::And | Binary::Or | Binary::Xor | Binary::Compare(_) => true,
+                // Sums and products of whole numbers stay whole when they are rounded to a double.
+                Binary::Add | Binary::Sub | Binary::Mul => self.is_whole(a) && self.is_whole(b),
+                Binary::Div | Binary::Pow | Binary::Atan => false,
+            },
+        }
+    }
+
+    /// Returns the node of a function if the arena has it.
+    pub(crate) fn find_unary(&self, function: Unary, x: NodeId) -> Option<NodeId> {
+        self.index.get(&Key::Unary(function, x)).copied()
+    }
+
+    /// Returns z of [z + ABS[z]]/2, which is the larger of z and 0 without a rounding.
+    pub(crate) fn positive_part(&self, id: NodeId) -> Option<NodeId> {
+        let Node::Binary(operator, sum, factor) = self.node(id) else { return None };
+        let (sum, factor) = if self.as_constant(sum).is_some() { (factor, sum) } else { (sum, factor) };
+        let halves = match operator {
+            Binary::Div => self.as_constant(factor) == Some(2.0),
+            Binary::Mul => self.as_constant(factor) == Some(0.5),
+            _ => false,
+        };
+        if halves { self.doubled_positive_part(sum) } else { None }
+    }
+
+    /// Returns z of z + ABS[z].
+    pub(crate) fn doubled_positive_part(&self, id: NodeId) -> Option<NodeId> {
+        let Node::Binary(Binary::Add, a, b) = self.node(id) else { return None };
+        let is_abs = |x: NodeId, of: NodeId| self.node(x) == Node::Unary(Unary::Abs, of);
+        if is_abs(b, a) {
+            Some(a)
+        } else if is_abs(a, b) {
+            Some(b)
+        } else {
+            None
+        }
+    }
+
+    /// Returns the node of a value's square if the arena has it.
+    pub(crate) fn find_square(&self, x: NodeId) -> Option<NodeId> {
+        self.index.get(&Key::Binary(Binary::Mul, x, x)).copied()
+    }
+
+    /// Computes a node at a point, the doubles of its inputs; the alarm of the first operation that has one.
+    pub fn evaluate(&self, node: NodeId, point: &[f64]) -> Result<f64, AlarmKind> {
+        let mut values = vec![f64::NAN; node.index() + 1];
+        for id in self.cone(&[node]) {
+            values[id.index()] = match self.node(id) {
+                Node::Constant(value) => value,
+                Node::Input(input) => point[input],
+                Node::Unary(function, x) => values::unary(function, values[x.index()], self.semantics)?,
+                Node::Binary(operator, a, b) => {
+                    values::binary(operator, values[a.index()], values[b.index()], self.semantics)?
+                }
+            };
+        }
+        Ok(values[node.index()])
+    }
+
+    /// Returns true if a condition holds at a point; the alarm of an operation that it needs.
+    pub fn holds(&self, condition: Condition, point: &[f64]) -> Result<bool, AlarmKind> {
+        let left = self.evaluate(condition.left, point)?;
+        Ok(condition.relation.holds(left, self.evaluate(condition.right, point)?))
+    }
+
+    /// Returns the nodes that the given ones are computed of, with them, operands first.
+    pub(crate) fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
+        let last = roots.iter().map(|id| id.index()).max();
+        let mut is_needed = vec![false; last.map_or(0, |last| last + 1)];
+        for root in roots {
+            is_needed[root.index()] = true;
+        }
+        for index in (0..is_needed.len()).rev() {
+            if is_needed[index] {
+                for operand in self.operands(NodeId(index as u32)) {
+                    is_needed[operand.index()] = true;
+                }
+            }
+        }
+        let nodes = is_needed.iter().enumerate().filter(|(_, is_needed)| **is_needed);
+        nodes.map(|(index, _)| NodeId(index as u32)).collect()
+    }
+
+    /// Returns the operands of a node.
+    pub(crate) fn operands(&self, id: NodeId) -> impl Iterator<Item = NodeId> {
+        let (first, second) = match self.node(id) {
+            Node::Constant(_) | Node::Input(_) => (None, None),
+            Node::Unary(_, x) => (Some(x), None),
+            Node::Binary(_, a, b) => (Some(a), Some(b)),
+        };
+        first.into_iter().chain(second)
+    }
+
+    fn insert(&mut self, node: Node) -> NodeId {
+        let key = match node {
+            Node::Constant(value) => Key::Constant(value.to_bits()),
+            Node::Input(input) => Key::Input(input),
+            Node::Unary(function, x) => Key::Unary(function, x),
+            Node::Binary(operator, a, b) => Key::Binary(operator, a, b),
+        };
+        if let Some(&known) = self.index.get(&key) {
+            return known;
+        }
+        let id = NodeId(self.nodes.len() as u32);
+        self.factors.push(Factors::of(id, node, &self.factors));
+        self.nodes.push(node);
+        self.index.insert(key, id);
+        id
+    }
+
+    /// Returns the factors of a node.
+    pub(crate) fn factors(&self, id: NodeId) -> &Factors {
+        &self.factors[id.index()]
+    }
+}
+
+impl Default for Arena {
+    fn default() -> Self {
+        Self::new(Semantics::default())
+    }
+}
+
+impl Arena {
+    /// Returns the conditions under which an operation raises an alarm of this kind: any of them suffices.
+    ///
+    /// Without one, no comparison of the operands says it.
+    pub fn alarm_conditions(&self, id: NodeId, kind: AlarmKind) -> Vec<Condition> {
+        match (self.node(id), kind) {
+            (Node::Unary(Unary::Sqrt, x), AlarmKind::OutOfRange) => {
+                vec![Condition::new(Relation::Lt, x, Self::ZERO)]
+            }
+            (Node::Unary(Unary::Ln, x), AlarmKind::OutOfRange) => {
+                vec![Condition::new(Relation::Le, x, Self::ZERO)]
+            }
+            (Node::Unary(Unary::Asin | Unary::Acos, x), AlarmKind::OutOfRange) => vec![
+                Condition::new(Relation::Lt, x, Self::MINUS_ONE),
+                Condition::new(Relation::Gt, x, Self::ONE),
+            ],
+            (Node::Binary(Binary::Div, _, b), AlarmKind::DivideByZero) => {
+                vec![Condition::new(Relation::Eq, b, Self::ZERO)]
+            }
+            (Node::Binary(Binary::Pow, a, _), AlarmKind::OutOfRange) => {
+                vec![Condition::new(Relation::Lt, a, Self::ZERO)]
+            }
+            _ => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Decisions over a box on one path: which alarms are possible, and on which side a condition is.
+use crate::alarms::{self, PossibleAlarm};
+use crate::arena::Arena;
+use crate::enclosures::Enclosures;
+use crate::hull;
+use crate::interval::Interval;
+use crate::model::Model;
+use crate::node::{Condition, Node, NodeId, Relation};
+use crate::proof::Prover;
+
+impl Enclosures {
+    /// Returns the alarms that the node's own operation can raise where its operands have values.
+    pub fn alarms(&mut self, arena: &Arena, node: NodeId) -> Vec<PossibleAlarm> {
+        self.enclose(arena, node);
+        let semantics = arena.semantics();
+        let mut possible = match arena.node(node) {
+            Node::Constant(_) | Node::Input(_) => return Vec::new(),
+            Node::Unary(function, x) if self.hull(x).is_empty() => {
+                let _ = function;
+                return Vec::new();
+            }
+            Node::Binary(_, a, b) if self.hull(a).is_empty() || self.hull(b).is_empty() => {
+                return Vec::new();
+            }
+            Node::Unary(function, x) => alarms::unary(function, self.hull(x), semantics),
+            Node::Binary(operator, a, b) => alarms::binary(operator, self.hull(a), self.hull(b), semantics),
+        };
+        possible.retain_mut(|alarm| {
+            let conditions = arena.alarm_conditions(node, alarm.kind);
+            let decided: Vec<_> = conditions.iter().map(|condition| self.decide(arena, *condition)).collect();
+            alarm.is_certain |= decided.contains(&Some(true));
+            decided.is_empty() || decided.iter().any(|decision| *decision != Some(false))
+        });
+        possible
+    }
+
+    /// Decides a condition for every point of the box on this path; `None` if it isn't decided.
+    ///
+    /// At points where a side raises an alarm it says nothing.
+    pub fn decide(&mut self, arena: &Arena, condition: Condition) -> Option<bool> {
+        let Condition { relation, left, right } = condition;
+        let (a, b) = (self.enclose(arena, left), self.enclose(arena, right));
+        if left == right {
+            return Some(matches!(relation, Relation::Eq | Relation::Ge | Relation::Le));
+        }
+        hull::decide(relation, a, b)
+            .or_else(|| {
+                let hulls = |node: NodeId| match self.forms.get(node.index()) {
+                    Some(Some(form)) => form.hull,
+                    _ => Interval::ALL,
+                };
+                Prover::new(arena, &hulls, &self.conditions).decide(relation, left, right)
+            })
+            .or_else(|| self.decide_difference(arena, relation, left, right))
+    }
+
+    /// Decides by the polynomial of the difference, in which common parts cancel.
+    fn decide_difference(
+        &mut self,
+        arena: &Arena,
+        relation: Relation,
+        left: NodeId,
+        right: NodeId,
+    ) -> Option<bool> {
+        let difference = self.difference(arena, left, right)?;
+        let zero = Interval::point(0.0);
+        let range = difference.range(&self.basis);
+        if let Some(decided) = hull::decide(relation, range, zero) {
+            return Some(decided);
+        }
+        // The least and the greatest difference under the conditions of the path.
+        let facts = self.facts(arena);
+        if facts.is_empty() {
+            return None;
+        }
+        let lo = self.lower_bound(&difference, range.lo(), &facts);
+        let hi = -self.lower_bound(&difference.neg(), -range.hi(), &facts);
+        hull::decide(relation, Interval::new(lo, hi), zero)
+    }
+
+    /// Returns the model of a real difference between two nodes.
+    fn difference(&mut self, arena: &Arena, left: NodeId, right: NodeId) -> Option<Model> {
+        self.enclose(arena, left);
+        self.enclose(arena, right);
+        let [Some(left), Some(right)] = [left, right].map(|node| self.forms[node.index()].clone()) else {
+            return None;
+        };
+        if left.model.is_none() && right.model.is_none() {
+            return None;
+        }
+        Some(left.as_model()?.sub(&right.as_model()?)).filter(Model::is_finite)
+    }
+
+    /// Returns models that are 0 or more on this path: the differences of the conditions assumed last.
+    fn facts(&mut self, arena: &Arena) -> Vec<Model> {
+        const MOST: usize = 8;
+        let conditions: Vec<_> = self.conditions.iter().rev().take(MOST).copied().collect();
+        let mut facts = Vec::new();
+        for Condition { relation, left, right } in conditions {
+            let Some(difference) = self.difference(arena, left, right) else { continue };
+            match relation {
+                Relation::Ge | Relation::Gt => facts.push(difference),
+                Relation::Le | Relation::Lt => facts.push(difference.neg()),
+                Relation::Eq => facts.extend([difference.neg(), difference]),
+                Relation::Ne => {}
+            }
+        }
+        facts
+    }
+
+    /// Returns a lower bound of a model: that of the model less multiples of facts, which are 0 or more.
+    fn lower_bound(&self, model: &Model, bound: f64, facts: &[Model]) -> f64 {
+        let (mut best, mut model) = (bound, model.clone());
+        for fact in facts {
+            // A multiple that cancels a linear term.
+            let linear = (0..self.next_variable).filter_map(|variable| {
+                let term = |model: &Model| {
+                    let mut terms = model.terms.iter();
+                    terms
+                        .find(|(monomial, _)| self.basis.is_variable(*monomial, variable))
+                        .map(|(_, value)| *value)
+                };
+                Some(term(&model)? / term(fact)?).filter(|factor| *factor > 0.0 && factor.is_finite())
+            });
+            let mut better = None;
+            for factor in linear {
+                let rest = model.sub(&fact.scale(factor));
+                let lo = rest.range(&self.basis).lo();
+                if lo > best && rest.is_finite() {
+                    best = lo;
+                    better = Some(rest);
+                }
+            }
+            model = better.unwrap_or(model);
+        }
+        best
+    }
+}

@@ -1,0 +1,6 @@
+//! Tests of the crate as a whole: soundness at random, published kernels.
+mod exact;
+mod guards;
+mod kernels;
+mod libm_errors;
+mod random_nodes;

@@ -1,0 +1,510 @@
+//! Ways through a program: the questions that the ranges don't decide, and what each way ends with.
+//!
+//! The tree grows where a box or a point goes. It knows no box: each question is asked of the enclosures over one.
+use std::rc::Rc;
+use std::sync::Arc;
+
+use gcode_control::symbolic::{Advance, Formula, Halt, Snapshot, SymbolicRun, Term, Test};
+use gcode_control::{Control, Outcome};
+use gcode_enclosure::{Condition, Domain, NodeId};
+use gcode_lang::program::{Bytecode, Library};
+use gcode_lang::syntax::ast::BinaryOp;
+
+use crate::nodes::{Nodes, semantics};
+use crate::request::{Claim, Range};
+use crate::watch::Watch;
+
+/// What is asked of every way.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Question {
+    pub(crate) ranges: Vec<Range>,
+    pub(crate) conditions: Vec<Bytecode>,
+    pub(crate) claims: Vec<Claim>,
+    pub(crate) bounds: Vec<u32>,
+    pub(crate) max_blocks: u64,
+}
+
+impl Question {
+    /// Returns the number of blocks after which nothing more is asked: every claim counts blocks, and fails.
+    pub(crate) fn enough_blocks(&self) -> u64 {
+        let limit = |claim: &Claim| match claim {
+            Claim::Blocks(limit) => *limit,
+            Claim::Condition(_) | Claim::NoAlarm | Claim::OnlyAlarms(_) | Claim::Travel(_) => u64::MAX,
+        };
+        if self.bounds.is_empty() {
+            self.claims.iter().map(limit).max().unwrap_or(u64::MAX)
+        } else {
+            u64::MAX
+        }
+    }
+
+    /// Returns the box of all ranges.
+    pub(crate) fn domain(&self) -> Domain {
+        let range = |range: &Range| gcode_enclosure::Interval::new(range.low, range.high);
+        Domain::new(self.ranges.iter().map(range).collect())
+    }
+}
+
+/// Index of a segment.
+pub(crate) type SegmentId = usize;
+
+/// Part of ways between two questions.
+#[derive(Debug)]
+struct Segment {
+    parent: Option<(SegmentId, bool)>,
+    state: SegmentState,
+}
+
+#[derive(Debug)]
+enum SegmentState {
+    Open(Open),
+    Fork(Fork),
+    Leaf(Rc<Leaf>),
+    /// While it is expanded.
+    Taken,
+}
+
+/// Segment that no box has reached yet.
+#[derive(Clone, Debug)]
+struct Open {
+    /// State before a block, a condition or a claim.
+    snapshot: Rc<Snapshot>,
+    phase: Phase,
+    /// Answers of the way since then.
+    answers: Vec<bool>,
+}
+
+/// Expansion of a segment.
+struct Expansion {
+    /// Where it began, or where its last snapshot was taken; the answers are those used since then.
+    from: Open,
+    phase: Phase,
+    /// Number of answers in `from` that belong to what has been done.
+    used: usize,
+    /// Number of answers used in all.
+    all_used: usize,
+    blocks: u64,
+}
+
+impl Expansion {
+    /// Returns the answers to what is done next.
+    fn answers(&self) -> &[bool] {
+        &self.from.answers[self.used..]
+    }
+
+    /// Counts answers as used.
+    fn count(&mut self, used: usize) {
+        self.used += used;
+        self.all_used += used;
+    }
+}
+
+/// Largest number of answers and of blocks that are done again from a snapshot.
+const MAX_REPEATED: (usize, u64) = (16, 512);
+
+/// What a run does next.
+#[derive(Clone, Debug)]
+enum Phase {
+    /// Conditions on the ranges, from this one on.
+    Conditions(usize),
+    Blocks,
+    /// Claims at the end, after these.
+    Claims(Leaf),
+}
+
+/// Question with its two answers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fork {
+    test: Test,
+    pub(crate) asked: Asked,
+    pub(crate) yes: SegmentId,
+    pub(crate) no: SegmentId,
+}
+
+/// Question in nodes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Asked {
+    Condition(Condition),
+    Finite(NodeId),
+}
+
+/// End of a way.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaf {
+    pub(crate) end: End,
+    pub(crate) blocks: u64,
+    /// States of the claims, in their order.
+    pub(crate) claims: Vec<ClaimState>,
+    pub(crate) bounds: Vec<BoundState>,
+}
+
+/// How a run ends.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum End {
+    /// The conditions exclude the values of this way.
+    Excluded,
+    /// M02, M30 or M99.
+    Program,
+    Alarm(String),
+    Limit,
+    /// Something isn't followed.
+    Unfollowed(String),
+}
+
+impl End {
+    /// Returns the end of a run.
+    pub(crate) fn of(outcome: &Outcome) -> Self {
+        match outcome {
+            Outcome::End => Self::Program,
+            Outcome::Alarm(stop) => Self::Alarm(stop.alarm.code().to_string()),
+            Outcome::Limit => Self::Limit,
+        }
+    }
+}
+
+/// State of a claim at the end of a way.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum ClaimState {
+    Holds,
+    Fails,
+    Depends(NodeFormula),
+    Unfollowed(String),
+}
+
+/// Condition over nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum NodeFormula {
+    Known(bool),
+    Condition(Condition),
+    Logic(BinaryOp, Box<Self>, Box<Self>),
+}
+
+/// State of a variable at the end of a way.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum BoundState {
+    /// Vacant, or the run doesn't end.
+    None,
+    Node(NodeId),
+    Unfollowed(String),
+}
+
+/// Part of a tree that a caller follows.
+pub(crate) enum Step {
+    Fork(Fork),
+    Leaf(Rc<Leaf>),
+    /// The work is to stop.
+    Stopped,
+}
+
+/// Largest number of nodes; a loop that never ends must not fill the memory.
+const MAX_NODES: usize = 4_000_000;
+
+/// Largest number of segments.
+const MAX_SEGMENTS: usize = 30_000;
+
+/// Largest number of questions on one way; a loop that never ends must not fill the memory.
+const MAX_QUESTIONS: usize = 2000;
+
+/// Number of blocks between two looks at the clock.
+const BLOCKS_PER_LOOK: u64 = 1024;
+
+/// Ways through a program for one thread.
+#[derive(Debug)]
+pub(crate) struct Tree<L> {
+    run: SymbolicRun,
+    library: L,
+    pub(crate) nodes: Nodes,
+    segments: Vec<Segment>,
+    question: Arc<Question>,
+}
+
+impl<L: Library> Tree<L> {
+    /// Returns the tree of a control that hasn't begun; its variables of the ranges are set to numbers already.
+    pub(crate) fn new(control: Control, library: L, question: Arc<Question>) -> Self {
+        let mut nodes = Nodes::new(semantics(control.settings()), question.domain());
+        let mut run = SymbolicRun::new(control);
+        for (index, range) in question.ranges.iter().enumerate() {
+            let term = if range.low == range.high { Term::Number(range.low) } else { nodes.input(index) };
+            // A variable that can't be set has been refused with the request.
+            _ = run.set_term(range.variable, term);
+        }
+        let snapshot = Rc::new(run.snapshot());
+        let open = Open { snapshot, phase: Phase::Conditions(0), answers: Vec::new() };
+        let root = Segment { parent: None, state: SegmentState::Open(open) };
+        Self { run, library, nodes, segments: vec![root], question }
+    }
+
+    /// Returns the number of variables whose bounds are wanted.
+    pub(crate) fn bound_count(&self) -> usize {
+        self.question.bounds.len()
+    }
+
+    /// Returns the segment's end, after its blocks are executed.
+    pub(crate) fn step(&mut self, id: SegmentId, watch: &Watch) -> Step {
+        if let SegmentState::Open(_) = &self.segments[id].state {
+            self.expand(id, watch);
+        }
+        match &self.segments[id].state {
+            SegmentState::Fork(fork) => Step::Fork(*fork),
+            SegmentState::Leaf(leaf) => Step::Leaf(Rc::clone(leaf)),
+            SegmentState::Open(_) | SegmentState::Taken => Step::Stopped,
+        }
+    }
+
+    /// Iterates over the questions of the way to a segment, with their answers.
+    fn answers_to(&self, id: SegmentId) -> impl Iterator<Item = (Test, bool)> + '_ {
+        let mut next = self.segments[id].parent;
+        std::iter::from_fn(move || {
+            let (parent, answer) = next?;
+            next = self.segments[parent].parent;
+            match &self.segments[parent].state {
+                SegmentState::Fork(fork) => Some((fork.test, answer)),
+                SegmentState::Open(_) | SegmentState::Leaf(_) | SegmentState::Taken => None,
+            }
+        })
+    }
+
+    fn expand(&mut self, id: SegmentId, watch: &Watch) {
+        let state = std::mem::replace(&mut self.segments[id].state, SegmentState::Taken);
+        let SegmentState::Open(open) = state else { return };
+        // What is done again asks its own questions again, in their order.
+        let way: Vec<_> = self.answers_to(id).collect();
+        let (again, before) = way.split_at(open.answers.len());
+        self.nodes.set_answers(before.iter().copied());
+        let mut again = again.iter().rev();
+        self.run.restore(&open.snapshot);
+        let mut expansion = Expansion {
+            phase: open.phase.clone(),
+            from: open.clone(),
+            used: 0,
+            all_used: 0,
+            blocks: self.run.control().blocks(),
+        };
+        let state = loop {
+            let before = expansion.all_used;
+            match self.advance(&mut expansion, watch) {
+                Some(Progress::Ended(leaf)) => break SegmentState::Leaf(Rc::new(leaf)),
+                Some(Progress::Asked(_)) if self.segments.len() >= MAX_SEGMENTS => {
+                    break self.unfollowed("more than 30,000 ways");
+                }
+                Some(Progress::Asked(_)) if way.len() >= MAX_QUESTIONS => {
+                    break self.unfollowed("more than 2000 questions on one way");
+                }
+                Some(Progress::Asked(test)) => break self.fork(id, test, &mut expansion),
+                // What has been executed since the last question is executed again.
+                Some(Progress::Stopped) => break SegmentState::Open(open),
+                None if self.nodes.arena().len() > MAX_NODES => {
+                    break self.unfollowed("a loop that computes without an end");
+                }
+                None => {
+                    for (test, answer) in again.by_ref().take(expansion.all_used - before) {
+                        self.nodes.add_answer(test, *answer);
+                    }
+                }
+            }
+        };
+        self.segments[id].state = state;
+    }
+
+    fn unfollowed(&self, what: &str) -> SegmentState {
+        let blocks = self.run.control().blocks();
+        SegmentState::Leaf(Rc::new(self.leaf(End::Unfollowed(what.to_owned()), blocks)))
+    }
+
+    /// Adds the two answers of a question.
+    fn fork(&mut self, id: SegmentId, test: Test, expansion: &mut Expansion) -> SegmentState {
+        let asked = match test {
+            Test::Compare(relation, left, right) => {
+                Asked::Condition(self.nodes.condition(relation, left, right))
+            }
+            Test::Finite(term) => Asked::Finite(self.nodes.id(term)),
+        };
+        let blocks = self.run.control().blocks() - expansion.blocks;
+        if expansion.from.answers.len() >= MAX_REPEATED.0 || blocks >= MAX_REPEATED.1 {
+            // The state is that before what asks.
+            expansion.from.answers.drain(..expansion.used);
+            expansion.from.snapshot = Rc::new(self.run.snapshot());
+            expansion.from.phase = expansion.phase.clone();
+        }
+        let mut child = |answer: bool| {
+            let mut open = expansion.from.clone();
+            open.answers.push(answer);
+            self.segments.push(Segment { parent: Some((id, answer)), state: SegmentState::Open(open) });
+            self.segments.len() - 1
+        };
+        let (yes, no) = (child(true), child(false));
+        SegmentState::Fork(Fork { test, asked, yes, no })
+    }
+
+    /// Does one thing more.
+    fn advance(&mut self, open: &mut Expansion, watch: &Watch) -> Option<Progress> {
+        match open.phase.clone() {
+            Phase::Conditions(index) => {
+                let question = Arc::clone(&self.question);
+                let Some(code) = question.conditions.get(index) else {
+                    open.phase = Phase::Blocks;
+                    return None;
+                };
+                match self.run.decide(code, &mut self.nodes, open.answers()) {
+                    Ok((true, used)) => {
+                        open.phase = Phase::Conditions(index + 1);
+                        open.count(used);
+                        None
+                    }
+                    // A condition without a value excludes its values.
+                    Ok((false, _)) | Err(Halt::Alarm(_)) => {
+                        Some(Progress::Ended(self.leaf(End::Excluded, 0)))
+                    }
+                    Err(Halt::Fork(test)) => Some(Progress::Asked(test)),
+                    Err(Halt::Unfollowed(what)) => Some(Progress::Ended(self.leaf(End::Unfollowed(what), 0))),
+                }
+            }
+            Phase::Blocks => self.block(open, watch),
+            Phase::Claims(mut leaf) => {
+                let question = Arc::clone(&self.question);
+                let Some(claim) = question.claims.get(leaf.claims.len()) else {
+                    return Some(Progress::Ended(leaf));
+                };
+                let state = match (claim, &leaf.end) {
+                    (Claim::Condition(code), End::Program) => {
+                        match self.run.condition(code, &mut self.nodes, open.answers()) {
+                            Ok((formula, used)) => {
+                                open.count(used);
+                                match self.formula(&formula) {
+                                    NodeFormula::Known(true) => ClaimState::Holds,
+                                    NodeFormula::Known(false) => ClaimState::Fails,
+                                    formula => ClaimState::Depends(formula),
+                                }
+                            }
+                            Err(Halt::Fork(test)) => return Some(Progress::Asked(test)),
+                            // A claim without a value doesn't hold.
+                            Err(Halt::Alarm(_)) => ClaimState::Fails,
+                            Err(Halt::Unfollowed(what)) => ClaimState::Unfollowed(what),
+                        }
+                    }
+                    (claim, _) => state_at(claim, &leaf.end, leaf.blocks),
+                };
+                leaf.claims.push(state);
+                open.phase = Phase::Claims(leaf);
+                None
+            }
+        }
+    }
+
+    /// Executes a block.
+    fn block(&mut self, open: &mut Expansion, watch: &Watch) -> Option<Progress> {
+        let blocks = self.run.control().blocks();
+        if blocks.is_multiple_of(BLOCKS_PER_LOOK) && watch.is_over() {
+            return Some(Progress::Stopped);
+        }
+        if blocks > self.question.enough_blocks() {
+            return self.end(open, End::Limit, 0);
+        }
+        if blocks >= self.question.max_blocks {
+            return self.end(open, End::Limit, 0);
+        }
+        match self.run.advance(&mut self.nodes, open.answers(), &mut self.library) {
+            Advance::Next(used) => {
+                open.count(used);
+                None
+            }
+            Advance::Fork(test) => Some(Progress::Asked(test)),
+            Advance::End(outcome, used) => self.end(open, End::of(&outcome), used),
+            Advance::Unfollowed(what) => {
+                let what = format!("{}: {what}", self.place());
+                Some(Progress::Ended(self.leaf(End::Unfollowed(what), blocks)))
+            }
+        }
+    }
+
+    /// Returns program and line of the current block.
+    fn place(&self) -> String {
+        let (memory, block) = (self.run.control().memory(), self.run.control().backtrace().block);
+        let line = memory.sources().line_column(block).line;
+        let program = memory.program_at(block).map_or_else(String::new, |program| program.label());
+        format!("{program} line {line}")
+    }
+
+    fn end(&mut self, open: &mut Expansion, end: End, used: usize) -> Option<Progress> {
+        // An alarm leaves the locals of the macro.
+        self.run.leave_calls();
+        let blocks = self.run.control().blocks();
+        let mut leaf = Leaf { end, blocks, claims: Vec::new(), bounds: Vec::new() };
+        for number in &self.question.bounds {
+            leaf.bounds.push(match self.run.variable(*number) {
+                Ok(Some(term)) if leaf.end == End::Program => BoundState::Node(self.nodes.id(term)),
+                Ok(_) => BoundState::None,
+                Err(_) if leaf.end != End::Program => BoundState::None,
+                Err(Halt::Unfollowed(what)) => BoundState::Unfollowed(what),
+                Err(_) => BoundState::None,
+            });
+        }
+        // The answers to the questions of a last block that ends the run.
+        open.count(used);
+        open.from.answers.drain(..open.used);
+        open.used = 0;
+        open.from.snapshot = Rc::new(self.run.snapshot());
+        open.phase = Phase::Claims(leaf);
+        open.from.phase = open.phase.clone();
+        None
+    }
+
+    /// Returns a leaf whose claims are as its end says.
+    fn leaf(&self, end: End, blocks: u64) -> Leaf {
+        let claims = self.question.claims.iter().map(|claim| state_at(claim, &end, blocks)).collect();
+        let bound = match &end {
+            End::Unfollowed(what) => BoundState::Unfollowed(what.clone()),
+            End::Excluded | End::Program | End::Alarm(_) | End::Limit => BoundState::None,
+        };
+        Leaf { end, blocks, claims, bounds: vec![bound; self.question.bounds.len()] }
+    }
+
+    fn formula(&mut self, formula: &Formula) -> NodeFormula {
+        match formula {
+            Formula::Known(known) => NodeFormula::Known(*known),
+            Formula::Compare(relation, left, right) => {
+                NodeFormula::Condition(self.nodes.condition(*relation, *left, *right))
+            }
+            Formula::Logic(op, left, right) => {
+                let (left, right) = (self.formula(left), self.formula(right));
+                match (op, &left, &right) {
+                    (BinaryOp::And, NodeFormula::Known(true), _)
+                    | (BinaryOp::Or, NodeFormula::Known(false), _) => right,
+                    (BinaryOp::And, _, NodeFormula::Known(true))
+                    | (BinaryOp::Or, _, NodeFormula::Known(false)) => left,
+                    (BinaryOp::And, NodeFormula::Known(false), _)
+                    | (BinaryOp::And, _, NodeFormula::Known(false)) => NodeFormula::Known(false),
+                    (BinaryOp::Or, NodeFormula::Known(true), _)
+                    | (BinaryOp::Or, _, NodeFormula::Known(true)) => NodeFormula::Known(true),
+                    _ => NodeFormula::Logic(*op, Box::new(left), Box::new(right)),
+                }
+            }
+        }
+    }
+}
+
+/// Result of one step of an expansion.
+enum Progress {
+    Ended(Leaf),
+    Asked(Test),
+    Stopped,
+}
+
+/// Returns the state of a claim that the end of a run decides.
+pub(crate) fn state_at(claim: &Claim, end: &End, blocks: u64) -> ClaimState {
+    let holds = match (claim, end) {
+        (_, End::Excluded) => true,
+        (Claim::Blocks(limit), End::Unfollowed(_) | End::Limit) if blocks > *limit => false,
+        (_, End::Unfollowed(what)) => return ClaimState::Unfollowed(what.clone()),
+        (Claim::Condition(_), End::Program) => return ClaimState::Unfollowed("a condition".to_owned()),
+        (Claim::Condition(_), End::Alarm(_) | End::Limit) => true,
+        (Claim::NoAlarm, end) => !matches!(end, End::Alarm(_)),
+        (Claim::OnlyAlarms(codes), End::Alarm(code)) => codes.contains(code),
+        (Claim::OnlyAlarms(_), End::Program | End::Limit) => true,
+        (Claim::Blocks(_), End::Limit) => false,
+        (Claim::Blocks(limit), End::Program | End::Alarm(_)) => blocks <= *limit,
+        (Claim::Travel(_), End::Alarm(code)) => !code.starts_with("OT"),
+        (Claim::Travel(_), End::Program | End::Limit) => true,
+    };
+    if holds { ClaimState::Holds } else { ClaimState::Fails }
+}

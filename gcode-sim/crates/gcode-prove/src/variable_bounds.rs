@@ -1,0 +1,204 @@
+//! Bounds of a variable at the end of all runs: the box with the worst bound is divided until the bound is close to a value
+//! that a run gives.
+use std::collections::BinaryHeap;
+
+use gcode_enclosure::{Condition, Domain, Enclosures, Interval, Relation};
+use gcode_lang::program::Library;
+
+use crate::points::Points;
+use crate::region::{Finding, divide, examine};
+use crate::search::spread_point;
+use crate::tree::Tree;
+use crate::watch::Watch;
+
+/// Side of a range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Lower,
+    Upper,
+}
+
+/// Gap between a bound and a value, of the width of all values, at which the work ends.
+const GAP: f64 = 0.004;
+
+/// Number of points that are tried first.
+const POINTS: u32 = 3000;
+
+/// Box with its bound, negated on the lower side.
+struct Bounded {
+    domain: Domain,
+    bound: f64,
+}
+
+impl PartialEq for Bounded {
+    fn eq(&self, other: &Self) -> bool {
+        self.bound.total_cmp(&other.bound).is_eq()
+    }
+}
+
+impl Eq for Bounded {}
+
+impl PartialOrd for Bounded {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Bounded {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+/// Result of one side.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Bound {
+    /// No run gives the variable a value.
+    None,
+    Value(f64),
+    /// Something isn't followed.
+    Unfollowed(String),
+}
+
+/// Search for one side of one variable.
+struct BoundSearch<'a, L> {
+    tree: &'a mut Tree<L>,
+    points: Points,
+    index: usize,
+    side: Side,
+    watch: &'a Watch<'a>,
+    /// Least and largest value that a run gives.
+    values: Option<(f64, f64)>,
+    unfollowed: Option<String>,
+}
+
+/// Returns one bound of a variable over a box.
+pub(crate) fn bound<L: Library>(
+    tree: &mut Tree<L>,
+    domain: &Domain,
+    index: usize,
+    side: Side,
+    watch: &Watch<'_>,
+) -> Bound {
+    let mut search =
+        BoundSearch { tree, points: Points::default(), index, side, watch, values: None, unfollowed: None };
+    for point in 1..=POINTS {
+        if watch.is_over() || watch.part() > 0.1 {
+            break;
+        }
+        search.value_at(&spread_point(domain, point));
+    }
+    search.run(domain)
+}
+
+impl<L: Library> BoundSearch<'_, L> {
+    /// Notes the value of a run.
+    fn value_at(&mut self, point: &[f64]) -> Option<f64> {
+        self.watch.count_run();
+        let way = self.points.follow(self.tree, point, self.watch, |_, _| {})?;
+        let state = way.leaf.bounds.get(self.index)?;
+        let value =
+            self.points.bound(self.tree.nodes.arena(), state, point).filter(|value| value.is_finite())?;
+        let (low, high) = self.values.unwrap_or((value, value));
+        self.values = Some((low.min(value), high.max(value)));
+        Some(value)
+    }
+
+    /// Returns a number with the sign of the side: larger is worse.
+    fn signed(&self, value: f64) -> f64 {
+        if self.side == Side::Upper { value } else { -value }
+    }
+
+    fn run(&mut self, whole: &Domain) -> Bound {
+        let mut boxes = BinaryHeap::new();
+        // Bounds of boxes that aren't divided further.
+        let mut settled = f64::NEG_INFINITY;
+        let (first, finding) = self.examine(whole);
+        self.add(&mut boxes, &mut settled, whole.clone(), first, f64::INFINITY, &finding);
+        let mut findings_left = 2_000_000_u64;
+        while let Some(worst) = boxes.pop() {
+            if self.is_close(worst.bound)
+                || worst.bound <= settled
+                || self.watch.is_over()
+                || findings_left == 0
+            {
+                settled = settled.max(worst.bound);
+                break;
+            }
+            findings_left -= 1;
+            let (_, finding) = self.examine(&worst.domain);
+            let parts = self.parts(&worst.domain, &finding);
+            if parts.is_empty() {
+                settled = settled.max(worst.bound);
+                continue;
+            }
+            for part in parts {
+                let (range, finding) = self.examine(&part);
+                self.add(&mut boxes, &mut settled, part, range, worst.bound, &finding);
+            }
+        }
+        if let Some(what) = self.unfollowed.take() {
+            return Bound::Unfollowed(what);
+        }
+        match settled {
+            f64::NEG_INFINITY => Bound::None,
+            settled => Bound::Value(self.signed(settled)),
+        }
+    }
+
+    /// Adds a part of a box, whose bound isn't worse than that of the whole.
+    fn add(
+        &mut self,
+        boxes: &mut BinaryHeap<Bounded>,
+        settled: &mut f64,
+        domain: Domain,
+        range: Interval,
+        of_whole: f64,
+        finding: &Finding,
+    ) {
+        if let Some(what) = &finding.unfollowed {
+            self.unfollowed.get_or_insert_with(|| what.clone());
+        }
+        if range.is_empty() {
+            return;
+        }
+        self.value_at(&domain.midpoint());
+        let bound = self.signed(if self.side == Side::Upper { range.hi() } else { range.lo() }).min(of_whole);
+        if domain.ranges().iter().all(|range| range.lo() == range.hi()) {
+            *settled = settled.max(bound);
+        } else {
+            boxes.push(Bounded { domain, bound });
+        }
+    }
+
+    /// Returns true if a bound is close enough to a value of a run.
+    fn is_close(&self, bound: f64) -> bool {
+        let Some((low, high)) = self.values else { return false };
+        let value = self.signed(if self.side == Side::Upper { high } else { low });
+        let width = high - low;
+        bound - value <= (width * GAP).max(value.abs() * 1e-15)
+    }
+
+    fn examine(&mut self, domain: &Domain) -> (Interval, Finding) {
+        self.watch.count_box();
+        let mut finding = examine(self.tree, Enclosures::with_degree(domain.clone(), 0), 0, self.watch);
+        let mut range = finding.bounds[self.index];
+        if !range.is_empty() {
+            let closer = examine(self.tree, Enclosures::new(domain.clone()), 0, self.watch);
+            range = range.intersect(closer.bounds[self.index]);
+            finding = closer;
+        }
+        (range, finding)
+    }
+
+    /// Divides a box by what the variable depends on most.
+    fn parts(&self, domain: &Domain, finding: &Finding) -> Vec<Domain> {
+        let own = finding.bound_nodes[self.index];
+        let zero = gcode_enclosure::Arena::ZERO;
+        // A box with one way is divided for the value alone.
+        let condition = own.filter(|_| finding.undecided.is_empty());
+        let condition = condition.map(|node| Condition::new(Relation::Ge, node, zero));
+        let undecided = finding.undecided.iter().copied().chain(condition).collect();
+        divide(self.tree.nodes.arena(), domain, &Finding { undecided, ..Finding::default() })
+    }
+}

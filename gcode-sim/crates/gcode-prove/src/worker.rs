@@ -1,0 +1,149 @@
+//! Work of one thread: the largest box is examined and divided until every claim is decided.
+use gcode_enclosure::{Domain, Enclosures, Interval};
+use gcode_lang::program::Library;
+
+use crate::region::{ClaimSet, Finding, divide, examine};
+use crate::search::Prober;
+use crate::shared::Pending;
+use crate::tree::End;
+
+/// Boxes with at most this many doubles are run double by double.
+const MAX_DOUBLES: u64 = 48;
+
+/// Relative width of a box that isn't divided further.
+const LEAST_WIDTH: f64 = 1e-13;
+
+impl<L: Library> Prober<'_, L> {
+    /// Examines boxes until none is left or the time is over.
+    pub(crate) fn work(&mut self) {
+        let (shared, watch) = (self.shared, self.watch);
+        while let Some(pending) = shared.take(|| watch.is_over()) {
+            self.examine(pending);
+            shared.finish();
+        }
+    }
+
+    fn examine(&mut self, pending: Pending) {
+        self.watch.count_box();
+        let claims = pending.claims & self.shared.open_claims();
+        if claims == 0 {
+            return;
+        }
+        if let Some(points) = doubles(&pending.domain) {
+            return self.run_points(&points, claims);
+        }
+        let ranges = Enclosures::with_degree(pending.domain.clone(), 0);
+        let mut finding = examine(&mut self.tree, ranges, claims, self.watch);
+        if finding.proved != claims && !finding.is_final && !finding.is_stopped && finding.refuted == 0 {
+            let models = Enclosures::new(pending.domain.clone());
+            let closer = examine(&mut self.tree, models, claims & !finding.proved, self.watch);
+            finding = Finding { proved: finding.proved | closer.proved, ..closer };
+        }
+        if finding.is_included {
+            self.shared.include(finding.has_end);
+        }
+        let left = claims & !finding.proved;
+        if left != 0 {
+            self.try_point(&pending.domain.midpoint());
+        }
+        let left = left & self.shared.open_claims();
+        if left == 0 {
+            return;
+        }
+        self.divide(&Pending { claims: left, ..pending }, &finding);
+    }
+
+    fn divide(&self, pending: &Pending, finding: &Finding) {
+        if let Some(what) = &finding.unfollowed {
+            self.shared.note_unfollowed(what);
+        }
+        let parts = if finding.is_final || finding.is_stopped || is_tiny(&pending.domain) {
+            Vec::new()
+        } else {
+            divide(self.tree.nodes.arena(), &pending.domain, finding)
+        };
+        if parts.is_empty() {
+            self.shared.park(Pending { domain: pending.domain.clone(), ..*pending });
+            return;
+        }
+        let whole = self.question.domain();
+        self.shared.push(parts.into_iter().map(|domain| pending_box(domain, &whole, pending.claims)));
+    }
+
+    /// Decides claims at single points, by runs of the control.
+    fn run_points(&mut self, points: &[Vec<f64>], claims: ClaimSet) {
+        for point in points {
+            self.watch.count_run();
+            let result = self.witness.run(point);
+            if let Some(end) = &result.end {
+                self.shared.include(*end == End::Program);
+            }
+            self.shared.refute(result.failed & claims, point);
+        }
+    }
+}
+
+/// Returns a box with its place in the queue.
+pub(crate) fn pending_box(domain: Domain, whole: &Domain, claims: ClaimSet) -> Pending {
+    let (mut volume, mut size) = (1.0, 0.0);
+    for (range, all) in domain.ranges().iter().zip(whole.ranges()) {
+        if all.lo() < all.hi() {
+            let part = (range.hi() - range.lo()) / (all.hi() - all.lo());
+            volume *= part;
+            size += libm::log2(part.max(1e-12));
+        }
+    }
+    Pending { domain, claims, volume, size }
+}
+
+fn is_tiny(domain: &Domain) -> bool {
+    domain.ranges().iter().all(|range| range.width() <= range.magnitude() * LEAST_WIDTH)
+}
+
+/// Returns all points of a box with few doubles.
+fn doubles(domain: &Domain) -> Option<Vec<Vec<f64>>> {
+    let mut points = vec![Vec::new()];
+    for range in domain.ranges() {
+        let values = few_doubles(*range)?;
+        if (points.len() * values.len()) as u64 > MAX_DOUBLES {
+            return None;
+        }
+        let with = |point: &Vec<f64>, value: f64| point.iter().copied().chain([value]).collect();
+        points =
+            points.iter().flat_map(|point| values.iter().map(move |value| with(point, *value))).collect();
+    }
+    Some(points)
+}
+
+fn few_doubles(range: Interval) -> Option<Vec<f64>> {
+    let mut values = vec![range.lo()];
+    let mut value = range.lo();
+    while value < range.hi() {
+        if values.len() as u64 > MAX_DOUBLES {
+            return None;
+        }
+        value = value.next_up();
+        values.push(value);
+    }
+    Some(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_of_few_doubles_is_its_points() {
+        let one = Interval::point(1.0);
+        let domain = Domain::new(vec![Interval::new(1.0, 1.0_f64.next_up().next_up()), one]);
+        assert_eq!(doubles(&domain).map(|points| points.len()), Some(3));
+        assert_eq!(doubles(&domain.with(1, Interval::new(0.0, 1.0))), None);
+    }
+
+    #[test]
+    fn a_volume_counts_inputs_with_a_range() {
+        let whole = Domain::new(vec![Interval::new(0.0, 4.0), Interval::point(3.0)]);
+        let part = whole.with(0, Interval::new(1.0, 2.0));
+        assert_eq!(pending_box(part, &whole, 1).volume, 0.25);
+    }
+}

@@ -1,0 +1,139 @@
+//! `gcode-sim prove`: claims on a program for all values of its variables at once.
+#![expect(clippy::disallowed_methods, reason = "the command line reads the clock")]
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use super::conditions::ProgramArguments;
+use super::format::TextFormat;
+use super::library::Folders;
+use super::{ExitStatus, UsageError, options, output, progress};
+use crate::report::proof::ProofReport;
+use gcode_control::Control;
+use gcode_prove::{Ask, Setup, Verdict, Watch, prove};
+use gcode_session::Request;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A local or common variable and the limits of its values, e.g. '#1=0.1..9.9' (repeatable)
+    #[arg(long = "range", value_name = "#N=LOW..HIGH", allow_hyphen_values = true, display_order = 0)]
+    ranges: Vec<String>,
+
+    /// A condition on these values, e.g. '#3 LE #1' (repeatable): values that don't satisfy it are left out
+    #[arg(long = "where", value_name = "CONDITION", display_order = 0)]
+    conditions: Vec<String>,
+
+    /// What is to hold for all values (repeatable): a condition at the end, '#100 LE 12.1'; no-alarm; 'alarm MC3001|MC3002';
+    /// 'blocks LE 500'; 'travel 1320=X100.'
+    #[arg(long = "claim", value_name = "CLAIM", display_order = 0)]
+    claims: Vec<String>,
+
+    /// A variable whose least and largest value at the end are to be enclosed, e.g. '#100' (repeatable)
+    #[arg(long, value_name = "#N", display_order = 0)]
+    bounds: Vec<String>,
+
+    /// Run this block instead of the program, e.g. 'G65 P8101 A#101 B700.'
+    #[arg(long, value_name = "BLOCK", display_order = 0)]
+    call: Option<String>,
+
+    /// Largest time, seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, display_order = 0)]
+    time: f64,
+
+    /// Number of threads [default: the number of processors]
+    #[arg(long, value_name = "N", display_order = 0)]
+    threads: Option<NonZeroUsize>,
+
+    /// Output format
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
+
+    #[command(flatten)]
+    program: ProgramArguments,
+}
+
+/// Source of the controls of a request.
+struct Controls<'a> {
+    request: &'a Request,
+    program: &'a Path,
+    libraries: &'a [PathBuf],
+    call: Option<&'a str>,
+}
+
+/// Folders of called programs, if they can be read.
+struct OptionalFolders(Option<Folders>);
+
+impl gcode_lang::program::Library for OptionalFolders {
+    fn program(&mut self, number: u32) -> Option<(String, gcode_lang::source::Bytes)> {
+        self.0.as_mut()?.program(number)
+    }
+
+    fn named(&mut self, name: &str) -> Option<(String, gcode_lang::source::Bytes)> {
+        self.0.as_mut()?.named(name)
+    }
+
+    fn read_error(&self) -> Option<String> {
+        self.0.as_ref()?.read_error()
+    }
+}
+
+impl Setup for Controls<'_> {
+    type Library = OptionalFolders;
+
+    fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
+        let mut request = self.request.clone();
+        for (key, value) in settings {
+            let taken = request.settings.set(key, value);
+            taken.map_err(|error| format!("--claim travel: {error}"))?;
+        }
+        gcode_session::set_up(&request, self.call).map_err(|error| error.to_string())
+    }
+
+    fn library(&self) -> OptionalFolders {
+        // The folders have been checked with the request.
+        OptionalFolders(Folders::new(self.program, self.libraries).ok())
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
+    let (program, _) = arguments.program.completed()?;
+    let (request, _) = options::checked_request(&program, None, None, None)?;
+    if request.part.is_some() {
+        return Err(UsageError::new("--part: prove follows no probe on a part: omit it"));
+    }
+    if !(arguments.time > 0.0 && arguments.time <= 86_400.0) {
+        return Err(UsageError::new(format!("--time {}: seconds above 0, up to 86400", arguments.time)));
+    }
+    if let Some(call) = &arguments.call
+        && (call.trim().is_empty() || call.contains('\n'))
+    {
+        return Err(UsageError::new("--call: write one block, 'G65 P8101 A#101'"));
+    }
+    let one = NonZeroUsize::MIN;
+    let ask = Ask {
+        ranges: arguments.ranges.clone(),
+        conditions: arguments.conditions.clone(),
+        claims: arguments.claims.clone(),
+        bounds: arguments.bounds.clone(),
+        max_blocks: request.limits.blocks,
+        threads: arguments.threads.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
+    };
+    let controls = Controls {
+        request: &request,
+        program: &program.program,
+        libraries: &program.conditions.libraries,
+        call: arguments.call.as_deref(),
+    };
+    let start = Instant::now();
+    let clock = || start.elapsed();
+    let watch = Watch::new(&clock, Duration::from_secs_f64(arguments.time));
+    let answer = progress::of_proof(&watch, || prove(&controls, &ask, &watch));
+    let answer = answer.map_err(|error| UsageError::new(error.to_string()))?;
+    let name = program.program.display().to_string();
+    let report = ProofReport::new(&answer, start.elapsed().as_secs_f64(), name, arguments.call.clone());
+    output::report(&report, ProofReport::text, arguments.format)?;
+    Ok(if answer.verdict == Verdict::Proved { ExitStatus::Passed } else { ExitStatus::Failed })
+}

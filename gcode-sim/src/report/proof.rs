@@ -1,0 +1,170 @@
+//! The answer of `prove` as JSON and as text.
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::figures::count;
+use gcode_prove::{Answer, ClaimAnswer, Verdict};
+
+/// Verdicts on claims for all values of the ranges, and bounds of variables.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct ProofReport {
+    /// `proved`, `refuted` or `undecided`: the worst of the claims'.
+    verdict: VerdictName,
+    /// In the order given.
+    claims: Vec<ClaimRow>,
+    /// Bounds of variables at the end of all runs; null if no run gives one, or something isn't followed.
+    bounds: BTreeMap<String, Option<[f64; 2]>>,
+    /// Share of the values for which a claim isn't decided.
+    undecided_share: f64,
+    /// Number of boxes examined.
+    boxes: u64,
+    /// Number of single runs.
+    runs: u64,
+    seconds: f64,
+    /// What depends on the ranges and isn't followed.
+    unfollowed: Vec<String>,
+    /// No run is known to end without an alarm: a condition at the end says nothing then.
+    never_ends: bool,
+    #[serde(skip)]
+    call: Option<String>,
+    #[serde(skip)]
+    program: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum VerdictName {
+    Proved,
+    Refuted,
+    Undecided,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct ClaimRow {
+    claim: String,
+    verdict: VerdictName,
+    /// Values at which the claim fails, by variable.
+    counterexample: Option<BTreeMap<String, f64>>,
+}
+
+fn name_of(verdict: Verdict) -> VerdictName {
+    match verdict {
+        Verdict::Proved => VerdictName::Proved,
+        Verdict::Refuted => VerdictName::Refuted,
+        Verdict::Undecided => VerdictName::Undecided,
+    }
+}
+
+fn row(answer: &ClaimAnswer) -> ClaimRow {
+    let values = answer.counterexample.as_ref();
+    let named = |(variable, value): &(u32, f64)| (format!("#{variable}"), *value);
+    ClaimRow {
+        claim: answer.claim.clone(),
+        verdict: name_of(answer.verdict),
+        counterexample: values.map(|values| values.iter().map(named).collect()),
+    }
+}
+
+impl ProofReport {
+    /// Returns the report; `call` is the block that was run instead of the program.
+    pub(crate) fn new(answer: &Answer, seconds: f64, program: String, call: Option<String>) -> Self {
+        let bounds = answer
+            .bounds
+            .iter()
+            .map(|bounds| (format!("#{}", bounds.variable), bounds.range.map(|(low, high)| [low, high])));
+        Self {
+            verdict: name_of(answer.verdict),
+            claims: answer.claims.iter().map(row).collect(),
+            bounds: bounds.collect(),
+            undecided_share: answer.undecided_share,
+            boxes: answer.boxes,
+            runs: answer.runs,
+            seconds,
+            unfollowed: answer.unfollowed.clone(),
+            never_ends: answer.never_ends,
+            call,
+            program,
+        }
+    }
+
+    /// Returns the report as text.
+    pub(crate) fn text(&self) -> String {
+        let mut text = String::new();
+        for row in &self.claims {
+            let verdict = match row.verdict {
+                VerdictName::Proved => "proved   ",
+                VerdictName::Refuted => "REFUTED  ",
+                VerdictName::Undecided => "undecided",
+            };
+            _ = writeln!(text, "{verdict}  {}", row.claim);
+            if let Some(values) = &row.counterexample {
+                text.push_str(&self.counterexample(values));
+            }
+        }
+        for (variable, range) in &self.bounds {
+            _ = match range {
+                Some([low, high]) => writeln!(text, "{variable} from {low} to {high}"),
+                None => writeln!(text, "{variable} has no bounds: no run gives it a value that is followed"),
+            };
+        }
+        if self.undecided_share > 0.0 {
+            _ = writeln!(text, "undecided: {} of the values", percent(self.undecided_share));
+        }
+        for what in &self.unfollowed {
+            _ = writeln!(text, "not followed: {what}");
+        }
+        if self.never_ends {
+            text.push_str(
+                "no run is known to end without an alarm: a condition at the end says nothing then\n",
+            );
+        }
+        let (boxes, runs) = (count(self.boxes as usize, "box"), count(self.runs as usize, "run"));
+        _ = writeln!(text, "{} and {}, {:.2} s", boxes.replace("boxs", "boxes"), runs, self.seconds);
+        text
+    }
+
+    /// Returns a counterexample as a program to run, and as the command that runs it.
+    fn counterexample(&self, values: &BTreeMap<String, f64>) -> String {
+        let mut text = String::new();
+        for (variable, value) in values {
+            _ = writeln!(text, "             {variable}={}", number(*value));
+        }
+        match &self.call {
+            Some(call) => _ = writeln!(text, "             {call}\n             M30"),
+            None => {
+                let sets: Vec<_> =
+                    values.iter().map(|(variable, value)| format!("--set '{variable}={value}'")).collect();
+                _ = writeln!(text, "           gcode-sim run {} {}", self.program, sets.join(" "));
+            }
+        }
+        text
+    }
+}
+
+/// Returns a number as a program writes it, always with a point.
+fn number(value: f64) -> String {
+    let text = value.to_string();
+    if text.contains('.') { text } else { text + "." }
+}
+
+/// Returns a share in percent, never rounded to nothing.
+fn percent(share: f64) -> String {
+    let percent = share * 100.0;
+    if percent < 0.01 { "less than 0.01 %".to_owned() } else { format!("{percent:.2} %") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_is_never_rounded_to_nothing() {
+        assert_eq!(percent(0.25), "25.00 %");
+        assert_eq!(percent(1e-9), "less than 0.01 %");
+        assert_eq!(number(3.0), "3.");
+        assert_eq!(number(-0.25), "-0.25");
+    }
+}
