@@ -4,7 +4,8 @@ use clap::{Parser, Subcommand};
 
 use super::common::Colours;
 use super::{
-    budget, check, compare, diff, explain, holes, lsp, new, packaging, page_command, prove, readings, reference, render, run, schema, settings, sheet, test, verify,
+    budget, check, compare, diff, explain, holes, lsp, new, packaging, page_command, prove, readings,
+    reference, render, run, schema, settings, sheet, test, verify,
 };
 
 /// Executes Fanuc Custom Macro B programs as the control does, follows the tool on the part, and compares the holes

@@ -71,7 +71,8 @@ pub(crate) fn code_lenses(
         let range = text.range(outline.name_range.start, outline.name_range.end);
         let is_named = !outline.name_range.is_empty();
         let label = snapshot.project.label(key);
-        let target = Target { uri: params.text_document.uri.clone(), program: is_named.then_some(label), text: None };
+        let target =
+            Target { uri: params.text_document.uri.clone(), program: is_named.then_some(label), text: None };
         let commands = [("Run", RUN), ("Verify", VERIFY), ("Show", SHOW), ("Debug", DEBUG)];
         for (title, command) in commands {
             let arguments = Some(vec![json!(target)]);
