@@ -106,7 +106,10 @@ fn block_edits(text: &[u8], line: TextRange, block: &Block) -> Vec<TextEdit> {
             Some((before, _)) if piece.0.start < before.end => continue,
             Some((before, is_skip)) => {
                 let between = TextRange::new(before.end, piece.0.start);
-                let space = if is_skip { "" } else { " " };
+                // A comment may follow without a space, as the text of an alarm does.
+                let is_comment = text.get(piece.0.start as usize) == Some(&b'(');
+                let is_close = is_skip || between.is_empty() && is_comment;
+                let space = if is_close { "" } else { " " };
                 edits.extend(gap(text, between, space));
             }
         }
@@ -174,7 +177,7 @@ mod tests {
     fn words_are_separated_by_one_space() {
         assert_eq!(
             shown("O1 (A)  \nN10G1X 1.Y-2.   F100(FEED)\t\n"),
-            "O1 (A)  \nN10 G1 X1. Y-2. F100 (FEED)\n"
+            "O1 (A)  \nN10 G1 X1. Y-2. F100(FEED)\n"
         );
         assert_eq!(shown("/N5G0X1.\n/ 2  N5\n"), "/N5 G0 X1.\n/ 2 N5\n");
         assert_eq!(shown("  N5  G0\r\n\r\n X1.\r\n"), "N5 G0\r\n\r\nX1.\r\n");
@@ -194,7 +197,7 @@ mod tests {
         ] {
             assert_eq!(shown(text), text);
         }
-        assert_eq!(shown("#1=2  (A)\n"), "#1=2 (A)\n");
+        assert_eq!(shown("#1=2  (A)\n#3000=1(B)\n"), "#1=2 (A)\n#3000=1(B)\n");
     }
 
     #[test]

@@ -1,4 +1,8 @@
 //! Meaning of a variable: what the head of its program or a comment beside its value says.
+use gcode_lang::program::NoLibrary;
+use gcode_lang::syntax::ast::ProgramName;
+use gcode_lint::rules::MISSING_ARGUMENT;
+
 use crate::entry::EntryKind;
 use crate::head_comment::{VariableMeaning, meanings};
 use crate::project::{ProgramKey, Project};
@@ -7,6 +11,9 @@ use crate::text::{TextRange, line_range, lossy};
 
 /// Most files that are searched for the meaning of a common.
 const MAX_SEARCHED: usize = 500;
+
+/// Longest macro that is checked for the arguments that it requires, bytes.
+const MAX_CHECKED: u32 = 256 * 1024;
 
 impl Project {
     /// Returns what the comments of a program say of a variable.
@@ -52,7 +59,6 @@ impl Project {
         let stated: Vec<VariableMeaning> = meanings(index, key.program);
         let mut set = [false; 34];
         let mut read = [false; 34];
-        let mut tested = [false; 34];
         let mut line = TextRange::default();
         let mut pending: Option<usize> = None;
         for entry in index.program_entries(key.program) {
@@ -71,7 +77,6 @@ impl Project {
                 EntryKind::Write => pending = Some(local),
                 EntryKind::Read if !set[local] => {
                     read[local] = true;
-                    tested[local] |= is_vacancy_test(index.text(), entry.range, line);
                 }
                 _ => {}
             }
@@ -80,6 +85,7 @@ impl Project {
             let is_stated = stated.iter().any(|m| m.number as usize == local && m.letter.is_some());
             is_stated || read[local]
         };
+        let required = self.required_letters(key);
         let locals = (1..=26).filter_map(|local| Some((local, gcode_lang::program::argument_letter(local)?)));
         let parameters =
             locals.filter(|(local, _)| is_parameter(*local)).map(|(local, letter)| MacroParameter {
@@ -90,11 +96,39 @@ impl Project {
                     .find(|m| m.number as usize == local)
                     .map(|m| m.text.clone())
                     .unwrap_or_default(),
-                is_optional: tested[local],
+                is_optional: !required.contains(&letter),
             });
         let mut found: Vec<_> = parameters.collect();
         found.sort_by_key(|parameter| parameter.letter);
         found
+    }
+
+    /// Returns the letters without which `check` expects a macro to stop or to compute with 0.
+    fn required_letters(&self, key: ProgramKey) -> Vec<char> {
+        let Some((index, outline)) = self.file(key.file).zip(self.program(key)) else { return Vec::new() };
+        let Some(ProgramName::Number(number)) = self.name_of(key) else { return Vec::new() };
+        if outline.range.len() > MAX_CHECKED {
+            return Vec::new();
+        }
+        let caller = if number == 1 { 2 } else { 1 };
+        let body = TextRange::new(outline.name_range.end, outline.range.end);
+        let mut letters = Vec::new();
+        // Behind an alarm nothing is computed: what else is missing shows once the arguments are there.
+        loop {
+            let passed: String = letters.iter().map(|letter| format!(" {letter}1.")).collect();
+            let mut text = format!("O{caller}\nG65 P{number}{passed}\nM30\nO{number}\n").into_bytes();
+            text.extend_from_slice(body.of(index.text()));
+            let checked = gcode_lint::check("call", text, self.settings(), &mut NoLibrary);
+            let missing = checked.findings.iter().filter(|finding| finding.kind == MISSING_ARGUMENT);
+            let found = missing.filter_map(|finding| finding.message.split_once(" (#")?.0.chars().last());
+            let before = letters.len();
+            letters.extend(found);
+            letters.sort_unstable();
+            letters.dedup();
+            if letters.len() == before {
+                return letters;
+            }
+        }
     }
 }
 
@@ -105,12 +139,6 @@ pub(crate) struct MacroParameter {
     pub local: u32,
     /// Meaning, empty if no comment states one.
     pub text: String,
-    /// True if the macro tests whether it is vacant.
+    /// True if the macro does without it.
     pub is_optional: bool,
-}
-
-/// Returns true if `EQ #0` or `NE #0` follows a variable.
-fn is_vacancy_test(text: &[u8], variable: TextRange, line: TextRange) -> bool {
-    let behind = lossy(TextRange::new(variable.end, line.end).of(text)).replace(' ', "").to_ascii_uppercase();
-    ["EQ#0]", "NE#0]"].iter().any(|test| behind.starts_with(test))
 }

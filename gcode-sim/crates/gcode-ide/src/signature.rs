@@ -89,8 +89,7 @@ impl Project {
 mod tests {
     use crate::testing::fixture;
 
-    const MACRO: &str =
-        "O9(HOLE)\n(R #18 RADIUS)\n(D #7 DEPTH)\nIF[#6 EQ #0]THEN #6=1.\n#30=#18*#7*#6\n#20=1.\nX#20\nM99\n";
+    const MACRO: &str = "O9(HOLE)\n(R #18 RADIUS)\n(D #7 DEPTH)\nIF[#18 EQ #0]THEN #3000=1(R MISSING)\nIF[#6 EQ #0]THEN #6=1.\n#30=#18*#7*#6\n#20=1.\nX#20\nM99\n";
 
     #[test]
     fn a_macro_shows_its_arguments() {
