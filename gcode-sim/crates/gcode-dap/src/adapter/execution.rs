@@ -82,7 +82,7 @@ impl<H: Host> Adapter<H> {
     pub(super) fn goto(&mut self, arguments: &Goto) -> Answer {
         check_thread(arguments.thread_id)?;
         self.standing()?;
-        let index = usize::try_from(arguments.target_id - 1).ok();
+        let index = arguments.target_id.checked_sub(1).and_then(|index| usize::try_from(index).ok());
         let target = index.and_then(|index| self.goto_targets.get(index)).cloned();
         let target = target.ok_or_else(|| format!("there is no goto target {}", arguments.target_id))?;
         let source = self.loaded_source(&target.path);

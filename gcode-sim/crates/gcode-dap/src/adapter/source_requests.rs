@@ -19,11 +19,11 @@ impl<H: Host> Adapter<H> {
 
     /// Returns a line of the client, counted from 1.
     pub(super) fn own_line(&self, line: i64) -> u32 {
-        u32::try_from(line + 1 - self.client.first_line).unwrap_or(0)
+        u32::try_from(line.saturating_add(1 - self.client.first_line)).unwrap_or(0)
     }
 
     pub(super) fn own_column(&self, column: i64) -> u32 {
-        u32::try_from(column + 1 - self.client.first_column).unwrap_or(0)
+        u32::try_from(column.saturating_add(1 - self.client.first_column)).unwrap_or(0)
     }
 
     /// Returns the path of a file that a client names, and its canonical path.
@@ -38,7 +38,7 @@ impl<H: Host> Adapter<H> {
     }
 
     fn source_name(&self, reference: i64) -> Option<String> {
-        let index = usize::try_from(reference - 1).ok()?;
+        let index = usize::try_from(reference.checked_sub(1)?).ok()?;
         let sources = self.session.as_ref()?.debuggee.control().memory().sources();
         sources.iter().nth(index).map(|(_, source)| source.name.clone())
     }

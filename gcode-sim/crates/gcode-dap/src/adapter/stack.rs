@@ -65,8 +65,8 @@ impl<H: Host> Adapter<H> {
     pub(super) fn frame_index(&mut self, frame: Option<i64>) -> Result<(Vec<StackedProgram>, usize), String> {
         let stack = self.standing()?.debuggee.control().call_stack();
         let Some(frame) = frame else { return Ok((stack, 0)) };
-        let above_main = usize::try_from(frame - MAIN_FRAME).ok();
-        let index = above_main.and_then(|above| stack.len().checked_sub(above + 1));
+        let above_main = frame.checked_sub(MAIN_FRAME).and_then(|above| usize::try_from(above).ok());
+        let index = above_main.and_then(|above| stack.len().checked_sub(above.checked_add(1)?));
         let index = index.ok_or_else(|| format!("there is no frame {frame}"))?;
         Ok((stack, index))
     }
