@@ -238,10 +238,13 @@ fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
     };
     let feet = PointTree::new(holes.iter().map(foot));
     let mut partners: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut opposite: Vec<(usize, usize)> = Vec::new();
     feet.pairs(SAME_AXIS, &mut |one, other| {
         if Step::is_on_axis_of(&holes[one], &holes[other]) {
             partners.entry(one.min(other)).or_default().push(one.max(other));
         }
+        let both = [(one, other), (other, one)].into_iter();
+        opposite.extend(both.filter(|(one, other)| Step::is_at_far_side_of(&holes[*one], &holes[*other])));
     });
     for (first, others) in partners {
         if stack_of.contains_key(&first) {
@@ -255,6 +258,14 @@ fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
         members.sort_by(|a, b| bottom(b).total_cmp(&bottom(a)));
         stack_of.extend(members.iter().map(|index| (*index, stacks.len())));
         stacks.push(members.iter().map(|index| Step::of(&holes[*index])).collect());
+    }
+    // From its far side a through hole is the lowest step of the holes there.
+    for (hole, through) in opposite {
+        let stack = *stack_of.entry(hole).or_insert_with(|| {
+            stacks.push(vec![Step::of(&holes[hole])]);
+            stacks.len() - 1
+        });
+        stacks[stack].push(Step::from_far_side(&holes[through]));
     }
     (stacks, stack_of)
 }
@@ -270,6 +281,25 @@ impl Step {
     fn is_on_axis_of(one: &Hole, other: &Hole) -> bool {
         let cosine = Vector3::from(one.axis).dot(&Vector3::from(other.axis));
         1.0 - NOISE < cosine && one.widest_diameter() != other.widest_diameter()
+    }
+
+    /// Returns true if a hole begins at the far side of a wider or narrower through hole on its line, and is less deep.
+    fn is_at_far_side_of(hole: &Hole, through: &Hole) -> bool {
+        let out = Vector3::from(through.axis);
+        let cosine = Vector3::from(hole.axis).dot(&out);
+        let far = Point3::from(through.entry) - out * through.depth;
+        let above = (Point3::from(hole.entry) - far).dot(&out).abs();
+        through.through
+            && cosine < -1.0 + NOISE
+            && above <= through.depth / 2.0
+            && hole.depth < through.depth
+            && hole.widest_diameter() != through.widest_diameter()
+    }
+
+    /// Returns a through hole as it is from its far side.
+    fn from_far_side(hole: &Hole) -> Self {
+        let entry = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
+        Self { entry, ..Self::of(hole) }
     }
 }
 

@@ -84,6 +84,9 @@ impl<'a> Comparison<'a> {
         // A through hole may be drilled from its far side.
         let through: Vec<usize> = (0..nominal.len()).filter(|index| nominal[*index].through).collect();
         let far_ends = through.iter().map(|index| bottom(&nominal[*index]));
+        // In a through hole a feed may begin anywhere.
+        let depths = nominal.iter().map(|hole| hole.depth).filter(|_| !through.is_empty());
+        let inside = depths.fold(0.0, f64::max);
         let tree = PointTree::new(nominal.iter().map(|hole| Point3::from(hole.entry)).chain(far_ends));
         let candidates_within = |index: usize, distance: f64, candidates: &mut Vec<HolePair>| {
             let hole = &actual[index];
@@ -92,7 +95,7 @@ impl<'a> Comparison<'a> {
             let starts = hole.passes().map(|pass| pass.cut.start);
             let ends = (hole.entry.inf(&deepest), hole.entry.sup(&deepest));
             let (low, high) = starts.fold(ends, |(low, high), start| (low.inf(&start), high.sup(&start)));
-            let along = hole.axis.into_inner().abs() * (2.0 * (reach - distance));
+            let along = hole.axis.into_inner().abs() * (2.0 * (reach - distance) + inside);
             let margin = along + Vector3::repeat(distance);
             let (low, high) = (low - margin, high + margin);
             let before = candidates.len();
