@@ -27,7 +27,8 @@ impl ArgumentLocals {
                     self.set += 1;
                 }
                 self.last = letter;
-                if self.set == 10 {
+                // A reader may go on after the alarm.
+                if self.set >= 10 {
                     return Err(Alarm::TooManyArgumentSets);
                 }
                 Ok(Some(4 + 3 * self.set + usize::from(letter - b'I')))
@@ -75,5 +76,12 @@ mod tests {
         assert_eq!(dealt("JI"), [5, 7]);
         assert_eq!(dealt("III"), [4, 7, 10]);
         assert_eq!(dealt("ABIID"), [1, 2, 4, 7, 7]);
+    }
+
+    #[test]
+    fn every_set_after_the_tenth_is_refused() {
+        let mut locals = ArgumentLocals::new(false, false);
+        let dealt: Vec<_> = (0..13).map(|_| locals.next(b'I').is_ok()).collect();
+        assert_eq!(dealt, [[true; 10].as_slice(), &[false; 3]].concat());
     }
 }
