@@ -81,9 +81,10 @@ struct Region {
 
 impl Region {
     fn walk<L: Library>(&mut self, tree: &mut Tree<L>, enclosures: Enclosures, watch: &Watch) {
-        let mut pending: Vec<(SegmentId, Enclosures)> = vec![(0, enclosures)];
+        // With the last question of the way that isn't decided.
+        let mut pending: Vec<(SegmentId, Enclosures, Option<Condition>)> = vec![(0, enclosures, None)];
         let mut steps = 0;
-        while let Some((id, mut enclosures)) = pending.pop() {
+        while let Some((id, mut enclosures, last)) = pending.pop() {
             steps += 1;
             if steps > MAX_STEPS {
                 return self.give_up();
@@ -92,7 +93,7 @@ impl Region {
                 Step::Fork(fork) => fork,
                 Step::Leaf(leaf) => {
                     self.ways += 1;
-                    self.leaf(tree, &leaf, &mut enclosures);
+                    self.leaf(tree, &leaf, &mut enclosures, last);
                     if self.ways > MAX_WAYS && !pending.is_empty() {
                         return self.give_up();
                     }
@@ -109,13 +110,15 @@ impl Region {
                 Asked::Finite(node) => is_finite(arena, &mut enclosures, node),
             };
             match answer {
-                Some(true) => pending.push((fork.yes, enclosures)),
-                Some(false) => pending.push((fork.no, enclosures)),
+                Some(true) => pending.push((fork.yes, enclosures, last)),
+                Some(false) => pending.push((fork.no, enclosures, last)),
                 None => {
                     self.forks += 1;
                     let mut other = enclosures.clone();
                     let (mut yes, mut no) = (true, true);
+                    let mut last = last;
                     if let Asked::Condition(condition) = fork.asked {
+                        last = Some(condition);
                         self.finding.undecided.push(condition);
                         yes = enclosures.assume(arena, condition);
                         no = other.assume(arena, condition.negated());
@@ -124,8 +127,8 @@ impl Region {
                         return self.give_up();
                     }
                     // The way on which the run continues is often the one on which a claim fails.
-                    pending.extend(yes.then_some((fork.yes, enclosures)));
-                    pending.extend(no.then_some((fork.no, other)));
+                    pending.extend(yes.then_some((fork.yes, enclosures, last)));
+                    pending.extend(no.then_some((fork.no, other, last)));
                 }
             }
         }
@@ -138,10 +141,17 @@ impl Region {
         self.finding.bounds.iter_mut().for_each(|bounds| *bounds = Interval::ALL);
     }
 
-    fn leaf<L: Library>(&mut self, tree: &Tree<L>, leaf: &Leaf, enclosures: &mut Enclosures) {
+    fn leaf<L: Library>(
+        &mut self,
+        tree: &Tree<L>,
+        leaf: &Leaf,
+        enclosures: &mut Enclosures,
+        last: Option<Condition>,
+    ) {
         if leaf.end == End::Excluded {
             return;
         }
+        let fails = self.fails;
         self.finding.is_included = true;
         self.finding.has_end |= leaf.end == End::Program;
         let arena = tree.nodes.arena();
@@ -168,6 +178,10 @@ impl Region {
                     None => self.finding.proved &= !bit,
                 },
             }
+        }
+        if self.fails & !fails != 0 || self.fails != 0 && self.failing.is_empty() {
+            // Whether this way is taken at all decides.
+            self.failing.extend(last);
         }
         self.bounds(leaf, arena, enclosures);
     }
@@ -245,7 +259,8 @@ fn decide(
 
 /// Divides a box where it decides most; empty if every input has one value.
 pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<Domain> {
-    for condition in finding.undecided.iter().take(8) {
+    let first = finding.undecided.get(turn(domain, finding.undecided.len()));
+    for condition in first.into_iter().chain(finding.undecided.iter().take(8)) {
         let parts =
             cut_at_limit(arena, domain, *condition).or_else(|| cut_at_turn(arena, domain, *condition));
         if let Some(parts) = parts {
@@ -257,7 +272,7 @@ pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<D
             return parts;
         }
     }
-    let input = finding.undecided.first().and_then(|condition| best_input(arena, domain, *condition));
+    let input = first.and_then(|condition| best_input(arena, domain, *condition));
     let widest = || {
         let ranges = domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
         let width = |range: &Interval| range.width() / (range.magnitude() + f64::MIN_POSITIVE);
@@ -265,6 +280,16 @@ pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<D
     };
     let Some(input) = input.or_else(widest) else { return Vec::new() };
     domain.split(input).map_or_else(Vec::new, Vec::from)
+}
+
+/// Returns which of several conditions decides where a box is divided: mostly the first, now and then another, since some
+/// are never decided and need not be.
+fn turn(domain: &Domain, count: usize) -> usize {
+    let widths = domain.ranges().iter().map(|range| range.width()).filter(|width| *width > 0.0);
+    // Every division changes the number of halvings.
+    let halvings: f64 = widths.map(|width| -libm::log2(width)).sum();
+    let step = halvings.round().rem_euclid(3000.0) as usize;
+    if count > 1 && step % 3 == 2 { 1 + step / 3 % (count - 1).min(5) } else { 0 }
 }
 
 /// Cuts a box exactly where a condition compares an input with a number.
