@@ -155,6 +155,7 @@ impl SymbolicRun {
         library: &mut impl Library,
     ) -> Advance {
         let mut oracle = Oracle::new(terms, answers);
+        let blocks = self.control.executor.log.blocks;
         let result = self.execute(&mut oracle, library);
         let used = answers.len() - oracle.unused();
         match result {
@@ -162,6 +163,8 @@ impl SymbolicRun {
             Ok(Some(outcome)) => Advance::End(outcome, used),
             Err(Halt::Fork(test)) => Advance::Fork(test),
             Err(Halt::Alarm(alarm)) => {
+                // A block that raises an alarm counts as begun.
+                self.control.executor.log.blocks = blocks + 1;
                 let backtrace = self.control.executor.flow.backtrace();
                 let stop = AlarmStop { alarm: alarm.node, span: alarm.span, backtrace };
                 Advance::End(Outcome::Alarm(stop), used)
