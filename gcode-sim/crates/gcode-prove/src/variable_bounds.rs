@@ -83,7 +83,7 @@ pub(crate) fn bound<L: Library>(
     let mut search =
         BoundSearch { tree, points: Points::default(), index, side, watch, values: None, unfollowed: None };
     for point in 1..=POINTS {
-        if watch.is_over() || watch.part() > 0.1 {
+        if watch.is_over() {
             break;
         }
         search.value_at(&spread_point(domain, point));
