@@ -227,3 +227,74 @@ proptest! {
         }
     }
 }
+
+/// Operations about which the proofs by structure know something.
+fn build_plain(steps: &[(usize, usize, usize)]) -> (Arena, Vec<NodeId>) {
+    let mut arena = Arena::default();
+    let mut nodes: Vec<_> = (0..3).map(|input| arena.input(input)).collect();
+    nodes.extend([Arena::ZERO, Arena::ONE, Arena::MINUS_ONE]);
+    let two = arena.constant(2.0);
+    for &(operation, a, b) in steps {
+        let (a, b) = (nodes[a % nodes.len()], nodes[b % nodes.len()]);
+        let functions = [Unary::Neg, Unary::Abs, Unary::Sqrt, Unary::Fix, Unary::Fup, Unary::Round];
+        let node = match operation {
+            0..=5 => arena.unary(functions[operation], a),
+            6 => arena.binary(Binary::Mul, a, a),
+            7 => {
+                let magnitude = arena.unary(Unary::Abs, a);
+                let sum = arena.binary(Binary::Add, a, magnitude);
+                arena.binary(Binary::Div, sum, two)
+            }
+            _ => arena.binary([Binary::Add, Binary::Sub, Binary::Mul, Binary::Div][operation % 4], a, b),
+        };
+        nodes.push(node);
+    }
+    (arena, nodes)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12 * ProptestConfig::default().cases, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_proof_by_structure_holds_at_every_point(
+        steps in prop::collection::vec((0_usize..16, 0_usize..60, 0_usize..60), 2..9),
+        places in prop::collection::vec(prop::collection::vec((-6_i32..7, -1_i32..2), 3), 24),
+        conditions in prop::collection::vec((0_usize..60, 0_usize..60), 1..4),
+        is_positive in any::<[bool; 3]>(),
+    ) {
+        let (arena, nodes) = build_plain(&steps);
+        let ranges = is_positive.map(|positive| Interval::new(if positive { 0.0 } else { -3.1 }, 3.1));
+        // Halves and the doubles beside them: equal values, and ones that differ by a rounding.
+        let mut points: Vec<Vec<f64>> = places.iter().map(|place| {
+            let value = |(range, &(halves, beside)): (&Interval, &(i32, i32))| {
+                let value = f64::from(halves) / 2.0;
+                let value = match beside { 0 => value, 1 => value.next_up(), _ => value.next_down() };
+                value.clamp(range.lo(), range.hi())
+            };
+            ranges.iter().zip(place).map(value).collect()
+        }).collect();
+        let mut enclosures = Enclosures::with_degree(Domain::new(ranges.to_vec()), 0);
+        for &(left, right) in &conditions {
+            let (left, right) = (nodes[left % nodes.len()], nodes[right % nodes.len()]);
+            // A condition that the first point keeps.
+            let Some(relation) = RELATIONS.into_iter().rev().find(|relation| {
+                arena.holds(Condition::new(*relation, left, right), &points[0]) == Ok(true)
+            }) else { continue };
+            let condition = Condition::new(relation, left, right);
+            points.retain(|point| arena.holds(condition, point) == Ok(true));
+            prop_assert!(enclosures.assume(&arena, condition));
+        }
+        for &left in &nodes {
+            for &right in &nodes {
+                for relation in [Relation::Ge, Relation::Gt, Relation::Eq] {
+                    let condition = Condition::new(relation, left, right);
+                    let Some(decided) = enclosures.decide(&arena, condition) else { continue };
+                    for point in &points {
+                        let holds = arena.holds(condition, point);
+                        prop_assert!(holds.is_err() || holds == Ok(decided), "{condition:?} at {point:?}");
+                    }
+                }
+            }
+        }
+    }
+}
