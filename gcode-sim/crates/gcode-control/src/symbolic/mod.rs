@@ -28,7 +28,7 @@ use super::loop_detection::LoopDetector;
 use super::outcome::{AlarmStop, Limits, Outcome, RunEnd};
 use super::variables::{Value, VariableClass};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::{Bytecode, Library, Memory, OpBody, OpKind, Statement};
+use gcode_lang::program::{Bytecode, Library, Memory, OpBody, OpKind, Operation, Statement};
 
 /// Run whose variables are terms.
 #[derive(Debug)]
@@ -256,7 +256,12 @@ pub fn compile_condition(text: &str) -> Result<Bytecode, Alarm> {
     let refused = || Alarm::MacroFormat { what: format!("[{text}] is no condition") };
     let id = memory.find(1).ok_or_else(refused)?;
     match memory.lower_block(id, 0).map(|op| op.kind()) {
-        Some(OpKind::Statement(Statement::IfGoto { condition, .. })) => Ok(condition.clone()),
+        // A value in the place of a condition compares nothing.
+        Some(OpKind::Statement(Statement::IfGoto { condition, .. }))
+            if condition.iter().any(|one| matches!(one.operation, Operation::Compare(..))) =>
+        {
+            Ok(condition.clone())
+        }
         Some(OpKind::Alarm(alarm)) => Err(alarm.node.clone()),
         _ => Err(refused()),
     }
