@@ -5,8 +5,9 @@ use std::collections::BinaryHeap;
 use gcode_enclosure::{Condition, Domain, Enclosures, Interval, Relation};
 use gcode_lang::program::Library;
 
+use crate::division::divide;
 use crate::points::Points;
-use crate::region::{Finding, divide, examine};
+use crate::region::{Finding, examine};
 use crate::search::spread_point;
 use crate::tree::Tree;
 use crate::watch::Watch;

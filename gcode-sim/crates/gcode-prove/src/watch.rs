@@ -25,7 +25,14 @@ impl std::fmt::Debug for Watch<'_> {
 impl<'a> Watch<'a> {
     /// Returns the watch of work that ends when the clock, which counts from its start, reaches a limit.
     pub fn new(clock: &'a (dyn Fn() -> Duration + Sync), limit: Duration) -> Self {
-        Self { clock, limit, stop: AtomicBool::new(false), boxes: AtomicU64::new(0), runs: AtomicU64::new(0) }
+        Self {
+            clock,
+            limit,
+            part: AtomicU64::new(1000),
+            stop: AtomicBool::new(false),
+            boxes: AtomicU64::new(0),
+            runs: AtomicU64::new(0),
+        }
     }
 
     /// Ends the work; what is decided so far stays.
