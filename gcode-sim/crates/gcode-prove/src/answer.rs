@@ -140,7 +140,10 @@ const MAX_CLAIMS: usize = 60;
 pub fn prove<S: Setup>(setup: &S, ask: &Ask, watch: &Watch<'_>) -> Result<Answer, ProveError> {
     let (question, claims) = read(setup, ask)?;
     let mut prover = Prover { setup, watch, threads: ask.threads.get(), question, answer: empty(ask) };
+    // Claims that aren't decided leave time for the bounds.
+    watch.allow(if prover.question.bounds.is_empty() { 1000 } else { 600 });
     prover.prove_claims(&claims)?;
+    watch.allow(1000);
     prover.prove_bounds()?;
     Ok(prover.conclude())
 }

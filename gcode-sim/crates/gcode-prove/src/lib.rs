@@ -37,17 +37,20 @@
 //! ```
 //!
 //! The modules stand in the order in which they use one another: a request is read (`request`), `tree` follows the ways of the
-//! program over `nodes`, `region` examines a box, `points` and `witness` single points; `search` and `worker` are the work of a
+//! program over `nodes`, `region` examines a box and `division` divides it, `points` and `witness` single points; `search` and `worker` are the work of a
 //! thread on the `shared` queue.
 #![warn(missing_docs)]
 
 mod request;
 mod watch;
 
+mod leaf;
 mod nodes;
 mod tree;
 
 mod region;
+
+mod division;
 
 mod points;
 mod witness;

@@ -5,8 +5,9 @@ use gcode_enclosure::{Arena, Node, NodeId};
 use gcode_lang::program::Library;
 use gcode_lang::syntax::ast::BinaryOp;
 
+use crate::leaf::{BoundState, ClaimState, Leaf, NodeFormula};
 use crate::region::ClaimSet;
-use crate::tree::{Asked, BoundState, ClaimState, Leaf, NodeFormula, Step, Tree};
+use crate::tree::{Asked, Step, Tree};
 use crate::watch::Watch;
 
 /// Values of nodes at a point, each computed once.

@@ -1,12 +1,11 @@
 //! One box: every way that its values can take, and what the claims are there.
-use std::collections::BTreeSet;
-
-use gcode_enclosure::{Arena, Condition, Domain, Enclosures, Interval, Node, NodeId, Relation, Unary};
+use gcode_enclosure::{Arena, Condition, Enclosures, Interval, NodeId};
 use gcode_lang::program::Library;
 use gcode_lang::syntax::ast::BinaryOp;
 
+use crate::leaf::{BoundState, ClaimState, End, Leaf, NodeFormula};
 use crate::nodes::is_finite;
-use crate::tree::{Asked, BoundState, ClaimState, End, Leaf, NodeFormula, SegmentId, Step, Tree};
+use crate::tree::{Asked, SegmentId, Step, Tree};
 use crate::watch::Watch;
 
 /// Largest number of ways of a box; with more it is divided.
@@ -81,9 +80,10 @@ struct Region {
 
 impl Region {
     fn walk<L: Library>(&mut self, tree: &mut Tree<L>, enclosures: Enclosures, watch: &Watch) {
-        let mut pending: Vec<(SegmentId, Enclosures)> = vec![(0, enclosures)];
+        // With the last question of the way that isn't decided.
+        let mut pending: Vec<(SegmentId, Enclosures, Option<Condition>)> = vec![(0, enclosures, None)];
         let mut steps = 0;
-        while let Some((id, mut enclosures)) = pending.pop() {
+        while let Some((id, mut enclosures, last)) = pending.pop() {
             steps += 1;
             if steps > MAX_STEPS {
                 return self.give_up();
@@ -92,7 +92,7 @@ impl Region {
                 Step::Fork(fork) => fork,
                 Step::Leaf(leaf) => {
                     self.ways += 1;
-                    self.leaf(tree, &leaf, &mut enclosures);
+                    self.leaf(tree, &leaf, &mut enclosures, last);
                     if self.ways > MAX_WAYS && !pending.is_empty() {
                         return self.give_up();
                     }
@@ -109,13 +109,15 @@ impl Region {
                 Asked::Finite(node) => is_finite(arena, &mut enclosures, node),
             };
             match answer {
-                Some(true) => pending.push((fork.yes, enclosures)),
-                Some(false) => pending.push((fork.no, enclosures)),
+                Some(true) => pending.push((fork.yes, enclosures, last)),
+                Some(false) => pending.push((fork.no, enclosures, last)),
                 None => {
                     self.forks += 1;
                     let mut other = enclosures.clone();
                     let (mut yes, mut no) = (true, true);
+                    let mut last = last;
                     if let Asked::Condition(condition) = fork.asked {
+                        last = Some(condition);
                         self.finding.undecided.push(condition);
                         yes = enclosures.assume(arena, condition);
                         no = other.assume(arena, condition.negated());
@@ -124,8 +126,8 @@ impl Region {
                         return self.give_up();
                     }
                     // The way on which the run continues is often the one on which a claim fails.
-                    pending.extend(yes.then_some((fork.yes, enclosures)));
-                    pending.extend(no.then_some((fork.no, other)));
+                    pending.extend(yes.then_some((fork.yes, enclosures, last)));
+                    pending.extend(no.then_some((fork.no, other, last)));
                 }
             }
         }
@@ -138,10 +140,17 @@ impl Region {
         self.finding.bounds.iter_mut().for_each(|bounds| *bounds = Interval::ALL);
     }
 
-    fn leaf<L: Library>(&mut self, tree: &Tree<L>, leaf: &Leaf, enclosures: &mut Enclosures) {
+    fn leaf<L: Library>(
+        &mut self,
+        tree: &Tree<L>,
+        leaf: &Leaf,
+        enclosures: &mut Enclosures,
+        last: Option<Condition>,
+    ) {
         if leaf.end == End::Excluded {
             return;
         }
+        let fails = self.fails;
         self.finding.is_included = true;
         self.finding.has_end |= leaf.end == End::Program;
         let arena = tree.nodes.arena();
@@ -168,6 +177,10 @@ impl Region {
                     None => self.finding.proved &= !bit,
                 },
             }
+        }
+        if self.fails & !fails != 0 || self.fails != 0 && self.failing.is_empty() {
+            // Whether this way is taken at all decides.
+            self.failing.extend(last);
         }
         self.bounds(leaf, arena, enclosures);
     }
@@ -241,153 +254,4 @@ fn decide(
             }
         }
     }
-}
-
-/// Divides a box where it decides most; empty if every input has one value.
-pub(crate) fn divide(arena: &Arena, domain: &Domain, finding: &Finding) -> Vec<Domain> {
-    for condition in finding.undecided.iter().take(8) {
-        let parts =
-            cut_at_limit(arena, domain, *condition).or_else(|| cut_at_turn(arena, domain, *condition));
-        if let Some(parts) = parts {
-            return parts;
-        }
-    }
-    for condition in finding.undecided.iter().take(2) {
-        if let Some(parts) = cut_at_step(arena, domain, *condition) {
-            return parts;
-        }
-    }
-    let input = finding.undecided.first().and_then(|condition| best_input(arena, domain, *condition));
-    let widest = || {
-        let ranges = domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
-        let width = |range: &Interval| range.width() / (range.magnitude() + f64::MIN_POSITIVE);
-        ranges.max_by(|a, b| width(a.1).total_cmp(&width(b.1))).map(|(input, _)| input)
-    };
-    let Some(input) = input.or_else(widest) else { return Vec::new() };
-    domain.split(input).map_or_else(Vec::new, Vec::from)
-}
-
-/// Cuts a box exactly where a condition compares an input with a number.
-fn cut_at_limit(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
-    let input_of = |node: NodeId| match arena.node(node) {
-        Node::Input(input) => Some(input),
-        _ => None,
-    };
-    let (input, limit, relation) = match (input_of(condition.left), arena.as_constant(condition.right)) {
-        (Some(input), Some(limit)) => (input, limit, condition.relation),
-        _ => {
-            let input = input_of(condition.right)?;
-            (input, arena.as_constant(condition.left)?, condition.relation.swapped())
-        }
-    };
-    let range = domain.range(input);
-    let (below, above) = (limit.next_down(), limit.next_up());
-    let parts = match relation {
-        Relation::Lt | Relation::Ge => vec![(range.lo(), below), (limit, range.hi())],
-        Relation::Le | Relation::Gt => vec![(range.lo(), limit), (above, range.hi())],
-        Relation::Eq | Relation::Ne => vec![(range.lo(), below), (limit, limit), (above, range.hi())],
-    };
-    let parts = parts.into_iter().filter(|(lo, hi)| lo <= hi && *lo >= range.lo() && *hi <= range.hi());
-    let parts: Vec<_> = parts.map(|(lo, hi)| domain.with(input, Interval::new(lo, hi))).collect();
-    (parts.len() > 1).then_some(parts)
-}
-
-/// Cuts a box exactly where a condition of one input turns, if it has different answers at both ends.
-fn cut_at_turn(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
-    let input = only_input(arena, domain, &[condition.left, condition.right])?;
-    let at_low = holds_at(arena, domain, input, domain.range(input).lo(), condition)?;
-    cut_where(domain, input, |value| {
-        holds_at(arena, domain, input, value, condition).map(|holds| holds == at_low)
-    })
-}
-
-fn holds_at(arena: &Arena, domain: &Domain, input: usize, value: f64, condition: Condition) -> Option<bool> {
-    let mut point = domain.midpoint();
-    point[input] = value;
-    arena.holds(condition, &point).ok()
-}
-
-/// Cuts a box exactly where a whole number on which a condition depends has its only step.
-fn cut_at_step(arena: &Arena, domain: &Domain, condition: Condition) -> Option<Vec<Domain>> {
-    let is_step =
-        |node: &NodeId| matches!(arena.node(*node), Node::Unary(Unary::Round | Unary::Fix | Unary::Fup, _));
-    let steps = cone(arena, &[condition.left, condition.right]).into_iter().filter(is_step);
-    steps.take(16).find_map(|node| {
-        let input = only_input(arena, domain, &[node])?;
-        let mut point = domain.midpoint();
-        let mut value_at = |value: f64| {
-            point[input] = value;
-            arena.evaluate(node, &point).ok()
-        };
-        let (low, high) = (value_at(domain.range(input).lo())?, value_at(domain.range(input).hi())?);
-        if (high - low).abs() != 1.0 {
-            return None;
-        }
-        cut_where(domain, input, |value| Some(value_at(value)? == low))
-    })
-}
-
-/// Cuts a box between the last double of an input that is as the first, and the next one.
-fn cut_where(
-    domain: &Domain,
-    input: usize,
-    mut is_as_first: impl FnMut(f64) -> Option<bool>,
-) -> Option<Vec<Domain>> {
-    let range = domain.range(input);
-    let (mut low, mut high) = (range.lo(), range.hi());
-    if is_as_first(high)? {
-        return None;
-    }
-    while low.next_up() < high {
-        let middle = low / 2.0 + high / 2.0;
-        let middle = if low < middle && middle < high { middle } else { low.next_up() };
-        if is_as_first(middle)? { low = middle } else { high = middle }
-    }
-    Some(vec![
-        domain.with(input, Interval::new(range.lo(), low)),
-        domain.with(input, Interval::new(high, range.hi())),
-    ])
-}
-
-/// Returns the only input with a range on which nodes depend.
-fn only_input(arena: &Arena, domain: &Domain, nodes: &[NodeId]) -> Option<usize> {
-    let input_of = |node: NodeId| match arena.node(node) {
-        Node::Input(input) if domain.range(input).lo() < domain.range(input).hi() => Some(input),
-        _ => None,
-    };
-    let mut inputs = cone(arena, nodes).into_iter().filter_map(input_of);
-    let first = inputs.next()?;
-    inputs.all(|input| input == first).then_some(first)
-}
-
-/// Returns nodes and everything of which they are computed.
-fn cone(arena: &Arena, nodes: &[NodeId]) -> BTreeSet<NodeId> {
-    let mut seen = BTreeSet::new();
-    let mut pending = nodes.to_vec();
-    while let Some(node) = pending.pop() {
-        if seen.insert(node) {
-            match arena.node(node) {
-                Node::Input(_) | Node::Constant(_) => {}
-                Node::Unary(_, x) => pending.push(x),
-                Node::Binary(_, a, b) => pending.extend([a, b]),
-            }
-        }
-    }
-    seen
-}
-
-/// Returns the input that, known to be at its middle, leaves least of a condition's margin.
-fn best_input(arena: &Arena, domain: &Domain, condition: Condition) -> Option<usize> {
-    let margin = |domain: Domain| {
-        let mut enclosures = Enclosures::with_degree(domain, 0);
-        let (left, right) =
-            (enclosures.enclose(arena, condition.left), enclosures.enclose(arena, condition.right));
-        left.width() + right.width()
-    };
-    let all = margin(domain.clone());
-    let ranges = domain.ranges().iter().enumerate().filter(|(_, range)| range.lo() < range.hi());
-    let rated = ranges
-        .map(|(input, range)| (all - margin(domain.with(input, Interval::point(range.midpoint()))), input));
-    let best = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 > 0.0).then_some(best.1)
 }

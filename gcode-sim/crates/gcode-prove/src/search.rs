@@ -5,10 +5,11 @@ use std::sync::Arc;
 use gcode_enclosure::Domain;
 use gcode_lang::program::Library;
 
+use crate::leaf::{ClaimState, End};
 use crate::points::Points;
 use crate::region::ClaimSet;
 use crate::shared::Shared;
-use crate::tree::{ClaimState, End, Question, Tree};
+use crate::tree::{Question, Tree};
 use crate::watch::Watch;
 use crate::witness::Witness;
 

@@ -1,9 +1,14 @@
 //! Counterexamples in round numbers: the shortest values at which a claim still fails.
+use std::time::Duration;
+
 use gcode_lang::program::Library;
 
 use crate::tree::Question;
 use crate::watch::Watch;
 use crate::witness::Witness;
+
+/// Time for one counterexample: runs that never end take long.
+const LIMIT: Duration = Duration::from_millis(400);
 
 /// Returns a point with shorter numbers at which the control shows that the claim fails too.
 pub(crate) fn simplified<L: Library>(
@@ -13,11 +18,15 @@ pub(crate) fn simplified<L: Library>(
     mut point: Vec<f64>,
     watch: &Watch,
 ) -> Vec<f64> {
+    let end = watch.elapsed() + LIMIT;
     // Each pass can let another variable become rounder.
     for _ in 0..3 {
         let before = point.clone();
         for (input, range) in question.ranges.iter().enumerate() {
             for value in rounder(point[input], range.low, range.high) {
+                if watch.elapsed() > end {
+                    return point;
+                }
                 let mut next = point.clone();
                 next[input] = value;
                 watch.count_run();

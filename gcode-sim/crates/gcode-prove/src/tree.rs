@@ -4,12 +4,13 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
+use gcode_control::Control;
 use gcode_control::symbolic::{Advance, Formula, Halt, Snapshot, SymbolicRun, Term, Test};
-use gcode_control::{Control, Outcome};
 use gcode_enclosure::{Condition, Domain, NodeId};
 use gcode_lang::program::{Bytecode, Library};
 use gcode_lang::syntax::ast::BinaryOp;
 
+use crate::leaf::{BoundState, ClaimState, End, Leaf, NodeFormula, state_at};
 use crate::nodes::{Nodes, semantics};
 use crate::request::{Claim, Range};
 use crate::watch::Watch;
@@ -126,66 +127,6 @@ pub(crate) struct Fork {
 pub(crate) enum Asked {
     Condition(Condition),
     Finite(NodeId),
-}
-
-/// End of a way.
-#[derive(Clone, Debug)]
-pub(crate) struct Leaf {
-    pub(crate) end: End,
-    pub(crate) blocks: u64,
-    /// States of the claims, in their order.
-    pub(crate) claims: Vec<ClaimState>,
-    pub(crate) bounds: Vec<BoundState>,
-}
-
-/// How a run ends.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum End {
-    /// The conditions exclude the values of this way.
-    Excluded,
-    /// M02, M30 or M99.
-    Program,
-    Alarm(String),
-    Limit,
-    /// Something isn't followed.
-    Unfollowed(String),
-}
-
-impl End {
-    /// Returns the end of a run.
-    pub(crate) fn of(outcome: &Outcome) -> Self {
-        match outcome {
-            Outcome::End => Self::Program,
-            Outcome::Alarm(stop) => Self::Alarm(stop.alarm.code().to_string()),
-            Outcome::Limit => Self::Limit,
-        }
-    }
-}
-
-/// State of a claim at the end of a way.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum ClaimState {
-    Holds,
-    Fails,
-    Depends(NodeFormula),
-    Unfollowed(String),
-}
-
-/// Condition over nodes.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum NodeFormula {
-    Known(bool),
-    Condition(Condition),
-    Logic(BinaryOp, Box<Self>, Box<Self>),
-}
-
-/// State of a variable at the end of a way.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum BoundState {
-    /// Vacant, or the run doesn't end.
-    None,
-    Node(NodeId),
-    Unfollowed(String),
 }
 
 /// Part of a tree that a caller follows.
@@ -488,23 +429,4 @@ enum Progress {
     Ended(Leaf),
     Asked(Test),
     Stopped,
-}
-
-/// Returns the state of a claim that the end of a run decides.
-pub(crate) fn state_at(claim: &Claim, end: &End, blocks: u64) -> ClaimState {
-    let holds = match (claim, end) {
-        (_, End::Excluded) => true,
-        (Claim::Blocks(limit), End::Unfollowed(_) | End::Limit) if blocks > *limit => false,
-        (_, End::Unfollowed(what)) => return ClaimState::Unfollowed(what.clone()),
-        (Claim::Condition(_), End::Program) => return ClaimState::Unfollowed("a condition".to_owned()),
-        (Claim::Condition(_), End::Alarm(_) | End::Limit) => true,
-        (Claim::NoAlarm, end) => !matches!(end, End::Alarm(_)),
-        (Claim::OnlyAlarms(codes), End::Alarm(code)) => codes.contains(code),
-        (Claim::OnlyAlarms(_), End::Program | End::Limit) => true,
-        (Claim::Blocks(_), End::Limit) => false,
-        (Claim::Blocks(limit), End::Program | End::Alarm(_)) => blocks <= *limit,
-        (Claim::Travel(_), End::Alarm(code)) => !code.starts_with("OT"),
-        (Claim::Travel(_), End::Program | End::Limit) => true,
-    };
-    if holds { ClaimState::Holds } else { ClaimState::Fails }
 }

@@ -5,8 +5,9 @@ use std::collections::BinaryHeap;
 use gcode_enclosure::{Condition, Domain, Enclosures, Interval, Relation};
 use gcode_lang::program::Library;
 
+use crate::division::divide;
 use crate::points::Points;
-use crate::region::{Finding, divide, examine};
+use crate::region::{Finding, examine};
 use crate::search::spread_point;
 use crate::tree::Tree;
 use crate::watch::Watch;
@@ -83,7 +84,7 @@ pub(crate) fn bound<L: Library>(
     let mut search =
         BoundSearch { tree, points: Points::default(), index, side, watch, values: None, unfollowed: None };
     for point in 1..=POINTS {
-        if watch.is_over() || watch.part() > 0.1 {
+        if watch.is_over() {
             break;
         }
         search.value_at(&spread_point(domain, point));

@@ -6,6 +6,8 @@ use std::time::Duration;
 pub struct Watch<'a> {
     clock: &'a (dyn Fn() -> Duration + Sync),
     limit: Duration,
+    /// Part of the limit at which the present work ends, in thousandths.
+    part: AtomicU64,
     stop: AtomicBool,
     boxes: AtomicU64,
     runs: AtomicU64,
@@ -23,7 +25,14 @@ impl std::fmt::Debug for Watch<'_> {
 impl<'a> Watch<'a> {
     /// Returns the watch of work that ends when the clock, which counts from its start, reaches a limit.
     pub fn new(clock: &'a (dyn Fn() -> Duration + Sync), limit: Duration) -> Self {
-        Self { clock, limit, stop: AtomicBool::new(false), boxes: AtomicU64::new(0), runs: AtomicU64::new(0) }
+        Self {
+            clock,
+            limit,
+            part: AtomicU64::new(1000),
+            stop: AtomicBool::new(false),
+            boxes: AtomicU64::new(0),
+            runs: AtomicU64::new(0),
+        }
     }
 
     /// Ends the work; what is decided so far stays.
@@ -48,7 +57,12 @@ impl<'a> Watch<'a> {
 
     /// Returns true if the work is to end.
     pub(crate) fn is_over(&self) -> bool {
-        self.stop.load(Ordering::Relaxed) || self.elapsed() >= self.limit
+        self.stop.load(Ordering::Relaxed) || self.part() * 1000.0 >= self.part.load(Ordering::Relaxed) as f64
+    }
+
+    /// Lets the present work end after this part of the time, in thousandths.
+    pub(crate) fn allow(&self, thousandths: u64) {
+        self.part.store(thousandths, Ordering::Relaxed);
     }
 
     /// Returns the part of the time that has passed.

@@ -5,9 +5,10 @@ use gcode_control::symbolic::{Formula, Snapshot, SymbolicRun, Term, TermOperatio
 use gcode_control::{Control, Limits};
 use gcode_lang::program::Library;
 
+use crate::leaf::{ClaimState, End, state_at};
 use crate::region::ClaimSet;
 use crate::request::Claim;
-use crate::tree::{ClaimState, End, Question, state_at};
+use crate::tree::Question;
 
 /// Control that runs single points, each as from power-on.
 #[derive(Debug)]

@@ -2,10 +2,11 @@
 use gcode_enclosure::{Domain, Enclosures, Interval};
 use gcode_lang::program::Library;
 
-use crate::region::{ClaimSet, Finding, divide, examine};
+use crate::division::divide;
+use crate::leaf::End;
+use crate::region::{ClaimSet, Finding, examine};
 use crate::search::Prober;
 use crate::shared::Pending;
-use crate::tree::End;
 
 /// Boxes with at most this many doubles are run double by double.
 const MAX_DOUBLES: u64 = 48;

@@ -28,7 +28,7 @@ use super::loop_detection::LoopDetector;
 use super::outcome::{AlarmStop, Limits, Outcome, RunEnd};
 use super::variables::{Value, VariableClass};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::{Bytecode, Library, Memory, OpBody, OpKind, Statement};
+use gcode_lang::program::{Bytecode, Library, Memory, OpBody, OpKind, Operation, Statement};
 
 /// Run whose variables are terms.
 #[derive(Debug)]
@@ -155,6 +155,7 @@ impl SymbolicRun {
         library: &mut impl Library,
     ) -> Advance {
         let mut oracle = Oracle::new(terms, answers);
+        let blocks = self.control.executor.log.blocks;
         let result = self.execute(&mut oracle, library);
         let used = answers.len() - oracle.unused();
         match result {
@@ -162,6 +163,8 @@ impl SymbolicRun {
             Ok(Some(outcome)) => Advance::End(outcome, used),
             Err(Halt::Fork(test)) => Advance::Fork(test),
             Err(Halt::Alarm(alarm)) => {
+                // A block that raises an alarm counts as begun.
+                self.control.executor.log.blocks = blocks + 1;
                 let backtrace = self.control.executor.flow.backtrace();
                 let stop = AlarmStop { alarm: alarm.node, span: alarm.span, backtrace };
                 Advance::End(Outcome::Alarm(stop), used)
@@ -253,7 +256,12 @@ pub fn compile_condition(text: &str) -> Result<Bytecode, Alarm> {
     let refused = || Alarm::MacroFormat { what: format!("[{text}] is no condition") };
     let id = memory.find(1).ok_or_else(refused)?;
     match memory.lower_block(id, 0).map(|op| op.kind()) {
-        Some(OpKind::Statement(Statement::IfGoto { condition, .. })) => Ok(condition.clone()),
+        // A value in the place of a condition compares nothing.
+        Some(OpKind::Statement(Statement::IfGoto { condition, .. }))
+            if condition.iter().any(|one| matches!(one.operation, Operation::Compare(..))) =>
+        {
+            Ok(condition.clone())
+        }
         Some(OpKind::Alarm(alarm)) => Err(alarm.node.clone()),
         _ => Err(refused()),
     }

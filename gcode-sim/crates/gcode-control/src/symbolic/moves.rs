@@ -176,6 +176,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 )));
             }
         }
+        let has_limits = self.registers.data.settings.stroke_limits.is_some();
         let state = &self.plan.state;
         let is_arc = !matches!(state.modal.motion, Motion::Rapid | Motion::Linear);
         let refused = [
@@ -187,7 +188,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 self.plan.uses_lookahead || !self.registers.lookahead.is_idle(),
                 "a move that waits for the next",
             ),
-            (self.plan.skip_plan.is_some() && self.moves_terms(), "a skip"),
+            (self.plan.skip_plan.is_some() && (self.moves_terms() || has_limits), "a skip"),
             (names_axis && state.modal.polar == Polar::On, "polar coordinates"),
             (names_axis && state.controls_tip(), "tool centre point control"),
             (names_axis && !state.transform.is_identity(), "mirrored, scaled or rotated coordinates"),
@@ -400,16 +401,12 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             return Ok(());
         }
         let depends = self.terms.feed.is_some() || state.modal_words.f.is_nan();
-        match state.modal.feed_mode {
-            FeedMode::PerMinute if !depends => return Ok(()),
-            FeedMode::PerMinute => {}
-            FeedMode::InverseTime if !depends => return Ok(()),
-            FeedMode::PerRevolution if !depends && !self.terms.has_speed && !state.modal_words.s.is_nan() => {
-                return Ok(());
-            }
-            FeedMode::InverseTime | FeedMode::PerRevolution => {
-                return Err(Halt::unfollowed("a feed in G93 or G95"));
-            }
+        let is_per_revolution = state.modal.feed_mode == FeedMode::PerRevolution;
+        if is_per_revolution && (depends || self.terms.has_speed || state.modal_words.s.is_nan()) {
+            return Err(Halt::unfollowed("a feed in G95"));
+        }
+        if !depends {
+            return Ok(());
         }
         let feed = self.terms.feed.or(Term::of(state.modal_words.f));
         let feed = feed.ok_or_else(|| Halt::unfollowed("the feed"))?;
