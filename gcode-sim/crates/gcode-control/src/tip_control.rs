@@ -11,7 +11,7 @@ use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Kinematics;
 use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
 use gcode_lang::program::g_codes::name;
-use gcode_lang::program::modes::{CutterSide, DynamicOffset, Length, Motion};
+use gcode_lang::program::modes::{CutterSide, DynamicOffset, Length, Motion, Plane};
 use gcode_lang::units::MmPerMin;
 
 /// Part and tool with the rotary axes at fixed angles, as G53.1 or tool centre point control sets them.
@@ -163,8 +163,8 @@ impl Planner<'_> {
         let code = name(state.modal.length.code());
         let with = if !state.transform.is_identity() {
             "with G51, G51.1, G68 or G68.2"
-        } else if state.modal.cutter != CutterSide::Off || self.words.corner.is_some() {
-            "with cutter compensation or a corner word"
+        } else if self.is_compensating_tip(state) && !self.compensates_across_tool(state) {
+            "with cutter compensation or a corner word outside G17, beside a rotary axis, or in a plane that is not square to the tool and to the machine's Z"
         } else if state.modal.cycle.is_some() && !self.drills_along_tool(state) {
             "with a canned cycle that does not drill along the tool, or with a rotary axis in its block"
         } else if state.modal.motion == Motion::Thread {
@@ -173,6 +173,24 @@ impl Planner<'_> {
             return Ok(());
         };
         Err(self.not_simulated(format!("{code} (tool centre point control) {with}")))
+    }
+
+    /// Returns true if compensation or a corner word concerns the block.
+    fn is_compensating_tip(&self, state: &State) -> bool {
+        state.modal.cutter != CutterSide::Off
+            || self.words.corner.is_some()
+            || self.registers.lookahead.is_offset()
+    }
+
+    /// Returns true if the block's path lies in a plane of X and Y of the machine that is square to the tool.
+    fn compensates_across_tool(&self, state: &State) -> bool {
+        let part = self.data.aligned(state, &state.machine_position);
+        let normal = part.map_or([0.0, 0.0, 1.0], |aligned| aligned.frame.rotation.apply([0.0, 0.0, 1.0]));
+        let points_tool = state.modal.length == Length::TipByVector && self.words.has_any(b"IJK");
+        state.modal.plane == Plane::Xy
+            && normal[2] > 1.0 - 1e-12
+            && self.drills_along_tool(state)
+            && !(points_tool && state.modal.motion == Motion::Linear)
     }
 
     /// Returns true if the block turns no rotary axis, and Z of the program is along the tool.
@@ -240,6 +258,20 @@ impl Planner<'_> {
             return Ok(());
         }
         let is_rotary = |axis: AxisIndex| self.data.settings.axes.is_rotary(axis);
+        if self.is_compensating_tip(&plan.state) {
+            // Nothing turns: lines and arcs stay such.
+            let Some((PlanarArc { plane, centre, sweep }, radius)) = arc else {
+                match plan.state.modal.motion {
+                    Motion::Rapid => self.push_rapid(plan, &to),
+                    _ => self.locate(self.push_feed(plan, &to))?,
+                }
+                return Ok(());
+            };
+            (start[plane.0], start[plane.1]) = centre;
+            let middle = self.data.to_machine_unrounded(&plan.state, &start);
+            let arc = PlanarArc { plane, centre: (middle[plane.0], middle[plane.1]), sweep };
+            return self.push_arc(plan, to, arc, radius);
+        }
         let squared = |axes: &dyn Fn(AxisIndex) -> bool| -> f64 {
             let travel = |axis: AxisIndex| {
                 if is_rotary(axis) { to[axis] - from[axis] } else { end[axis] - start[axis] }
