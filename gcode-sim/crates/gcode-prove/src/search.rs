@@ -7,7 +7,6 @@ use gcode_lang::program::Library;
 
 use crate::leaf::{ClaimState, End};
 use crate::points::{PointWay, Points};
-use crate::region::ClaimSet;
 use crate::shared::Shared;
 use crate::tree::{Question, Tree};
 use crate::watch::Watch;
