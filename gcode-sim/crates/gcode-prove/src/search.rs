@@ -6,8 +6,7 @@ use gcode_enclosure::Domain;
 use gcode_lang::program::Library;
 
 use crate::leaf::{ClaimState, End};
-use crate::points::Points;
-use crate::region::ClaimSet;
+use crate::points::{PointWay, Points};
 use crate::shared::Shared;
 use crate::tree::{Question, Tree};
 use crate::watch::Watch;
@@ -65,13 +64,21 @@ impl<'s, L: Library> Prober<'s, L> {
             return;
         }
         self.compared += u32::from(is_compared);
-        self.confirm(point, way.failed, way.unfollowed);
+        self.confirm(point, &way);
     }
 
     /// Runs a point by the control. Where it disagrees with the tree, nothing is proved.
-    pub(crate) fn confirm(&mut self, point: &[f64], failed: ClaimSet, unfollowed: ClaimSet) {
+    fn confirm(&mut self, point: &[f64], way: &PointWay) {
         let result = self.witness.run(point);
-        if result.end.is_some() && (result.failed ^ failed) & !unfollowed != 0 {
+        let leaf = &way.leaf;
+        let is_same = match (&result.end, &leaf.end) {
+            (_, End::Unfollowed(_)) | (None, End::Excluded) => true,
+            // A loop that never ends is found after some turns.
+            (Some(End::Limit), End::Limit) => true,
+            (Some(end), followed) => end == followed && result.blocks == leaf.blocks,
+            (None, _) => false,
+        };
+        if !is_same || result.end.is_some() && (result.failed ^ way.failed) & !way.unfollowed != 0 {
             self.shared.disagree(point);
         }
         self.shared.refute(result.failed, point);
@@ -223,7 +230,7 @@ impl<'s, L: Library> Prober<'s, L> {
         let Some(way) = way else { return f64::INFINITY };
         let open = self.shared.open_claims();
         if (way.failed | way.unfollowed) & open != 0 {
-            self.confirm(point, way.failed, way.unfollowed);
+            self.confirm(point, &way);
         }
         if target.is_some() {
             return at_target;

@@ -81,9 +81,9 @@ mod tests {
 
     #[test]
     fn the_shortest_numbers_of_the_range_come_first() {
-        let candidates = rounder(3.141_592_653, 2.5, 9.0);
-        assert_eq!(candidates[0], 3.0, "the nearest of those with one digit");
-        assert!(candidates.contains(&3.14));
+        let candidates = rounder(3.741_592_653, 2.5, 9.0);
+        assert_eq!(candidates[0], 4.0, "the nearest of those with one digit");
+        assert!(candidates.contains(&3.74));
         assert!(candidates.iter().all(|value| (2.5..=9.0).contains(value)));
         assert!(rounder(0.0, -1.0, 1.0).is_empty());
     }

@@ -57,6 +57,8 @@ impl SymbolicRun {
     /// Returns the run of a control that has not begun.
     pub fn new(mut control: Control) -> Self {
         control.executor.state_start(&mut ());
+        // Only the control's own run counts moves.
+        control.executor.log.max_moves = u64::MAX;
         Self { control }
     }
 

@@ -26,7 +26,10 @@ impl Terms for Recorded {
 fn control(text: &str) -> Control {
     let mut memory = Memory::default();
     memory.load("O1.nc", format!("O1\n{text}").into_bytes());
-    Control::new(memory, Settings::default())
+    let mut settings = Settings::default();
+    // B, the fifth axis, rolls over.
+    settings.rolls_over[4] = true;
+    Control::new(memory, settings)
 }
 
 /// Executes blocks with these answers until the run ends, forks or isn't followed.
