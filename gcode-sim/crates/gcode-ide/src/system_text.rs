@@ -38,6 +38,17 @@ const fn row(from: u32, to: u32, text: &'static str, counts: Count) -> SystemRow
 
 const STANDARD: &[&str] = &["external offset", "G54", "G55", "G56", "G57", "G58", "G59"];
 
+const FIXTURES: &[&str] = &[
+    "dynamic offset G54.2 P1",
+    "dynamic offset G54.2 P2",
+    "dynamic offset G54.2 P3",
+    "dynamic offset G54.2 P4",
+    "dynamic offset G54.2 P5",
+    "dynamic offset G54.2 P6",
+    "dynamic offset G54.2 P7",
+    "dynamic offset G54.2 P8",
+];
+
 /// Ranges of a Fanuc.
 #[rustfmt::skip]
 const FANUC: &[SystemRow] = &[
@@ -79,6 +90,7 @@ const FANUC: &[SystemRow] = &[
     row(5121, 5140, "handwheel shift", Count::Axes),
     row(5181, 5200, "distance to go", Count::Axes),
     row(5201, 5340, "", Count::Systems(STANDARD)),
+    row(5521, 5680, "", Count::Systems(FIXTURES)),
     row(7001, 7960, "", Count::AdditionalSystems),
     row(8000, 8999, "tool management", Count::Nothing),
     row(10_001, 10_999, "wear of the tool length offset H", Count::Offsets),

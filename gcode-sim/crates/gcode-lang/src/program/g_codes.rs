@@ -102,7 +102,7 @@ mod tests {
         assert_eq!(effect(1540, Dialect::HaasNgc), Some(Effect::AdditionalWork));
         assert_eq!(effect(1540, Dialect::Fanuc31i), None);
         assert_eq!(effect(510, Dialect::Fanuc31i), Some(Effect::Scaling(Scaling::On)));
-        assert_eq!(effect(510, Dialect::HaasNgc), Some(Effect::NotSimulated));
+        assert_eq!(effect(510, Dialect::HaasNgc), Some(Effect::Scaling(Scaling::On)));
         assert_eq!(effect(434, Dialect::Fanuc0iF), None);
     }
 }
