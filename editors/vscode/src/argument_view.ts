@@ -5,17 +5,22 @@ export interface Argument {
   letter: string;
   value: number;
   range: vscode.Range;
+  // Version of the text that has the range.
+  version: number;
 }
 
 // Returns the numeric arguments of a G65 or G66 block; none if the line has no such code.
 export function argumentsOf(document: vscode.TextDocument, line: number): Argument[] {
-  const text = document.lineAt(line).text.replace(/\([^)]*\)?/g, (comment) => " ".repeat(comment.length));
+  const blanked = (part: string) => " ".repeat(part.length);
+  let text = document.lineAt(line).text.replace(/\([^)]*\)?/g, blanked);
+  // Expressions are no plain numbers: their brackets go from the innermost outwards.
+  while (/\[[^[\]]*\]/.test(text)) text = text.replace(/\[[^[\]]*\]/g, blanked);
   if (!/G\s*6[56]/i.test(text)) return [];
   const words = text.matchAll(/([A-FH-KMQ-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))/gi);
   return [...words].map((word) => {
     const end = word.index + word[0].length;
     const range = new vscode.Range(line, end - word[2].length, line, end);
-    return { letter: word[1].toUpperCase(), value: Number(word[2]), range };
+    return { letter: word[1].toUpperCase(), value: Number(word[2]), range, version: document.version };
   });
 }
 

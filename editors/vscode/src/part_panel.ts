@@ -27,6 +27,7 @@ export class PartPanel implements vscode.Disposable {
     this.registered = vscode.Disposable.from(
       vscode.window.registerWebviewViewProvider("gcode-sim.arguments", this.arguments),
       vscode.workspace.onDidChangeTextDocument(({ document }) => this.follows(document) && this.later()),
+      vscode.workspace.onDidChangeTextDocument(({ document }) => this.renew(document)),
       vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => this.select(textEditor)),
       vscode.window.onDidChangeActiveTextEditor((editor) => editor && this.panel && this.change(editor)),
     );
@@ -59,7 +60,7 @@ export class PartPanel implements vscode.Disposable {
 
   // Returns whether a change of a document may change the drawing: a called program counts.
   private follows(document: vscode.TextDocument): boolean {
-    return this.panel !== undefined && document.languageId === "nc" && this.document !== undefined;
+    return this.panel !== undefined && (document === this.document || this.files.includes(document.uri.fsPath));
   }
 
   private change(editor: vscode.TextEditor): void {
@@ -98,11 +99,19 @@ export class PartPanel implements vscode.Disposable {
     if (!this.panel || editor.document.languageId !== "nc") return;
     const { line } = editor.selection.active;
     void this.panel.webview.postMessage({ file: editor.document.uri.fsPath, line: line + 1 });
-    this.arguments.show(argumentsOf(editor.document, line));
+    // A text of a called macro can't be tried: the server runs another text of the drawn program alone.
+    this.arguments.show(editor.document === this.document ? argumentsOf(editor.document, line) : []);
+  }
+
+  // Reads the arguments of the call again after a change of its text.
+  private renew(document: vscode.TextDocument): void {
+    const editor = vscode.window.activeTextEditor;
+    if (editor && editor.document === document && document === this.document) this.select(editor);
   }
 
   private showWith(values: Argument[]): void {
-    if (this.document) void this.draw(withArguments(this.document, values));
+    const { document } = this;
+    if (document && values.every(({ version }) => version === document.version)) void this.draw(withArguments(document, values));
   }
 
   private async reveal(file: string, line: number): Promise<void> {
