@@ -81,6 +81,14 @@ impl Project {
         let nothing = || Refusal::new("no variable, sequence number or program is here");
         let (symbol, range) = self.symbol_at(file, offset).ok_or_else(nothing)?;
         let refused = |reason: &str| Err(Refusal::new(reason).at(file, range));
+        // Text behind the end of a program names its symbols, and no program reads it.
+        let is_listed = || {
+            let found = self.highlights(file, offset);
+            found.iter().any(|reference| reference.location.range.touches(offset))
+        };
+        if matches!(symbol, Symbol::Variable { .. } | Symbol::SequenceNumber { .. }) && !is_listed() {
+            return refused("this place is behind the end of the program");
+        }
         let renamed = match symbol {
             Symbol::Variable { number, program, .. } => Renamed::Variable { number, program },
             Symbol::SequenceNumber { number, programs } => match programs[..] {
