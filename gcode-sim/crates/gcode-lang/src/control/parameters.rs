@@ -96,6 +96,8 @@ const ROWS: &[ParameterRow] = &[
     bit_row(5400, 7, ParameterAccess::Key("SCR", |s| f64::from(s.has_coarse_scaling))),
     number_row(5411, ParameterAccess::Key("5411", |s| s.scale_factor)),
     length_row(5440, ParameterAccess::PerAxis(|s, axis| s.single_direction_overrun[axis], Some(|s, axis, v| { s.single_direction_overrun[axis] = v; Some(()) }))),
+    number_row(5460, ParameterAccess::Key("5460", |s| s.polar_axes[0] as f64)),
+    number_row(5461, ParameterAccess::Key("5461", |s| s.polar_axes[1] as f64)),
     bit_row(6000, 3, ParameterAccess::Key("V15", |s| f64::from(s.series_15_offsets))),
     bit_row(6001, 1, ParameterAccess::Key("PRT", |s| f64::from(s.omits_print_blanks))),
     bit_row(6001, 5, ParameterAccess::Key("TCS", |s| f64::from(s.code_calls.t_calls_program))),

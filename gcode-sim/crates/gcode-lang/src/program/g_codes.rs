@@ -97,7 +97,8 @@ mod tests {
         assert_eq!(effect(1540, Dialect::HaasNgc), Some(Effect::AdditionalWork));
         assert_eq!(effect(1540, Dialect::Fanuc31i), None);
         assert_eq!(effect(510, Dialect::Fanuc31i), Some(Effect::Scaling(Scaling::On)));
-        assert_eq!(effect(510, Dialect::HaasNgc), Some(Effect::NotSimulated));
+        assert_eq!(effect(470, Dialect::HaasNgc), Some(Effect::OneShot(OneShot::Engraving)));
+        assert_eq!(effect(470, Dialect::Fanuc31i), Some(Effect::OneShot(OneShot::ToolOffset(2))));
         assert_eq!(effect(434, Dialect::Fanuc0iF), None);
     }
 }
