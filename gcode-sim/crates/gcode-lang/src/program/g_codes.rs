@@ -102,7 +102,12 @@ mod tests {
         assert_eq!(effect(1540, Dialect::HaasNgc), Some(Effect::AdditionalWork));
         assert_eq!(effect(1540, Dialect::Fanuc31i), None);
         assert_eq!(effect(510, Dialect::Fanuc31i), Some(Effect::Scaling(Scaling::On)));
+<<<<<<< HEAD
         assert_eq!(effect(510, Dialect::HaasNgc), Some(Effect::Scaling(Scaling::On)));
+=======
+        assert_eq!(effect(470, Dialect::HaasNgc), Some(Effect::OneShot(OneShot::Engraving)));
+        assert_eq!(effect(470, Dialect::Fanuc31i), Some(Effect::OneShot(OneShot::ToolOffset(2))));
+>>>>>>> s30-control
         assert_eq!(effect(434, Dialect::Fanuc0iF), None);
     }
 }
