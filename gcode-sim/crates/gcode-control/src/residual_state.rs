@@ -175,10 +175,6 @@ mod tests {
                 let (words, code) = match row.effect {
                     Effect::AdditionalWork => (" P1", 541),
                     Effect::NumberedWork(_) => ("", 541),
-<<<<<<< HEAD
-                    // A Haas takes P with a point, a Fanuc without one.
-=======
->>>>>>> s30-control
                     Effect::Scaling(Scaling::On) if dialect == Dialect::HaasNgc => (" P2.", row.code),
                     Effect::Scaling(Scaling::On) => (" P2000", row.code),
                     Effect::Mirror(mirror) => (if mirror == Mirror::On { " X0" } else { "" }, mirror.code()),

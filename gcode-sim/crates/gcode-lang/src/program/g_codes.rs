@@ -24,11 +24,6 @@ impl RowLookup {
     }
 }
 
-/// Returns the rows of all codes, in ascending order.
-pub fn all() -> &'static [GCodeRow] {
-    CODES
-}
-
 /// Returns the rows of a code × 10.
 #[inline]
 pub fn find(code: u32) -> RowLookup {
@@ -102,12 +97,8 @@ mod tests {
         assert_eq!(effect(1540, Dialect::HaasNgc), Some(Effect::AdditionalWork));
         assert_eq!(effect(1540, Dialect::Fanuc31i), None);
         assert_eq!(effect(510, Dialect::Fanuc31i), Some(Effect::Scaling(Scaling::On)));
-<<<<<<< HEAD
-        assert_eq!(effect(510, Dialect::HaasNgc), Some(Effect::Scaling(Scaling::On)));
-=======
         assert_eq!(effect(470, Dialect::HaasNgc), Some(Effect::OneShot(OneShot::Engraving)));
         assert_eq!(effect(470, Dialect::Fanuc31i), Some(Effect::OneShot(OneShot::ToolOffset(2))));
->>>>>>> s30-control
         assert_eq!(effect(434, Dialect::Fanuc0iF), None);
     }
 }
