@@ -3,6 +3,7 @@ mod number;
 mod program;
 #[cfg(test)]
 mod tests;
+mod unfollowed;
 mod variable;
 
 pub(crate) use number::{MAX_NUMBER, is_number};
