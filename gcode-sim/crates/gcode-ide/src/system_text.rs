@@ -38,6 +38,10 @@ const fn row(from: u32, to: u32, text: &'static str, counts: Count) -> SystemRow
 
 const STANDARD: &[&str] = &["external offset", "G54", "G55", "G56", "G57", "G58", "G59"];
 
+/// Dynamic fixture offsets of a rotary table.
+const FIXTURES: &[&str] =
+    &["G54.2 P1", "G54.2 P2", "G54.2 P3", "G54.2 P4", "G54.2 P5", "G54.2 P6", "G54.2 P7", "G54.2 P8"];
+
 /// Ranges of a Fanuc.
 #[rustfmt::skip]
 const FANUC: &[SystemRow] = &[
@@ -79,6 +83,7 @@ const FANUC: &[SystemRow] = &[
     row(5121, 5140, "handwheel shift", Count::Axes),
     row(5181, 5200, "distance to go", Count::Axes),
     row(5201, 5340, "", Count::Systems(STANDARD)),
+    row(5521, 5680, "", Count::Systems(FIXTURES)),
     row(7001, 7960, "", Count::AdditionalSystems),
     row(8000, 8999, "tool management", Count::Nothing),
     row(10_001, 10_999, "wear of the tool length offset H", Count::Offsets),
@@ -232,6 +237,7 @@ mod tests {
         assert_eq!(text(5023), "position, machine coordinates, axis 3 (Z)");
         assert_eq!(text(5222), "offset of G54, axis 2 (Y)");
         assert_eq!(text(5201), "external offset, axis 1 (X)");
+        assert_eq!(text(5542), "offset of G54.2 P2, axis 2 (Y)");
         assert_eq!(text(7021), "offset of G54.1 P2, axis 1 (X)");
         assert_eq!(text(11_007), "geometry of the tool length offset H7");
         assert_eq!(text(4314), "sequence number, in the running block");

@@ -1,4 +1,5 @@
 //! Rename of variables, sequence numbers and programs: everything that refers to them changes, or nothing.
+mod message;
 mod number;
 mod program;
 #[cfg(test)]

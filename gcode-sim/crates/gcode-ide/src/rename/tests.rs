@@ -217,7 +217,8 @@ fn a_number_to_which_a_shared_subprogram_returns_stays() {
     assert_eq!(refused(&text, "N60"), reason);
     assert_eq!(not_renumbered(&text), reason);
     // N7 is in no M99 P: each of both programs may have it.
-    let free = text.replace("N5$00 M30\n//- O101.nc", "N5 M0\nN50 M30\n//- O101.nc").replacen("N5 M0", "N$05 M0", 1);
+    let free =
+        text.replace("N5$00 M30\n//- O101.nc", "N5 M0\nN50 M30\n//- O101.nc").replacen("N5 M0", "N$05 M0", 1);
     assert!(renamed(&free, "N7").contains("N7 M0\nN50 M30\n"), "{}", renamed(&free, "N7"));
 }
 
@@ -232,4 +233,13 @@ fn a_number_that_an_unknown_cycle_names_stays() {
     assert!(refused(&other, "25").contains("Q25"), "a new number that the cycle names");
     let dwell = "O1\nG4 P15\nG83 Z-1. R1. Q15 F9.\nN$015 M30\n";
     assert_eq!(renamed(dwell, "16"), "O1\nG4 P15\nG83 Z-1. R1. Q15 F9.\nN16 M30\n", "no sequence numbers");
+}
+
+#[test]
+fn a_variable_that_a_message_names_stays() {
+    let text = "//- O1.nc\nO1\n#$0140=5.\nG65 P2\nM30\n//- O2.nc\nO2\nX#140\n#3006=1(HEAD TO #140)\nM99\n";
+    let reason = "the message of O0002 line 3 names #140: change its text by hand first";
+    assert_eq!(refused(text, "#150"), reason);
+    let other = text.replace("TO #140", "TO #1401");
+    assert!(renamed(&other, "#150").contains("X#150\n#3006=1(HEAD TO #1401)"));
 }

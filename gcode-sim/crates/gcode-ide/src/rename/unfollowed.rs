@@ -60,7 +60,8 @@ impl Project {
         while start < outline.range.end {
             let line = line_range(index.text(), start);
             start = line.end + 1;
-            let has = |letter: u8| line.of(index.text()).iter().any(|byte| byte.eq_ignore_ascii_case(&letter));
+            let has =
+                |letter: u8| line.of(index.text()).iter().any(|byte| byte.eq_ignore_ascii_case(&letter));
             if !has(b'G') || !(has(b'P') || has(b'Q')) {
                 continue;
             }
@@ -90,7 +91,8 @@ impl Project {
         };
         let unknown = words().filter(|word| word.address.letter == b'G').find(|word| {
             let Some(code) = code(word) else { return false };
-            let is_unused = g_row(code, self.settings()).is_some_and(|row| row.effect == Effect::NotSimulated);
+            let is_unused =
+                g_row(code, self.settings()).is_some_and(|row| row.effect == Effect::NotSimulated);
             is_unused || g_text(code, self.settings()).is_none()
         })?;
         let refers = |word: &&Word| {
