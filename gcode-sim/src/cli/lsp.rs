@@ -1,6 +1,7 @@
 //! `gcode-sim lsp`: gives the language server its files, reports, pages, standard input and output.
 #![expect(clippy::disallowed_methods, reason = "the command line finds files and reads standard input")]
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::UNIX_EPOCH;
@@ -85,6 +86,13 @@ impl Host for EditorHost {
         let about = path.metadata().ok()?;
         let since = about.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
         Some((since.as_nanos() as u64).wrapping_mul(31).wrapping_add(about.len()))
+    }
+
+    fn is_text(&self, path: &Path) -> bool {
+        let mut beginning = Vec::new();
+        let read = std::fs::File::open(path).and_then(|file| file.take(512).read_to_end(&mut beginning));
+        let is_wide = beginning.starts_with(b"\xff\xfe") || beginning.starts_with(b"\xfe\xff");
+        read.is_ok() && (is_wide || !beginning.contains(&0))
     }
 
     fn folders(&self, path: &Path) -> Vec<PathBuf> {

@@ -68,7 +68,8 @@ fn push_jump(builder: &mut ChunkBuilder<'_>, kind: EntryKind, number: Option<u32
     }
 }
 
-fn whole(value: Option<f64>) -> Option<u32> {
+/// Returns a value as a whole number that a sequence number may be.
+pub(crate) fn whole(value: Option<f64>) -> Option<u32> {
     let rounded = value?.round();
     (0.0..=999_999_999.0).contains(&rounded).then_some(rounded as u32)
 }
@@ -119,7 +120,7 @@ fn record_variables(builder: &mut ChunkBuilder<'_>, expr: &Expr, is_target: bool
 }
 
 /// Returns a G or M code × 10 that is written as a number.
-fn code(word: &Word) -> Option<u32> {
+pub(crate) fn code(word: &Word) -> Option<u32> {
     match &word.value {
         WordValue::Literal(Decimal { negative: false, digits, places }) => {
             let unit = 10_u64.checked_pow(u32::from(places.unwrap_or(0)))?;

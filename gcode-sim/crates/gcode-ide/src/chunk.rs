@@ -119,11 +119,11 @@ fn next_word(text: &[u8], at: &mut usize) -> Option<Option<PlainWord>> {
     let (mut tenths, mut digits, mut places): (u64, usize, Option<usize>) = (0, 0, None);
     while let Some(byte) = text.get(end) {
         match (byte, &mut places) {
-            (b'0'..=b'9', None) => tenths = tenths * 10 + u64::from(byte - b'0'),
+            (b'0'..=b'9', None) => tenths = tenths.saturating_mul(10).saturating_add(u64::from(byte - b'0')),
             (b'0'..=b'9', Some(places)) => {
                 *places += 1;
                 if *places == 1 {
-                    tenths = tenths * 10 + u64::from(byte - b'0');
+                    tenths = tenths.saturating_mul(10).saturating_add(u64::from(byte - b'0'));
                 }
             }
             (b'.', None) => places = Some(0),

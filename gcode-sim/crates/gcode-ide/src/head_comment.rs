@@ -29,6 +29,20 @@ pub(crate) fn title(index: &FileIndex, program: usize) -> Option<String> {
     Some(inside.split(')').next().unwrap_or(inside).trim().to_owned())
 }
 
+/// Returns the letters that `(ARGUMENTS, ALL NEEDED BUT K AND Q)` excepts; `None` for a head without such a line.
+pub(crate) fn optional_letters(index: &FileIndex, program: usize) -> Option<Vec<char>> {
+    let outline = index.programs().get(program)?;
+    let end = outline.range.end.min(outline.range.start + MAX_HEAD);
+    let mut comments = index.entries(TextRange::new(outline.range.start, end));
+    comments.find_map(|entry| {
+        let text = lossy(entry.range.of(index.text())).to_ascii_uppercase();
+        let (_, behind) = text.split_once("ALL NEEDED").filter(|(before, _)| before.contains("ARGUMENTS"))?;
+        let excepted = behind.split([',', ')']).next().unwrap_or_default();
+        let letters = excepted.split(' ').filter(|word| word.len() == 1);
+        (entry.kind == EntryKind::Comment).then(|| letters.filter_map(|word| word.chars().next()).collect())
+    })
+}
+
 /// Returns the meanings of variables that the comments of a program state.
 ///
 /// `(A #1  RADIUS)`, `(A = RADIUS)`, `(#1 = X START)`, `(A = #1 RADIUS)`, `(#24-#29 RESULTS)`, `(#4 #5 MODES, #6 FEED)`, and the

@@ -4,7 +4,7 @@ use gcode_lang::syntax::ast::ProgramName;
 use gcode_lint::rules::MISSING_ARGUMENT;
 
 use crate::entry::EntryKind;
-use crate::head_comment::{VariableMeaning, meanings};
+use crate::head_comment::{VariableMeaning, meanings, optional_letters};
 use crate::project::{ProgramKey, Project};
 use crate::scope::VariableScope;
 use crate::text::{TextRange, line_range, lossy};
@@ -86,6 +86,7 @@ impl Project {
             is_stated || read[local]
         };
         let required = self.required_letters(key);
+        let optional = optional_letters(index, key.program);
         let locals = (1..=26).filter_map(|local| Some((local, gcode_lang::program::argument_letter(local)?)));
         let parameters =
             locals.filter(|(local, _)| is_parameter(*local)).map(|(local, letter)| MacroParameter {
@@ -96,7 +97,10 @@ impl Project {
                     .find(|m| m.number as usize == local)
                     .map(|m| m.text.clone())
                     .unwrap_or_default(),
-                is_optional: !required.contains(&letter),
+                is_optional: !required.contains(&letter)
+                    && optional.as_ref().is_none_or(|optional| {
+                        optional.contains(&letter) || stated.iter().all(|m| m.letter != Some(letter))
+                    }),
             });
         let mut found: Vec<_> = parameters.collect();
         found.sort_by_key(|parameter| parameter.letter);

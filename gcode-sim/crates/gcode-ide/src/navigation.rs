@@ -193,14 +193,17 @@ impl Project {
     }
 
     fn program_references(&self, name: &ProgramName, from: FileId) -> Vec<Reference> {
-        let targets = self.programs_named(name, from);
+        let targets = self.reached_programs(name, from);
         let declared = targets.iter().filter_map(|key| {
             let range = self.program(*key)?.name_range;
             let location = Location { file: key.file, range };
             Some(Reference { location, access: Access::Declaration })
         });
-        let calls =
-            self.all_calls().filter(|(_, call)| program_name(&call.record.target).as_ref() == Some(name));
+        let calls = self.all_calls().filter(|(key, call)| {
+            let is_named = program_name(&call.record.target).as_ref() == Some(name);
+            let called = || self.called_program(key.file, &call.record.target);
+            is_named && called().is_none_or(|called| targets.contains(&called))
+        });
         let calls = calls.map(|(key, call)| {
             let range = call.target_range().unwrap_or(call.code);
             Reference { location: Location { file: key.file, range }, access: Access::Read }
@@ -230,7 +233,7 @@ impl Project {
     }
 
     pub(crate) fn program_targets(&self, name: &ProgramName, from: FileId) -> Vec<NavigationTarget> {
-        let keys = self.programs_named(name, from).into_iter();
+        let keys = self.reached_programs(name, from).into_iter();
         let targets = keys.filter_map(|key| {
             let outline = self.program(key)?;
             Some(NavigationTarget { file: key.file, range: outline.range, selection: outline.name_range })

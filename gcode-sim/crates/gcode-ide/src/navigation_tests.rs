@@ -147,3 +147,13 @@ fn calls_and_links_go_both_ways() {
     let links = project.document_links(FileId(0));
     assert_eq!(links.iter().map(|link| link.label.as_str()).collect::<Vec<_>>(), ["O0002", "O0002"]);
 }
+
+#[test]
+fn a_call_finds_the_program_of_its_folder() {
+    let text = "//- a/O1.nc\nO1\nM98 P$02\nM30\n//- b/O2.nc\nO2(B2)\nM99\n//- a/O2.nc\nO2(A2)\nM99\n\
+                //- b/O3.nc\nO3\nM98 P2\nM30\n";
+    assert_eq!(defined(text), ["2:1:O2"], "that of a, not of b");
+    assert_eq!(referred(text), ["2:P2", "2:1:O2!"], "the call in b reaches the other one");
+    let far = "//- a/O1.nc\nO1\nM98 P$02\nM30\n//- b/O2.nc\nO2\nM99\n//- c/O2.nc\nO2\nM99\n";
+    assert_eq!(defined(far), ["1:1:O2", "2:1:O2"], "either may be in a library");
+}

@@ -161,17 +161,39 @@ impl Project {
         name.map_or_else(String::new, |name| name.label())
     }
 
-    /// Returns all programs of a name that a call from a program may find, the first it finds first.
+    /// Returns all programs of a name, those first that a call from a file finds first.
     pub(crate) fn programs_named(&self, name: &ProgramName, from: FileId) -> Vec<ProgramKey> {
         let mut found: Vec<_> = self.names.get(name).into_iter().flatten().copied().collect();
-        found.sort_by_key(|key| (key.file != from, *key));
+        found.sort_by_key(|key| (self.distance(*key, from), *key));
+        found
+    }
+
+    /// Returns the programs of a name that a call from a file may find: in the same file, else in its folder, else in
+    /// the others.
+    pub(crate) fn reached_programs(&self, name: &ProgramName, from: FileId) -> Vec<ProgramKey> {
+        let mut found = self.programs_named(name, from);
+        let nearest = found.first().map(|key| self.distance(*key, from));
+        found.retain(|key| Some(self.distance(*key, from)) == nearest);
         found
     }
 
     /// Returns the program that a call finds.
     pub(crate) fn called_program(&self, from: FileId, target: &CalledProgramName) -> Option<ProgramKey> {
         let keys = self.names.get(&program_name(target)?)?;
-        keys.iter().min_by_key(|key| (key.file != from, **key)).copied()
+        keys.iter().min_by_key(|key| (self.distance(**key, from), **key)).copied()
+    }
+
+    /// Returns how late a call from a file looks into the file of a program: itself, its folder, others.
+    fn distance(&self, key: ProgramKey, from: FileId) -> u8 {
+        let folder = |file: FileId| {
+            let name = self.file_name(file)?;
+            Some(name.rfind(['/', '\\']).map_or("", |end| &name[..end]))
+        };
+        match key.file == from {
+            true => 0,
+            false if folder(key.file) == folder(from) => 1,
+            false => 2,
+        }
     }
 
     /// Iterates over the calls of a program.

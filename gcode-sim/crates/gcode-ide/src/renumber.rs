@@ -58,6 +58,11 @@ impl Project {
             edits.push(FileEdit { file: key.file, edit });
         }
         let given: BTreeSet<u32> = new_numbers.values().copied().collect();
+        let is_changed = |number: u32| match new_numbers.get(&number) {
+            Some(new) => *new != number || repeated.contains(&number),
+            None => given.contains(&number),
+        };
+        self.refuse_unfollowed(key, is_changed)?;
         for (number, reference) in &jumps {
             let (file, range) = (reference.location.file, reference.location.range);
             let refused = |reason: String| Refusal::new(reason).at(file, range);

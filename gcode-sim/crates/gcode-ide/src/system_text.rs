@@ -38,16 +38,9 @@ const fn row(from: u32, to: u32, text: &'static str, counts: Count) -> SystemRow
 
 const STANDARD: &[&str] = &["external offset", "G54", "G55", "G56", "G57", "G58", "G59"];
 
-const FIXTURES: &[&str] = &[
-    "dynamic offset G54.2 P1",
-    "dynamic offset G54.2 P2",
-    "dynamic offset G54.2 P3",
-    "dynamic offset G54.2 P4",
-    "dynamic offset G54.2 P5",
-    "dynamic offset G54.2 P6",
-    "dynamic offset G54.2 P7",
-    "dynamic offset G54.2 P8",
-];
+/// Dynamic fixture offsets of a rotary table.
+const FIXTURES: &[&str] =
+    &["G54.2 P1", "G54.2 P2", "G54.2 P3", "G54.2 P4", "G54.2 P5", "G54.2 P6", "G54.2 P7", "G54.2 P8"];
 
 /// Ranges of a Fanuc.
 #[rustfmt::skip]
@@ -244,6 +237,7 @@ mod tests {
         assert_eq!(text(5023), "position, machine coordinates, axis 3 (Z)");
         assert_eq!(text(5222), "offset of G54, axis 2 (Y)");
         assert_eq!(text(5201), "external offset, axis 1 (X)");
+        assert_eq!(text(5542), "offset of G54.2 P2, axis 2 (Y)");
         assert_eq!(text(7021), "offset of G54.1 P2, axis 1 (X)");
         assert_eq!(text(11_007), "geometry of the tool length offset H7");
         assert_eq!(text(4314), "sequence number, in the running block");

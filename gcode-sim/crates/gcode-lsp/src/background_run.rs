@@ -121,6 +121,12 @@ fn reference(
 
 /// Returns the file with the main program that leads to a file: itself, if it ends a run or nothing calls it.
 pub(crate) fn main_of(project: &Project, file: FileId) -> FileId {
+    mains_of(project, file).first().copied().unwrap_or(file)
+}
+
+/// Returns the files with all main programs that lead to a file, the nearest first.
+pub(crate) fn mains_of(project: &Project, file: FileId) -> Vec<FileId> {
+    let mut mains = Vec::new();
     let mut seen = vec![file];
     let mut next = 0;
     while let Some(current) = seen.get(next).copied() {
@@ -129,11 +135,14 @@ pub(crate) fn main_of(project: &Project, file: FileId) -> FileId {
             keys.flat_map(|key| project.incoming_calls(key)).map(|group| group.item.key.file).collect();
         let callers: Vec<_> = callers.into_iter().filter(|caller| *caller != current).collect();
         if callers.is_empty() {
-            return current;
+            mains.push(current);
         }
-        let unseen: Vec<_> = callers.into_iter().filter(|caller| !seen.contains(caller)).collect();
-        seen.extend(unseen);
+        for caller in callers {
+            if !seen.contains(&caller) {
+                seen.push(caller);
+            }
+        }
         next += 1;
     }
-    file
+    if mains.is_empty() { vec![file] } else { mains }
 }

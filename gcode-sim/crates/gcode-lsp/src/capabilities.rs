@@ -46,17 +46,22 @@ fn capabilities(client: &Client) -> ServerCapabilities {
         document_highlight_provider: Some(OneOf::Left(true)),
         document_symbol_provider: Some(OneOf::Left(true)),
         workspace_symbol_provider: Some(OneOf::Left(true)),
-        code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
-            code_action_kinds: Some(action_kinds),
-            ..CodeActionOptions::default()
-        })),
+        code_action_provider: Some(if client.has_action_literals {
+            let code_action_kinds = Some(action_kinds);
+            let options = CodeActionOptions { code_action_kinds, ..CodeActionOptions::default() };
+            CodeActionProviderCapability::Options(options)
+        } else {
+            CodeActionProviderCapability::Simple(true)
+        }),
         code_lens_provider: Some(CodeLensOptions { resolve_provider: Some(false) }),
         document_formatting_provider: Some(OneOf::Left(true)),
         document_range_formatting_provider: Some(OneOf::Left(true)),
-        rename_provider: Some(OneOf::Right(RenameOptions {
-            prepare_provider: Some(true),
-            work_done_progress_options: no_progress,
-        })),
+        rename_provider: Some(if client.has_prepared_rename {
+            let prepare_provider = Some(true);
+            OneOf::Right(RenameOptions { prepare_provider, work_done_progress_options: no_progress })
+        } else {
+            OneOf::Left(true)
+        }),
         document_link_provider: Some(DocumentLinkOptions {
             resolve_provider: Some(false),
             work_done_progress_options: no_progress,

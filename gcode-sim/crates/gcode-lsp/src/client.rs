@@ -11,6 +11,9 @@ pub(crate) struct Client {
     pub has_document_changes: bool,
     pub has_hierarchical_symbols: bool,
     pub has_disabled_actions: bool,
+    /// Code actions may state their kinds.
+    pub has_action_literals: bool,
+    pub has_prepared_rename: bool,
     pub has_related_information: bool,
     pub has_diagnostic_tags: bool,
     pub has_markdown_hover: bool,
@@ -46,6 +49,8 @@ impl Client {
             has_disabled_actions: is(
                 actions.and_then(|actions: &CodeActionClientCapabilities| actions.disabled_support)
             ),
+            has_action_literals: actions.is_some_and(|actions| actions.code_action_literal_support.is_some()),
+            has_prepared_rename: is(text.and_then(|text| text.rename.as_ref()?.prepare_support)),
             has_related_information: is(diagnostics.and_then(|diagnostics| diagnostics.related_information)),
             has_diagnostic_tags: diagnostics.is_some_and(|diagnostics| diagnostics.tag_support.is_some()),
             has_markdown_hover: has_markdown(hover),

@@ -2,7 +2,7 @@
 use std::sync::Arc;
 
 use gcode_control::Progress;
-use gcode_ide::{FileEdit, FileId};
+use gcode_ide::{FileEdit, FileId, ProgramKey};
 use lsp_types::{
     CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams,
     CodeActionResponse, Diagnostic, NumberOrString, Range,
@@ -48,10 +48,8 @@ pub(crate) fn code_actions(
             quick_fixes(snapshot, file, diagnostic, &mut actions)?;
         }
     }
-    let offset = snapshot.text_of(file)?.offset(params.range.start);
-    if is_wanted(&RENUMBER)
-        && let Some(program) = snapshot.project.program_at(file, offset)
-    {
+    let programs = if is_wanted(&RENUMBER) { programs_in(snapshot, file, params.range)? } else { Vec::new() };
+    for program in programs {
         let title = format!("Renumber the blocks of {}", snapshot.project.label(program));
         let prove = || renumber_edits(snapshot, program, NUMBERING, progress);
         let edits = snapshot.runs.renumbering(program, progress, prove);
@@ -63,6 +61,19 @@ pub(crate) fn code_actions(
         actions.extend(source_action(snapshot, "Format the file".to_owned(), FORMAT, edits)?);
     }
     Ok(Some(actions.into_iter().map(CodeActionOrCommand::CodeAction).collect()))
+}
+
+/// Returns the programs that a range touches; that of a file with one program, wherever the range is.
+fn programs_in(snapshot: &Snapshot, file: FileId, range: Range) -> Result<Vec<ProgramKey>, Failure> {
+    let (start, end) = snapshot.text_of(file)?.offsets(range);
+    let range = gcode_ide::TextRange::new(start, end);
+    let programs = snapshot.project.programs().filter(|(key, _)| key.file == file);
+    let programs: Vec<_> = programs.map(|(key, outline)| (key, outline.range)).collect();
+    let is_only = programs.len() == 1;
+    let touched = programs.into_iter().filter(|(_, program)| {
+        is_only || program.overlaps(range) || program.touches(start) && range.is_empty()
+    });
+    Ok(touched.map(|(key, _)| key).collect())
 }
 
 fn touches(one: Range, other: Range) -> bool {

@@ -1,4 +1,5 @@
 //! Commands of the lenses above a program: run, verify, show, debug; and renumber.
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -6,7 +7,9 @@ use gcode_control::Progress;
 use gcode_ide::{FileId, ProgramKey};
 use gcode_lang::source::Bytes;
 use gcode_lang::syntax::ast::ProgramPath;
+use gcode_part::job::control_file;
 use gcode_session::Request;
+use gcode_session::files::{FileAccess, ProjectPaths};
 use lsp_types::{
     CodeLens, CodeLensParams, Command, ExecuteCommandParams, MessageType, TextDocumentIdentifier, Uri,
     WorkspaceEdit,
@@ -20,6 +23,9 @@ use crate::edits::{renumber_edits, workspace_edit};
 use crate::failure::Failure;
 use crate::program_setup::ProgramSetup;
 use crate::snapshot::Snapshot;
+
+/// Setting with the family of controls.
+const DIALECT: &str = "DIALECT";
 
 const RUN: &str = "gcode-sim.run";
 const VERIFY: &str = "gcode-sim.verify";
@@ -103,7 +109,7 @@ pub(crate) fn execute(
         VERIFY => verify(snapshot, &setup, &request),
         SHOW => show(snapshot, &setup, &request),
         PAGE => page(snapshot, &setup, &request),
-        DEBUG => Ok(CommandResult::new(launch(&setup, &target))),
+        DEBUG => Ok(CommandResult::new(launch(snapshot, &setup, &target))),
         _ => renumber(snapshot, file, &target, progress),
     }
 }
@@ -155,7 +161,12 @@ fn run(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<C
         }
         None => {
             let part = |key: &str| report.get(key).map(plain).unwrap_or_default();
-            let counts = format!("{} blocks, {} moves, {} s", part("blocks"), part("moves"), part("seconds"));
+            let seconds = report.get("seconds").and_then(Value::as_f64).unwrap_or_default();
+            let counts = [("block", "blocks"), ("move", "moves")].map(|(one, many)| {
+                let count = part(many);
+                format!("{count} {}", if count == "1" { one } else { many })
+            });
+            let counts = format!("{}, {seconds:.1} s", counts.join(", "));
             match part("outcome").as_str() {
                 "limit" => (MessageType::WARNING, format!("a limit ended the run: {counts}")),
                 outcome => (MessageType::INFO, format!("{outcome}: {counts}")),
@@ -211,7 +222,7 @@ fn page(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<
 }
 
 /// Returns a launch configuration for `gcode-sim dap`.
-fn launch(setup: &ProgramSetup, target: &Target) -> Value {
+fn launch(snapshot: &Snapshot, setup: &ProgramSetup, target: &Target) -> Value {
     let mut launch = json!({
         "type": "gcode-sim",
         "request": "launch",
@@ -220,9 +231,17 @@ fn launch(setup: &ProgramSetup, target: &Target) -> Value {
         "library": setup.paths.libraries,
         "stopOnEntry": true,
     });
-    let paths = [("machine", &setup.paths.machine), ("reference", &setup.paths.reference)];
+    let ProjectPaths { machine, control, dialect, reference, .. } = &setup.paths;
+    let paths = [("machine", machine), ("reference", reference)];
     for (key, path) in paths.into_iter().filter_map(|(key, path)| Some((key, path.as_ref()?))) {
         launch[key] = json!(path);
+    }
+    let text = control.as_ref().and_then(|path| snapshot.files.text(path).ok());
+    let entries = text.and_then(|text| control_file::entries(&text).ok()).unwrap_or_default();
+    let dialect = dialect.iter().map(|name| (DIALECT.to_owned(), name.clone()));
+    let settings: BTreeMap<_, _> = entries.into_iter().chain(dialect).collect();
+    if !settings.is_empty() {
+        launch["control"] = json!(settings);
     }
     launch
 }

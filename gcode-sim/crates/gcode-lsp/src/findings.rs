@@ -71,7 +71,7 @@ pub(crate) fn check(
         diagnostics,
         called: called.collect(),
         surroundings: setup.dependencies().chain(setup.folders()).collect(),
-        faults: setup.faults.clone(),
+        faults: setup.faults.iter().chain(&setup.job_fault).cloned().collect(),
         is_in_project: setup.project.folder().is_some(),
     };
     (document, checked)

@@ -34,8 +34,8 @@ pub(crate) fn inlay_hints(
     let (start, end) = text.offsets(params.range);
     let range = TextRange::new(start, end);
     let mut hints = value_hints(&text, &facts, range, snapshot.project.settings());
-    let first = params.range.start.line + 1;
-    let last = params.range.end.line + 1;
+    let first = params.range.start.line.saturating_add(1);
+    let last = params.range.end.line.saturating_add(1);
     for (line, deviation) in facts.holes.range(first..=last.max(first)) {
         hints.push(hint(
             &text,

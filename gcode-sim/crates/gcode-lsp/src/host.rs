@@ -11,6 +11,11 @@ pub trait Host: FileAccess + Send + Sync {
     /// Returns a stamp of a file that differs after a change; `None` for a file that does not exist.
     fn stamp(&self, path: &Path) -> Option<u64>;
 
+    /// Returns false for a file whose first bytes are not those of a text.
+    fn is_text(&self, _: &Path) -> bool {
+        true
+    }
+
     /// Returns the folders in a folder, sorted by name.
     fn folders(&self, path: &Path) -> Vec<PathBuf>;
 

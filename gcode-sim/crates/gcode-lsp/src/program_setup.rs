@@ -6,7 +6,7 @@ use gcode_lang::control::Settings;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
 use gcode_lint::ControlKnowledge;
-use gcode_part::job::control_file;
+use gcode_part::job::{Job, control_file};
 use gcode_session::Request;
 use gcode_session::files::{FileAccess, Project, ProjectPaths, folder_of};
 
@@ -28,6 +28,8 @@ pub(crate) struct ProgramSetup {
     pub knowledge: ControlKnowledge,
     /// Faults of the files, one sentence each; what they state is left out.
     pub faults: Vec<String>,
+    /// Fault of the job beside the program, which a run does without.
+    pub job_fault: Option<String>,
 }
 
 impl ProgramSetup {
@@ -46,7 +48,7 @@ impl ProgramSetup {
             control: editor.control.clone().or(of_project.control),
             dialect: editor.dialect.clone().or(of_project.dialect),
             libraries: editor.libraries.iter().cloned().chain(of_project.libraries).collect(),
-            reference: of_project.reference.or_else(|| editor.reference.clone()).or(beside),
+            reference: of_project.reference.or_else(|| editor.reference.clone()).or(beside.clone()),
         };
         let in_file = |path: &Path, error: &dyn std::fmt::Display| format!("{}, {error}", path.display());
         let mut machine = Machine::default();
@@ -58,6 +60,15 @@ impl ProgramSetup {
             }
         }
         let mut settings = Request::new("", Vec::new(), machine.clone()).settings;
+        let parse = |path: PathBuf| {
+            let parse = |text: String| Job::parse(&text).map_err(|error| in_file(&path, &error));
+            files.text(&path).and_then(parse)
+        };
+        let job = beside.map(parse);
+        if let (Some(Ok(job)), None) = (&job, &paths.machine) {
+            settings.apply_dialect(job.control().dialect);
+            settings.increment = job.control().increment;
+        }
         if let Some(name) = &paths.dialect
             && let Err(error) = settings.set("DIALECT", name)
         {
@@ -76,7 +87,8 @@ impl ProgramSetup {
         }
         let is_stated = paths.machine.is_some() || paths.control.is_some();
         let knowledge = if is_stated { ControlKnowledge::Stated } else { ControlKnowledge::Assumed };
-        Self { path: path.to_owned(), project, paths, machine, settings, knowledge, faults }
+        let job_fault = job.and_then(Result::err);
+        Self { path: path.to_owned(), project, paths, machine, settings, knowledge, faults, job_fault }
     }
 
     /// Returns the folders in which called programs are found, in this order.

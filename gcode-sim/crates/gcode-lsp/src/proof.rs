@@ -13,7 +13,7 @@ use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::ast::{ProgramName, ProgramPath};
 use gcode_session::{Request, Run};
 
-use crate::background_run::main_of;
+use crate::background_run::mains_of;
 use crate::snapshot::Snapshot;
 
 /// Largest number of blocks of a proof.
@@ -44,7 +44,7 @@ pub(crate) fn prove(
         let path = edited.path(*file);
         edited.files.open(path, text.clone());
     }
-    let mains: BTreeSet<FileId> = texts.keys().map(|file| main_of(&snapshot.project, *file)).collect();
+    let mains: BTreeSet<FileId> = texts.keys().flat_map(|file| mains_of(&snapshot.project, *file)).collect();
     for main in mains {
         let Some(old) = snapshot.project.file(main).map(|index| index.text().clone()) else { continue };
         let new = texts.get(&main).unwrap_or(&old);

@@ -209,6 +209,14 @@ impl ServerState {
         for id in ended {
             self.end_request(&id, Failure::outdated());
         }
+        // A place that waits for the scan is one of the text before the edit.
+        let names_text = |request: &Request| request.params.get("textDocument").is_some();
+        let waiting = std::mem::take(&mut self.waiting).into_iter();
+        let (outdated, waiting): (Vec<_>, Vec<_>) = waiting.partition(names_text);
+        self.waiting = waiting;
+        for request in outdated {
+            self.send(Failure::outdated().response(request.id));
+        }
     }
 
     /// Ends a request in the background and answers it with an error.

@@ -28,7 +28,10 @@ pub(crate) fn is_program(path: &Path, files: &Overlay) -> bool {
     const MAYBE: [&str; 2] = ["txt", "dat"];
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let is_candidate = ending.is_empty() || MAYBE.iter().any(|known| ending.eq_ignore_ascii_case(known));
-    is_program_name(path) || is_candidate && files.program(path).is_ok_and(|text| begins_program(&text))
+    // A binary file can be long: it is not read to its end.
+    let is_text = || files.is_open(path) || files.host().is_text(path);
+    is_program_name(path)
+        || is_candidate && is_text() && files.program(path).is_ok_and(|text| begins_program(&text))
 }
 
 /// Calls `each` with every program file below the folders, as far as the limits allow.

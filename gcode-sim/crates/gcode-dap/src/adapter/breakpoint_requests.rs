@@ -10,6 +10,8 @@ use crate::protocol::arguments::{
     SetDataBreakpoints, SetExceptionBreakpoints, SetFunctionBreakpoints, SourceBreakpoint,
 };
 use crate::protocol::bodies::{self, BreakpointChange, Breakpoints, FilterAnswer, FilterAnswers};
+use gcode_control::static_eval::VariableTable;
+use gcode_lang::control::Settings;
 use gcode_lang::program::Expression;
 use gcode_lang::syntax::ast::ProgramPath;
 
@@ -87,7 +89,8 @@ impl<H: Host> Adapter<H> {
         for one in &arguments.breakpoints {
             let id = self.breakpoints.next_id();
             let found = program_place(one).and_then(|place| Ok((place, conditions(&one.conditions)?)));
-            answers.push(answer(id, found.as_ref().err()));
+            let missing = found.as_ref().ok().and_then(|(place, _)| self.missing_program(place));
+            answers.push(answer(id, found.as_ref().err().or(missing.as_ref())));
             set.extend(found.ok().map(|(place, conditions)| Breakpoint::new(id, place, conditions)));
         }
         if let Some(session) = &mut self.session {
@@ -95,6 +98,24 @@ impl<H: Host> Adapter<H> {
         }
         self.breakpoints.programs = set;
         body(Breakpoints { breakpoints: answers })
+    }
+
+    /// Returns why a breakpoint on a program can't be hit; `None` before the launch, when nothing is known of it.
+    fn missing_program(&mut self, place: &ProgramPlace) -> Option<String> {
+        let (session, name) = (self.session.as_mut()?, place.name.as_ref()?);
+        let is_missing = !session.debuggee.has_program(name);
+        is_missing
+            .then(|| format!("{} is not in the program's file, its folder or the library", name.label()))
+    }
+
+    /// Tells the client which breakpoints on programs, set before the launch, can't be hit.
+    pub(super) fn tell_missing_programs(&mut self) {
+        for one in self.breakpoints.programs.clone() {
+            if let Some(reason) = self.missing_program(&one.place) {
+                let breakpoint = answer(one.id, Some(&reason));
+                self.outbox.event("breakpoint", BreakpointChange { reason: "changed", breakpoint });
+            }
+        }
     }
 
     pub(super) fn data_breakpoint_info(&mut self, arguments: &DataBreakpointInfo) -> Answer {
@@ -114,6 +135,8 @@ impl<H: Host> Adapter<H> {
             Some(number) => Ok(number),
             None => target(self.standing()?.debuggee.control(), &arguments.name, level),
         };
+        let settings =
+            self.session.as_ref().map(|session| session.request.settings.clone()).unwrap_or_default();
         body(match number {
             Ok(number @ (0 | 3000 | 3006)) => refused(format!("#{number} keeps no value")),
             Ok(number) => {
@@ -122,7 +145,10 @@ impl<H: Host> Adapter<H> {
                 bodies::DataBreakpointInfo {
                     data_id: Some(data_id),
                     description: format!("#{number}"),
-                    access_types: vec!["read", "write", "readWrite"],
+                    access_types: match is_written(number, &settings) {
+                        true => vec!["read", "write", "readWrite"],
+                        false => vec!["read"],
+                    },
                     can_persist: !is_local,
                 }
             }
@@ -163,6 +189,11 @@ impl<H: Host> Adapter<H> {
         }
         body(FilterAnswers { breakpoints })
     }
+}
+
+/// Returns true for a variable that a program can write.
+fn is_written(number: u32, settings: &Settings) -> bool {
+    VariableTable::new(settings).write(number).is_ok()
 }
 
 /// Returns the number of a variable written as `#100`.

@@ -87,6 +87,7 @@ impl<H: Host> Adapter<H> {
         // The files may have changed since their breakpoints were set.
         self.files.forget_texts();
         self.set_lines_again();
+        self.tell_missing_programs();
         Ok(())
     }
 

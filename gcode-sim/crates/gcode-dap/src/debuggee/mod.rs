@@ -6,6 +6,7 @@ mod breakpoints;
 mod exceptions;
 mod hit_condition;
 mod log_message;
+mod named_values;
 mod stop;
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,7 @@ use gcode_control::{Control, Outcome};
 use gcode_inspect::verify::Tolerances;
 use gcode_lang::motion::{Event, EventKind, EventSink};
 use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::ProgramName;
 use gcode_part::Reference;
 use gcode_session::{Request, SessionError};
 
@@ -239,6 +241,9 @@ impl Debuggee {
         for line in &control.output()[printed.min(control.output().len())..] {
             output.push(OutputLine { text: gcode_control::printable(line), block });
         }
+        for (_, text) in &mut stops.0 {
+            *text = named_values::with_values(text, control);
+        }
         let messages = stops.0.iter().filter(|(_, text)| !text.is_empty());
         output.extend(messages.map(|(name, text)| OutputLine { text: format!("{name}: {text}"), block }));
         if let Some(outcome) = outcome {
@@ -295,6 +300,11 @@ impl Debuggee {
     pub(crate) fn stand_here(&mut self) {
         self.pass_empty_blocks();
         self.next_block = NextBlock::Standing;
+    }
+
+    /// Returns true if a program is loaded or in the library.
+    pub(crate) fn has_program(&mut self, name: &ProgramName) -> bool {
+        self.run.has_program(name)
     }
 
     /// Interrupts the run.

@@ -366,3 +366,11 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn the_message_of_a_stop_has_the_values_that_it_names() {
+    let mut debuggee = debuggee("O1\n#140=-90.\n#3006=1(HEAD #140 AND #141, #140 #X)\nM30\n");
+    let stop = advance(&mut debuggee, Goal::Continue);
+    let text = "#3006: HEAD #140 AND #141, #140 #X (#140 = -90, #141 = vacant)";
+    assert_eq!(stop, Stop::Pause(text.to_owned()));
+}

@@ -9,6 +9,7 @@ use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::EventSink;
 use gcode_lang::program::Library;
 use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::ProgramName;
 
 /// Change of a control between two blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +72,17 @@ impl ReversibleRun {
     /// Returns the control, whose next block is lowered.
     pub(crate) fn control(&self) -> &Control {
         &self.control
+    }
+
+    /// Returns true if a program is loaded, or the library has it.
+    pub(crate) fn has_program(&mut self, name: &ProgramName) -> bool {
+        let mut loaded = self.control.memory().programs().iter();
+        loaded.any(|program| program.name == *name)
+            || match name {
+                ProgramName::Number(number) => self.library.program(*number).is_some(),
+                ProgramName::Name(name) => self.library.named(name).is_some(),
+                ProgramName::Unnamed => false,
+            }
     }
 
     /// Returns the number of executed blocks.

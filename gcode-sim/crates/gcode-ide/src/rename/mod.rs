@@ -1,8 +1,10 @@
 //! Rename of variables, sequence numbers and programs: everything that refers to them changes, or nothing.
+mod message;
 mod number;
 mod program;
 #[cfg(test)]
 mod tests;
+mod unfollowed;
 mod variable;
 
 pub(crate) use number::{MAX_NUMBER, is_number};

@@ -43,6 +43,7 @@ impl Project {
         if !(1..=MAX_NUMBER).contains(&new) {
             return Err(Refusal::new(format!("N{new} is out of range: 1 to {MAX_NUMBER}")));
         }
+        self.refuse_unfollowed(key, |changed| changed == number || changed == new)?;
         if let Some(taken) = self.number_references(key, new).first() {
             let place = self.place(key, taken.location.range);
             let reason = match taken.access {

@@ -201,3 +201,45 @@ fn numbers_are_given_anew_with_their_jumps() {
     assert!(renumbered("O1\nN1\nGOTO#1\n").unwrap_err().contains("any sequence number"));
     assert!(renumbered("O1\nG66.1 P9000\nN1\n").unwrap_err().contains("argument of every block"));
 }
+
+/// Refusal of a renumbering of the program with the cursor.
+fn not_renumbered(text: &str) -> String {
+    let fixture = fixture(text);
+    let key = fixture.project.program_at(fixture.file, fixture.offset).unwrap();
+    fixture.project.renumber(key, None, 10, 10).unwrap_err().reason
+}
+
+#[test]
+fn a_number_to_which_a_shared_subprogram_returns_stays() {
+    let others = "//- O101.nc\nO101\nM98 P200\nM30\nN50 M30\n//- O200.nc\nO200\nM99 P50\n";
+    let text = format!("//- O100.nc\nO100\nM98 P200\nM30\nN5$00 M30\n{others}");
+    let reason = "O0101, which calls O0200 too, returns to its own N50: O0200 line 2";
+    assert_eq!(refused(&text, "N60"), reason);
+    assert_eq!(not_renumbered(&text), reason);
+    // N7 is in no M99 P: each of both programs may have it.
+    let free =
+        text.replace("N5$00 M30\n//- O101.nc", "N5 M0\nN50 M30\n//- O101.nc").replacen("N5 M0", "N$05 M0", 1);
+    assert!(renamed(&free, "N7").contains("N7 M0\nN50 M30\n"), "{}", renamed(&free, "N7"));
+}
+
+#[test]
+fn a_number_that_an_unknown_cycle_names_stays() {
+    let text = "O1\nG18\nG71 U2. R1.\nG71 P15 Q25 U.5 F.2\nN$015 G0 X10.\nN25 G1 Z-30.\nN30 M30\n";
+    let reason = "O0001 line 4 may refer to a sequence number by P15: G71 is not known to this control";
+    assert_eq!(refused(text, "16"), reason);
+    assert_eq!(not_renumbered(text), reason);
+    let other = text.replace("$0", "").replace("N30", "N$030");
+    assert!(renamed(&other, "40").contains("N40 M30"));
+    assert!(refused(&other, "25").contains("Q25"), "a new number that the cycle names");
+    let dwell = "O1\nG4 P15\nG83 Z-1. R1. Q15 F9.\nN$015 M30\n";
+    assert_eq!(renamed(dwell, "16"), "O1\nG4 P15\nG83 Z-1. R1. Q15 F9.\nN16 M30\n", "no sequence numbers");
+}
+
+#[test]
+fn a_variable_that_a_message_names_stays() {
+    let text = "//- O1.nc\nO1\n#$0140=5.\nG65 P2\nM30\n//- O2.nc\nO2\nX#140\n#3006=1(HEAD TO #140)\nM99\n";
+    let reason = "the message of O0002 line 3 names #140: change its text by hand first";
+    assert_eq!(refused(text, "#150"), reason);
+    let other = text.replace("TO #140", "TO #1401");
+    assert!(renamed(&other, "#150").contains("X#150\n#3006=1(HEAD TO #1401)"));
+}

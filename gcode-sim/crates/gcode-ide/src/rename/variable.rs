@@ -30,6 +30,7 @@ impl Project {
         let keys = self.programs_of_scope(scope, program);
         self.refuse_computed_variables(&keys, number)?;
         self.refuse_names(&[number])?;
+        self.refuse_messages(&keys, number)?;
         self.refuse_address_calls(&[number])?;
         if scope == VariableScope::Local {
             self.refuse_unknown_level(&keys, number)?;

@@ -126,6 +126,14 @@ fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
         return None;
     }
     let chars: Vec<char> = alarm_line.whole.chars().collect();
+    let in_word = letter_o_in_word(&chars);
+    in_word
+        .or_else(|| letter_o_in_number(&chars))
+        .map(|(wrong, right)| format!("'{wrong}' has the letter O instead of a zero: write {right}"))
+}
+
+/// Returns a word with a letter O in its number, and the right one: `GO1`, `M3O`, `GO X5.`.
+fn letter_o_in_word(chars: &[char]) -> Option<(String, String)> {
     (0..chars.len()).find_map(|at| {
         let letter = chars[at];
         if !letter.is_ascii_uppercase() || letter == 'O' || at > 0 && chars[at - 1].is_ascii_alphabetic() {
@@ -135,13 +143,35 @@ fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
         let number: String = chars[at + 1..].iter().take_while(is_number).collect();
         let behind = chars.get(at + 1 + number.len());
         let is_word = behind.is_none_or(|c| !c.is_ascii_alphabetic());
-        // DO1 and GO TO 10 are statements.
-        let is_statement =
-            letter == 'D' && number.starts_with('O') || matches!(letter, 'G' | 'T') && number == "O";
-        (number.contains('O') && is_word && !is_statement).then(|| {
-            let corrected = number.replace('O', "0");
-            format!("'{letter}{number}' has the letter O instead of a zero: write {letter}{corrected}")
-        })
+        // DO1, GO TO 10 and GO 10 are statements; GO X5. is none.
+        let mut next = chars[at + 1 + number.len()..].iter().skip_while(|c| **c == ' ');
+        let is_before_axis = next.next().is_some_and(|c| c.is_ascii_uppercase() && *c != 'T');
+        let is_statement = match letter {
+            'D' => number.starts_with('O'),
+            'G' => number == "O" && !is_before_axis,
+            'T' => number == "O",
+            _ => false,
+        };
+        (number.contains('O') && is_word && !is_statement)
+            .then(|| (format!("{letter}{number}"), format!("{letter}{}", number.replace('O', "0"))))
+    })
+}
+
+/// Returns a number with a letter O that no address precedes, and the right one: `#1OO`, `=1O.`, `GOTO 1O`.
+fn letter_o_in_number(chars: &[char]) -> Option<(String, String)> {
+    (0..chars.len()).find_map(|at| {
+        let before = chars[..at].iter().rfind(|c| **c != ' ').copied();
+        let is_joined = at > 0 && (chars[at - 1].is_ascii_alphanumeric() || chars[at - 1] == '.');
+        let is_start = match chars[at] {
+            '0'..='9' | '.' => !is_joined,
+            'O' => matches!(before, Some('#' | '=' | '[' | '+' | '-' | '*' | '/')),
+            _ => false,
+        };
+        let number: String = chars[at..].iter().take_while(|c| matches!(c, '0'..='9' | 'O' | '.')).collect();
+        let is_number = number.contains('O') && number.contains(|c: char| c.is_ascii_digit());
+        let behind = chars.get(at + number.len());
+        let is_whole = behind.is_none_or(|c| !c.is_ascii_alphabetic());
+        (is_start && is_number && is_whole).then(|| (number.clone(), number.replace('O', "0")))
     })
 }
 
@@ -292,9 +322,27 @@ mod tests {
         assert!(help(no_value(), "GOO X10.", "O X").contains("write G00"));
         assert!(help(no_value(), "M3O", "O\n").contains("write M30"));
         assert!(help(no_number('Y'), "G00 X1O.5 Y", "Y").contains("write X10.5"));
-        for (alarm, line) in
-            [(no_value(), "GO TO X"), (Alarm::WhileFormat, "WHILE #1 LT 5 DO1"), (no_value(), "#1=ROUND X")]
-        {
+        assert!(
+            help(no_value(), "GO X5.", "X5.").contains("'GO' has the letter O instead of a zero: write G0")
+        );
+        assert!(
+            help(no_value(), "#100=1O.", "O.")
+                .contains("'1O.' has the letter O instead of a zero: write 10.")
+        );
+        assert!(help(no_value(), "#5=O.5", "O.5").contains("write 0.5"));
+        assert!(
+            help(not_a_word(), "#1OO=5.", "OO")
+                .contains("'1OO' has the letter O instead of a zero: write 100")
+        );
+        assert!(help(not_a_word(), "IF[#1 EQ 2]GOTO 1O", "O").contains("write 10"));
+        for (alarm, line) in [
+            (no_value(), "GO 10"),
+            (no_value(), "#1=2OR#3"),
+            (no_value(), "O1 X"),
+            (no_value(), "GO TO X"),
+            (Alarm::WhileFormat, "WHILE #1 LT 5 DO1"),
+            (no_value(), "#1=ROUND X"),
+        ] {
             assert!(!help(alarm, line, line).contains("letter O"), "{line}");
         }
     }

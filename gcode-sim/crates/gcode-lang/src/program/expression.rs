@@ -76,7 +76,15 @@ fn value(text: &str) -> Result<Operand, Alarm> {
 }
 
 fn condition(text: &str) -> Result<Bytecode, Alarm> {
-    match statement(&format!("IF[{text}]GOTO1"))? {
+    const END: &str = "]GOTO1";
+    let read = statement(&format!("IF[{text}{END}")).map_err(|alarm| match alarm {
+        // The text ends where the statement around it goes on.
+        Alarm::Expression { text: from } => {
+            Alarm::Expression { text: from.strip_suffix(END).unwrap_or(&from).to_owned() }
+        }
+        alarm => alarm,
+    });
+    match read? {
         Statement::IfGoto { condition, to } if to.node == Operand::Number(1.0) => Ok(condition),
         _ => Err(foreign(text)),
     }
@@ -119,6 +127,13 @@ mod tests {
         ] {
             assert!(Expression::parse(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn the_reason_of_a_condition_names_what_was_typed() {
+        let reason = |text: &str| Expression::parse(text).unwrap_err();
+        assert_eq!(reason("#1 GT"), Alarm::Expression { text: String::new() });
+        assert_eq!(reason("#1 GT *5"), Alarm::Expression { text: "*5".to_owned() });
     }
 
     #[test]

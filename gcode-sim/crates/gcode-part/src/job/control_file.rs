@@ -28,18 +28,49 @@ use gcode_lang::control::{
 /// # Errors
 /// An unknown key or a value outside the range of its setting, with its line and the allowed values.
 pub fn apply(text: &str, settings: &mut Settings, takes_dialect: bool) -> Result<(), FileError> {
+    for Entry { key, name, value } in read(text)? {
+        if !takes_dialect && is_dialect(&name) {
+            continue;
+        }
+        let reader = Reader { text };
+        settings.set(&name, &value).map_err(|error| reader.error(&key, error.to_string()))?;
+    }
+    Ok(())
+}
+
+/// Returns the settings that the text of a control file states, with their values as texts.
+///
+/// # Errors
+/// A text that is no TOML, or a value that is neither a number nor a text.
+pub fn entries(text: &str) -> Result<Vec<(String, String)>, FileError> {
+    Ok(read(text)?.into_iter().map(|entry| (entry.name, entry.value)).collect())
+}
+
+/// Setting of a control file.
+struct Entry {
+    /// Key of the file: the setting, or the table that has it.
+    key: Located<String>,
+    name: String,
+    value: String,
+}
+
+fn is_dialect(name: &str) -> bool {
+    name.eq_ignore_ascii_case("DIALECT")
+}
+
+/// Reads the settings of a control file, the dialect first and the rest in the order of the file.
+fn read(text: &str) -> Result<Vec<Entry>, FileError> {
     let reader = Reader { text };
-    let entries: BTreeMap<Located<String>, Value> = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
-    let mut entries: Vec<_> = entries.into_iter().collect();
-    let is_dialect = |key: &Located<String>| key.as_ref().eq_ignore_ascii_case("DIALECT");
-    entries.retain(|(key, _)| takes_dialect || !is_dialect(key));
-    entries.sort_by_key(|(key, _)| (!is_dialect(key), key.span().start));
-    for (key, value) in entries {
-        let name = key.as_ref();
+    let keys: BTreeMap<Located<String>, Value> = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+    let mut keys: Vec<_> = keys.into_iter().collect();
+    keys.sort_by_key(|(key, _)| (!is_dialect(key.as_ref()), key.span().start));
+    let mut entries = Vec::new();
+    for (key, value) in keys {
+        let name = key.as_ref().clone();
         if let (CODES, Value::Table(codes)) = (name.as_str(), &value) {
             for (code, value) in codes {
-                let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-                settings.set(code, &text).map_err(|error| reader.error(&key, error.to_string()))?;
+                let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                entries.push(Entry { key: key.clone(), name: code.clone(), value });
             }
             continue;
         }
@@ -47,14 +78,14 @@ pub fn apply(text: &str, settings: &mut Settings, takes_dialect: bool) -> Result
             Value::String(text) => text,
             Value::Integer(number) => number.to_string(),
             Value::Float(number) => number.to_string(),
-            Value::Boolean(on) if is_switch(name) => u8::from(on).to_string(),
+            Value::Boolean(on) if is_switch(&name) => u8::from(on).to_string(),
             Value::Boolean(_) | Value::Datetime(_) | Value::Array(_) | Value::Table(_) => {
                 return Err(reader.error(&key, format!("key '{name}': a number or a text in quotes")));
             }
         };
-        settings.set(name, &value).map_err(|error| reader.error(&key, error.to_string()))?;
+        entries.push(Entry { key, name, value });
     }
-    Ok(())
+    Ok(entries)
 }
 
 /// Regular expression of a code.
