@@ -74,11 +74,11 @@ impl<'s, L: Library> Prober<'s, L> {
         let is_same = match (&result.end, &leaf.end) {
             (_, End::Unfollowed(_)) | (None, End::Excluded) => true,
             // A loop that never ends is found after some turns.
-            (Some(End::Limit), End::Limit) => true,
+            (Some(End::Endless | End::Unfollowed(_)), End::Endless) => true,
             (Some(end), followed) => end == followed && result.blocks == leaf.blocks,
             (None, _) => false,
         };
-        if !is_same || result.end.is_some() && (result.failed ^ way.failed) & !way.unfollowed != 0 {
+        if !is_same || result.end.is_some() && (result.failed ^ way.failed) & !(way.unfollowed | result.undecided) != 0 {
             self.shared.disagree(point);
         }
         self.shared.refute(result.failed, point);

@@ -26,6 +26,8 @@ pub(crate) struct PointResult {
     pub(crate) end: Option<End>,
     pub(crate) blocks: u64,
     pub(crate) failed: ClaimSet,
+    /// Claims that a run which a limit has cut off doesn't decide.
+    pub(crate) undecided: ClaimSet,
     /// Values of the variables whose bounds are wanted, at the end of a run.
     pub(crate) values: Vec<Option<f64>>,
 }
@@ -62,7 +64,7 @@ impl<L: Library> Witness<L> {
             _ = self.run.set_term(range.variable, Term::Number(*value));
         }
         let excluded =
-            PointResult { end: None, blocks: 0, failed: 0, values: vec![None; self.question.bounds.len()] };
+            PointResult { end: None, blocks: 0, failed: 0, undecided: 0, values: vec![None; self.question.bounds.len()] };
         for code in &self.question.conditions {
             if !matches!(self.run.decide(code, &mut NoTerms, &[]), Ok((true, _))) {
                 return excluded;
@@ -70,17 +72,24 @@ impl<L: Library> Witness<L> {
         }
         let enough = self.question.enough_blocks().saturating_add(1);
         let limits = Limits { blocks: self.question.max_blocks.min(enough) };
-        let end = End::of(&self.run.run_numbers(limits, &mut self.library));
+        let outcome = self.run.run_numbers(limits, &mut self.library);
+        let end = End::of(&outcome, self.run.control());
         let blocks = self.run.control().blocks();
         self.run.leave_calls();
-        let mut failed = 0;
+        let (mut failed, mut undecided) = (0, 0);
         for (index, claim) in self.question.claims.iter().enumerate() {
             let holds = match (claim, &end) {
                 (Claim::Condition(code), End::Program) => {
                     let formula = self.run.condition(code, &mut NoTerms, &[]);
                     matches!(formula.map(|(formula, _)| value(&formula)), Ok(Some(true)))
                 }
-                (claim, end) => state_at(claim, end, blocks) == ClaimState::Holds,
+                (claim, end) => match state_at(claim, end, blocks) {
+                    ClaimState::Unfollowed(_) => {
+                        undecided |= 1 << index;
+                        true
+                    }
+                    state => state == ClaimState::Holds,
+                },
             };
             failed |= u64::from(!holds) << index;
         }
@@ -94,6 +103,7 @@ impl<L: Library> Witness<L> {
             end: Some(end),
             blocks,
             failed,
+            undecided,
         }
     }
 }

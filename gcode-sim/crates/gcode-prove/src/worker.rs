@@ -80,6 +80,14 @@ impl<L: Library> Prober<'_, L> {
                 self.shared.include(*end == End::Program);
             }
             self.shared.refute(result.failed & claims, point);
+            let undecided = result.undecided & claims;
+            if undecided != 0 {
+                if let Some(End::Unfollowed(what)) = &result.end {
+                    self.shared.note_unfollowed(what);
+                }
+                let domain = Domain::new(point.iter().map(|value| Interval::point(*value)).collect());
+                self.shared.park(pending_box(domain, &self.question.domain(), undecided));
+            }
         }
     }
 }
