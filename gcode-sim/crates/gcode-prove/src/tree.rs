@@ -4,8 +4,8 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use gcode_control::Control;
 use gcode_control::symbolic::{Advance, Formula, Halt, Snapshot, SymbolicRun, Term, Test};
+use gcode_control::{Control, Limits};
 use gcode_enclosure::{Condition, Domain, NodeId};
 use gcode_lang::program::{Bytecode, Library};
 use gcode_lang::syntax::ast::BinaryOp;
@@ -342,10 +342,14 @@ impl<L: Library> Tree<L> {
     /// Executes a block.
     fn block(&mut self, open: &mut Expansion, watch: &Watch) -> Option<Progress> {
         let blocks = self.run.control().blocks();
+        let limits = Limits { blocks: self.question.max_blocks };
         if blocks.is_multiple_of(BLOCKS_PER_LOOK) && watch.is_over() {
             return Some(Progress::Stopped);
         }
-        if blocks > self.question.enough_blocks() || blocks >= self.question.max_blocks {
+        if blocks > self.question.enough_blocks()
+            || blocks >= self.question.max_blocks
+            || self.run.exceeds_moves(limits)
+        {
             return Some(Progress::Ended(self.leaf(End::cut_off(blocks), blocks)));
         }
         match self.run.advance(&mut self.nodes, open.answers(), &mut self.library) {
@@ -357,7 +361,7 @@ impl<L: Library> Tree<L> {
             Advance::End(outcome, used) => {
                 let end = End::of(&outcome, self.run.control());
                 self.end(open, end, used)
-            },
+            }
             Advance::Unfollowed(what) => {
                 let what = format!("{}: {what}", self.place());
                 Some(Progress::Ended(self.leaf(End::Unfollowed(what), blocks)))
