@@ -53,9 +53,8 @@ const SPECIAL: [f64; 40] = [
 
 /// Returns the settings with these choices, as bits.
 fn settings(choices: u8) -> Settings {
-    let mut settings = Settings::default();
-    settings.returns_signed_angles = choices & 1 != 0;
-    settings.zeroes_residues = choices & 2 != 0;
+    let (returns_signed_angles, zeroes_residues) = (choices & 1 != 0, choices & 2 != 0);
+    let mut settings = Settings { returns_signed_angles, zeroes_residues, ..Settings::default() };
     settings.undocumented.tan_90_alarms = choices & 4 != 0;
     settings.undocumented.atan_of_zeros_alarms = choices & 8 != 0;
     settings.undocumented.negative_bits_alarm = choices & 16 != 0;

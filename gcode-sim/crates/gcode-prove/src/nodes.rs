@@ -108,9 +108,9 @@ impl Nodes {
         self.has_mismatch
     }
 
-    /// Returns true if an answer hasn't been taken.
-    pub(crate) fn has_answers_left(&self) -> bool {
-        !self.repeated.is_empty()
+    /// Returns the number of answers that haven't been taken.
+    pub(crate) fn answers_left(&self) -> usize {
+        self.repeated.len()
     }
 
     /// Returns what the ranges answer to a test.

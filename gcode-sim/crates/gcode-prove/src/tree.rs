@@ -226,8 +226,12 @@ impl<L: Library> Tree<L> {
             let before = expansion.all_used;
             let progress = self.advance(&mut expansion, watch);
             let is_stopped = matches!(progress, Some(Progress::Stopped));
-            let has_left = progress.is_some() && !is_stopped && self.nodes.has_answers_left();
-            if self.nodes.has_mismatch() || has_left {
+            let left = self.nodes.answers_left();
+            let is_wrong = match &progress {
+                None => left != expansion.answers().len(),
+                Some(_) => left > 0 && !is_stopped,
+            };
+            if self.nodes.has_mismatch() || is_wrong {
                 break self.unfollowed("a way whose questions change");
             }
             match progress {
@@ -315,7 +319,13 @@ impl<L: Library> Tree<L> {
                 };
                 let state = match (claim, &leaf.end) {
                     (Claim::Condition(code), End::Program) => {
-                        match self.run.condition(code, &mut self.nodes, open.answers()) {
+                        let before = self.nodes.answers_left();
+                        let result = self.run.condition(code, &mut self.nodes, open.answers());
+                        if matches!(result, Err(Halt::Alarm(_) | Halt::Unfollowed(_))) {
+                            // The answers taken before belong to this claim.
+                            open.count(before - self.nodes.answers_left());
+                        }
+                        match result {
                             Ok((formula, used)) => {
                                 open.count(used);
                                 match self.formula(&formula) {
