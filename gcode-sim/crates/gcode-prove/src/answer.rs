@@ -374,7 +374,7 @@ impl<S: Setup> Prover<'_, S> {
                     return Err(RequestError::NothingLeft.into());
                 }
                 (Bound::Value(low), Bound::Value(high)) if low <= -f64::MAX || high >= f64::MAX => {
-                    self.answer.unfollowed.push(format!("bounds of #{variable}: none found in the time"));
+                    self.answer.unfollowed.push(format!("bounds of #{variable}: no finite ones are found"));
                     None
                 }
                 (Bound::Value(low), Bound::Value(high)) => Some((low, high)),
