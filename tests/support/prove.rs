@@ -88,7 +88,8 @@ impl<'t> Rows<'t> {
             match part.split_once(' ').unwrap() {
                 ("where", condition) => self.ask.conditions.push(condition.to_owned()),
                 ("call", call) => self.call = Some(call.to_owned()),
-                _ => panic!("{part}: neither where nor call"),
+                ("max-blocks", blocks) => self.ask.max_blocks = blocks.parse().unwrap(),
+                _ => panic!("{part}: neither where, call nor max-blocks"),
             }
         }
     }

@@ -129,19 +129,35 @@ impl ProofReport {
     /// Returns a counterexample as a program to run, and as the command that runs it.
     fn counterexample(&self, values: &BTreeMap<String, f64>) -> String {
         let mut text = String::new();
-        for (variable, value) in values {
-            _ = writeln!(text, "             {variable}={}", number(*value));
-        }
-        match &self.call {
-            Some(call) => _ = writeln!(text, "             {call}\n             M30"),
-            None => {
-                let sets: Vec<_> =
-                    values.iter().map(|(variable, value)| format!("--set '{variable}={value}'")).collect();
-                _ = writeln!(text, "           gcode-sim run {} {}", self.program, sets.join(" "));
+        let are_written = values.values().all(|value| digits(*value) <= MAX_DIGITS);
+        if are_written {
+            for (variable, value) in values {
+                _ = writeln!(text, "             {variable}={}", number(*value));
             }
+        }
+        let sets: Vec<_> =
+            values.iter().map(|(variable, value)| format!("--set '{variable}={value}'")).collect();
+        let sets = sets.join(" ");
+        match &self.call {
+            Some(call) => {
+                _ = writeln!(text, "             {call}\n             M30");
+                if !are_written {
+                    // Numbers that a program can't write are set before it runs.
+                    _ = writeln!(text, "           gcode-sim run CALL.nc {sets}, where CALL.nc is this program");
+                }
+            }
+            None => _ = writeln!(text, "           gcode-sim run {} {sets}", self.program),
         }
         text
     }
+}
+
+/// Largest number of digits of a number in an expression (PS0003).
+const MAX_DIGITS: usize = 12;
+
+/// Returns the number of digits of a number as a program writes it.
+fn digits(value: f64) -> usize {
+    number(value).bytes().filter(u8::is_ascii_digit).count()
 }
 
 /// Returns a number as a program writes it, always with a point.
@@ -166,5 +182,6 @@ mod tests {
         assert_eq!(percent(1e-9), "less than 0.01 %");
         assert_eq!(number(3.0), "3.");
         assert_eq!(number(-0.25), "-0.25");
+        assert_eq!((digits(-12345678901.5), digits(1e-12)), (12, 13));
     }
 }

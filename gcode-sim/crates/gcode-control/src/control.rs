@@ -96,6 +96,11 @@ const MOVES_PER_BLOCK: u64 = 20;
 /// Number of blocks between updates of [`Progress`].
 const PROGRESS_INTERVAL: u64 = 4096;
 
+/// Returns the number of moves beyond which a run ends.
+pub(super) fn max_moves(limits: Limits) -> u64 {
+    limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MIN_MOVE_LIMIT)
+}
+
 impl Control {
     /// Returns a control after power-on that will run the first program of `memory`.
     pub fn new(memory: Memory, settings: Settings) -> Self {
@@ -153,7 +158,7 @@ impl Control {
             return outcome;
         }
         self.loop_detector.endless_loop = None;
-        self.executor.log.max_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MIN_MOVE_LIMIT);
+        self.executor.log.max_moves = max_moves(limits);
         if self.executor.log.blocks == 0 {
             self.executor.state_start(sink);
         }

@@ -106,12 +106,17 @@ impl Registers {
     }
 
     fn reads_of_code(&self, code: &[Instruction], numbers: &mut Vec<u32>) {
+        // Numbers of reads before each of the last three instructions.
+        let mut counts = [numbers.len(); 3];
         for (place, Instruction { operation, .. }) in code.iter().enumerate() {
+            let before = numbers.len();
             match operation {
                 Operation::Compare(Relation::Eq | Relation::Ne, values) if is_null(code, place) => {
                     // The value beside #0 is read for its vacancy alone.
-                    if values.contains(&OperandSource::Computed(ComputedSource::Stacked)) {
-                        numbers.pop();
+                    if values.contains(&OperandSource::Computed(ComputedSource::Stacked))
+                        && is_loaded(code, place)
+                    {
+                        numbers.truncate(counts[0]);
                     }
                 }
                 Operation::Add(values)
@@ -139,6 +144,7 @@ impl Registers {
                 }
                 Operation::Uncommon(_) => {}
             }
+            counts = [counts[1], counts[2], before];
         }
     }
 
@@ -159,6 +165,18 @@ impl Registers {
 fn is_null(code: &[Instruction], place: usize) -> bool {
     let before = place.checked_sub(1).and_then(|before| code.get(before));
     before.is_some_and(|before| before.operation == Operation::Uncommon(UncommonOp::Read(0)))
+}
+
+/// Returns true if the value that a comparison with #0 takes from the stack is a variable, which nothing has computed.
+fn is_loaded(code: &[Instruction], place: usize) -> bool {
+    // It is loaded, pushed, #0 is read, and both are compared.
+    let loaded = place.checked_sub(3).and_then(|loaded| code.get(loaded));
+    let is_load = |operation: &Operation| {
+        use UncommonOp::{Load, LoadIndirect, Push, Read};
+        let is_push = code[place - 2].operation == Operation::Uncommon(Push);
+        is_push && matches!(operation, Operation::Uncommon(Load(_) | Read(_) | LoadIndirect))
+    };
+    loaded.is_some_and(|loaded| is_load(&loaded.operation))
 }
 
 #[cfg(test)]
@@ -204,6 +222,9 @@ mod tests {
             assert!(reads(block).is_empty(), "{block}");
         }
         assert_eq!(reads("IF[[#2 EQ #0]OR[#1 GT 3]]GOTO 9"), [1]);
+        assert_eq!(reads("IF[[#1 GT 3]OR[#5001 EQ #0]]GOTO 9"), [1]);
+        assert_eq!(reads("IF[[#1+#2] EQ #0]GOTO 9"), [1, 2]);
+        assert_eq!(reads("IF[[#1 GT 3]AND[#2 EQ #0]]GOTO 9"), [1]);
         assert_eq!(reads("IF[#[#1+95] EQ #0]GOTO 9"), [1], "the number is read, #100 isn't");
     }
 }

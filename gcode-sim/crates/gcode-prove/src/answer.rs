@@ -370,16 +370,23 @@ impl<S: Setup> Prover<'_, S> {
         let (lower, upper) = (lower?, upper?);
         for ((variable, lower), upper) in question.bounds.iter().zip(lower).zip(upper) {
             let range = match (lower, upper) {
+                (Bound::Excluded, _) | (_, Bound::Excluded) if !question.conditions.is_empty() => {
+                    return Err(RequestError::NothingLeft.into());
+                }
+                (Bound::Value(low), Bound::Value(high)) if low <= -f64::MAX || high >= f64::MAX => {
+                    self.answer.unfollowed.push(format!("bounds of #{variable}: no finite ones are found"));
+                    None
+                }
                 (Bound::Value(low), Bound::Value(high)) => Some((low, high)),
                 (Bound::Unfollowed(what), _) | (_, Bound::Unfollowed(what)) => {
                     self.answer.unfollowed.push(what);
                     None
                 }
-                (Bound::None, _) | (_, Bound::None) => None,
+                (Bound::None | Bound::Excluded, _) | (_, Bound::None | Bound::Excluded) => None,
             };
             self.answer.bounds.push(VariableBounds { variable: *variable, range });
         }
-        check_values(&self.answer.bounds, &domain, self.witness(&question, &[])?)
+        check_values(&self.answer.bounds, &domain, self.witness(&question, &[])?, watch)
             .map_or(Ok(()), |disagreement| Err(ProveError::Setup(disagreement)))
     }
 
@@ -405,10 +412,11 @@ fn check_values<L: Library>(
     bounds: &[VariableBounds],
     domain: &Domain,
     mut witness: Witness<L>,
+    watch: &Watch,
 ) -> Option<String> {
     let mut points = (1..40).map(|index| spread_point(domain, index));
     points.find_map(|point| {
-        let values = witness.run(&point).values;
+        let values = witness.run(&point, watch).values;
         let outside = bounds.iter().zip(values).find(|(bounds, value)| {
             let Some((low, high)) = bounds.range else { return false };
             value.is_some_and(|value| !(low..=high).contains(&value))

@@ -1,5 +1,5 @@
 //! End of a way through a program, and what the claims and bounds are there.
-use gcode_control::Outcome;
+use gcode_control::{Control, Outcome};
 use gcode_enclosure::{Condition, NodeId};
 use gcode_lang::syntax::ast::BinaryOp;
 
@@ -23,19 +23,26 @@ pub(crate) enum End {
     /// M02, M30 or M99.
     Program,
     Alarm(String),
-    Limit,
-    /// Something isn't followed.
+    /// A loop provably never ends.
+    Endless,
+    /// Something isn't followed, or a limit has cut off the run.
     Unfollowed(String),
 }
 
 impl End {
-    /// Returns the end of a run.
-    pub(crate) fn of(outcome: &Outcome) -> Self {
+    /// Returns the end of a control's run.
+    pub(crate) fn of(outcome: &Outcome, control: &Control) -> Self {
         match outcome {
             Outcome::End => Self::Program,
             Outcome::Alarm(stop) => Self::Alarm(stop.alarm.code().to_string()),
-            Outcome::Limit => Self::Limit,
+            Outcome::Limit if control.endless_loop().is_some() => Self::Endless,
+            Outcome::Limit => Self::cut_off(control.blocks()),
         }
+    }
+
+    /// Returns the end of a run that a limit has cut off after some blocks: what it would have done isn't known.
+    pub(crate) fn cut_off(blocks: u64) -> Self {
+        Self::Unfollowed(format!("a run of more than {blocks} blocks"))
     }
 }
 
@@ -69,17 +76,17 @@ pub(crate) enum BoundState {
 pub(crate) fn state_at(claim: &Claim, end: &End, blocks: u64) -> ClaimState {
     let holds = match (claim, end) {
         (_, End::Excluded) => true,
-        (Claim::Blocks(limit), End::Unfollowed(_) | End::Limit) if blocks > *limit => false,
+        (Claim::Blocks(limit), End::Unfollowed(_)) if blocks > *limit => false,
         (_, End::Unfollowed(what)) => return ClaimState::Unfollowed(what.clone()),
         (Claim::Condition(_), End::Program) => return ClaimState::Unfollowed("a condition".to_owned()),
-        (Claim::Condition(_), End::Alarm(_) | End::Limit) => true,
+        (Claim::Condition(_), End::Alarm(_) | End::Endless) => true,
         (Claim::NoAlarm, end) => !matches!(end, End::Alarm(_)),
         (Claim::OnlyAlarms(codes), End::Alarm(code)) => codes.contains(code),
-        (Claim::OnlyAlarms(_), End::Program | End::Limit) => true,
-        (Claim::Blocks(_), End::Limit) => false,
+        (Claim::OnlyAlarms(_), End::Program | End::Endless) => true,
+        (Claim::Blocks(_), End::Endless) => false,
         (Claim::Blocks(limit), End::Program | End::Alarm(_)) => blocks <= *limit,
         (Claim::Travel(_), End::Alarm(code)) => !code.starts_with("OT"),
-        (Claim::Travel(_), End::Program | End::Limit) => true,
+        (Claim::Travel(_), End::Program | End::Endless) => true,
     };
     if holds { ClaimState::Holds } else { ClaimState::Fails }
 }

@@ -64,6 +64,8 @@ mod variable_bounds;
 mod worker;
 
 mod answer;
+#[cfg(test)]
+mod arithmetic_tests;
 
 pub use answer::{Answer, Ask, ClaimAnswer, ProveError, Setup, VariableBounds, Verdict, prove, sample};
 pub use request::RequestError;

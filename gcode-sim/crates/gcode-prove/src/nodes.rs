@@ -1,5 +1,5 @@
 //! Terms of a symbolic run as nodes of an arena, with what holds over all ranges.
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 
 use gcode_control::symbolic::{Term, TermOperation, Terms, Test};
 use gcode_enclosure::{
@@ -29,6 +29,12 @@ pub(crate) struct Nodes {
     constants: BTreeSet<u64>,
     /// Answers of the way that is followed.
     answers: HashMap<TestKey, bool>,
+    /// What the ranges answer to each test that has been asked, once and for all: a later node could decide it.
+    decisions: HashMap<TestKey, Option<bool>>,
+    /// Tests whose answers are taken next, in their order.
+    repeated: VecDeque<TestKey>,
+    /// An answer has been taken for another test than its own.
+    has_mismatch: bool,
 }
 
 /// Test as a key: what is asked, and the bits of its terms.
@@ -65,6 +71,9 @@ impl Nodes {
             constants: BTreeSet::new(),
             root: Enclosures::with_degree(domain, 0),
             answers: HashMap::new(),
+            decisions: HashMap::new(),
+            repeated: VecDeque::new(),
+            has_mismatch: false,
         }
     }
 
@@ -86,6 +95,36 @@ impl Nodes {
     /// Sets the answers of the way that is followed.
     pub(crate) fn set_answers(&mut self, answers: impl Iterator<Item = (Test, bool)>) {
         self.answers = answers.map(|(test, answer)| (key(&test), answer)).collect();
+    }
+
+    /// Sets the tests whose answers are taken next.
+    pub(crate) fn repeat<'t>(&mut self, tests: impl Iterator<Item = &'t Test>) {
+        self.repeated = tests.map(key).collect();
+        self.has_mismatch = false;
+    }
+
+    /// Returns true if an answer has been taken for another test than its own.
+    pub(crate) fn has_mismatch(&self) -> bool {
+        self.has_mismatch
+    }
+
+    /// Returns the number of answers that haven't been taken.
+    pub(crate) fn answers_left(&self) -> usize {
+        self.repeated.len()
+    }
+
+    /// Returns what the ranges answer to a test.
+    fn decide(&mut self, test: &Test) -> Option<bool> {
+        match *test {
+            Test::Compare(relation, left, right) => {
+                let condition = self.condition(relation, left, right);
+                self.root.decide(&self.arena, condition)
+            }
+            Test::Finite(term) => {
+                let id = self.id(term);
+                is_finite(&self.arena, &mut self.root, id)
+            }
+        }
     }
 
     fn term(&mut self, id: NodeId) -> Term {
@@ -250,16 +289,20 @@ impl Terms for Nodes {
     }
 
     fn answer(&mut self, test: &Test) -> Option<bool> {
-        let known = match *test {
-            Test::Compare(relation, left, right) => {
-                let condition = self.condition(relation, left, right);
-                self.root.decide(&self.arena, condition)
-            }
-            Test::Finite(term) => {
-                let id = self.id(term);
-                is_finite(&self.arena, &mut self.root, id)
+        let key = key(test);
+        let decision = match self.decisions.get(&key) {
+            Some(decision) => *decision,
+            None => {
+                let decision = self.decide(test);
+                self.decisions.insert(key, decision);
+                decision
             }
         };
-        known.or_else(|| self.answers.get(&key(test)).copied())
+        let known = decision.or_else(|| self.answers.get(&key).copied());
+        if known.is_none() {
+            // The next answer of the way is taken.
+            self.has_mismatch |= self.repeated.pop_front().is_some_and(|expected| expected != key);
+        }
+        known
     }
 }

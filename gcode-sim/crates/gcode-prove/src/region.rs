@@ -17,6 +17,9 @@ const MAX_FORKS: usize = 400;
 /// Largest number of questions of a box, decided ones included.
 const MAX_STEPS: usize = 20_000;
 
+/// Number of questions between two polls of the clock.
+const STEPS_PER_POLL: usize = 64;
+
 /// Set of claims, as bits.
 pub(crate) type ClaimSet = u64;
 
@@ -86,6 +89,10 @@ impl Region {
         while let Some((id, mut enclosures, last)) = pending.pop() {
             steps += 1;
             if steps > MAX_STEPS {
+                return self.give_up();
+            }
+            if steps.is_multiple_of(STEPS_PER_POLL) && watch.is_over() {
+                self.finding.is_stopped = true;
                 return self.give_up();
             }
             let fork = match tree.step(id, watch) {

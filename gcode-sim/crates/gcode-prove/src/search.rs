@@ -69,16 +69,20 @@ impl<'s, L: Library> Prober<'s, L> {
 
     /// Runs a point by the control. Where it disagrees with the tree, nothing is proved.
     fn confirm(&mut self, point: &[f64], way: &PointWay) {
-        let result = self.witness.run(point);
+        let result = self.witness.run(point, self.watch);
         let leaf = &way.leaf;
         let is_same = match (&result.end, &leaf.end) {
             (_, End::Unfollowed(_)) | (None, End::Excluded) => true,
             // A loop that never ends is found after some turns.
-            (Some(End::Limit), End::Limit) => true,
+            (Some(End::Endless | End::Unfollowed(_)), End::Endless) => true,
+            (Some(End::Unfollowed(_)), _) if self.watch.is_over() => true,
             (Some(end), followed) => end == followed && result.blocks == leaf.blocks,
             (None, _) => false,
         };
-        if !is_same || result.end.is_some() && (result.failed ^ way.failed) & !way.unfollowed != 0 {
+        if !is_same
+            || result.end.is_some()
+                && (result.failed ^ way.failed) & !(way.unfollowed | result.undecided) != 0
+        {
             self.shared.disagree(point);
         }
         self.shared.refute(result.failed, point);

@@ -30,7 +30,7 @@ pub(crate) fn simplified<L: Library>(
                 let mut next = point.clone();
                 next[input] = value;
                 watch.count_run();
-                if witness.run(&next).failed >> claim & 1 == 1 {
+                if witness.run(&next, watch).failed >> claim & 1 == 1 {
                     point = next;
                     break;
                 }

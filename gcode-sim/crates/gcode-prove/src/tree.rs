@@ -4,8 +4,8 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use gcode_control::Control;
 use gcode_control::symbolic::{Advance, Formula, Halt, Snapshot, SymbolicRun, Term, Test};
+use gcode_control::{Control, Limits};
 use gcode_enclosure::{Condition, Domain, NodeId};
 use gcode_lang::program::{Bytecode, Library};
 use gcode_lang::syntax::ast::BinaryOp;
@@ -213,6 +213,7 @@ impl<L: Library> Tree<L> {
         let (again, before) = way.split_at(open.answers.len());
         self.nodes.set_answers(before.iter().copied());
         let mut again = again.iter().rev();
+        self.nodes.repeat(again.clone().map(|(test, _)| test));
         self.run.restore(&open.snapshot);
         let mut expansion = Expansion {
             phase: open.phase.clone(),
@@ -223,7 +224,17 @@ impl<L: Library> Tree<L> {
         };
         let state = loop {
             let before = expansion.all_used;
-            match self.advance(&mut expansion, watch) {
+            let progress = self.advance(&mut expansion, watch);
+            let is_stopped = matches!(progress, Some(Progress::Stopped));
+            let left = self.nodes.answers_left();
+            let is_wrong = match &progress {
+                None => left != expansion.answers().len(),
+                Some(_) => left > 0 && !is_stopped,
+            };
+            if self.nodes.has_mismatch() || is_wrong {
+                break self.unfollowed("a way whose questions change");
+            }
+            match progress {
                 Some(Progress::Ended(leaf)) => break SegmentState::Leaf(Rc::new(leaf)),
                 Some(Progress::Asked(_)) if self.segments.len() >= MAX_SEGMENTS => {
                     break self.unfollowed("more than 30,000 ways");
@@ -308,7 +319,13 @@ impl<L: Library> Tree<L> {
                 };
                 let state = match (claim, &leaf.end) {
                     (Claim::Condition(code), End::Program) => {
-                        match self.run.condition(code, &mut self.nodes, open.answers()) {
+                        let before = self.nodes.answers_left();
+                        let result = self.run.condition(code, &mut self.nodes, open.answers());
+                        if matches!(result, Err(Halt::Alarm(_) | Halt::Unfollowed(_))) {
+                            // The answers taken before belong to this claim.
+                            open.count(before - self.nodes.answers_left());
+                        }
+                        match result {
                             Ok((formula, used)) => {
                                 open.count(used);
                                 match self.formula(&formula) {
@@ -335,14 +352,15 @@ impl<L: Library> Tree<L> {
     /// Executes a block.
     fn block(&mut self, open: &mut Expansion, watch: &Watch) -> Option<Progress> {
         let blocks = self.run.control().blocks();
+        let limits = Limits { blocks: self.question.max_blocks };
         if blocks.is_multiple_of(BLOCKS_PER_LOOK) && watch.is_over() {
             return Some(Progress::Stopped);
         }
-        if blocks > self.question.enough_blocks() {
-            return self.end(open, End::Limit, 0);
-        }
-        if blocks >= self.question.max_blocks {
-            return self.end(open, End::Limit, 0);
+        if blocks > self.question.enough_blocks()
+            || blocks >= self.question.max_blocks
+            || self.run.exceeds_moves(limits)
+        {
+            return Some(Progress::Ended(self.leaf(End::cut_off(blocks), blocks)));
         }
         match self.run.advance(&mut self.nodes, open.answers(), &mut self.library) {
             Advance::Next(used) => {
@@ -350,7 +368,10 @@ impl<L: Library> Tree<L> {
                 None
             }
             Advance::Fork(test) => Some(Progress::Asked(test)),
-            Advance::End(outcome, used) => self.end(open, End::of(&outcome), used),
+            Advance::End(outcome, used) => {
+                let end = End::of(&outcome, self.run.control());
+                self.end(open, end, used)
+            }
             Advance::Unfollowed(what) => {
                 let what = format!("{}: {what}", self.place());
                 Some(Progress::Ended(self.leaf(End::Unfollowed(what), blocks)))
@@ -395,7 +416,7 @@ impl<L: Library> Tree<L> {
         let claims = self.question.claims.iter().map(|claim| state_at(claim, &end, blocks)).collect();
         let bound = match &end {
             End::Unfollowed(what) => BoundState::Unfollowed(what.clone()),
-            End::Excluded | End::Program | End::Alarm(_) | End::Limit => BoundState::None,
+            End::Excluded | End::Program | End::Alarm(_) | End::Endless => BoundState::None,
         };
         Leaf { end, blocks, claims, bounds: vec![bound; self.question.bounds.len()] }
     }

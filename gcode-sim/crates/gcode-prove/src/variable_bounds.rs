@@ -56,6 +56,8 @@ impl Ord for Bounded {
 pub(crate) enum Bound {
     /// No run gives the variable a value.
     None,
+    /// The conditions exclude all values.
+    Excluded,
     Value(f64),
     /// Something isn't followed.
     Unfollowed(String),
@@ -71,6 +73,8 @@ struct BoundSearch<'a, L> {
     /// Least and largest value that a run gives.
     values: Option<(f64, f64)>,
     unfollowed: Option<String>,
+    /// The conditions may include some values.
+    is_included: bool,
 }
 
 /// Returns one bound of a variable over a box.
@@ -81,8 +85,9 @@ pub(crate) fn bound<L: Library>(
     side: Side,
     watch: &Watch<'_>,
 ) -> Bound {
-    let mut search =
-        BoundSearch { tree, points: Points::default(), index, side, watch, values: None, unfollowed: None };
+    let points = Points::default();
+    let (values, unfollowed, is_included) = (None, None, false);
+    let mut search = BoundSearch { tree, points, index, side, watch, values, unfollowed, is_included };
     for point in 1..=POINTS {
         if watch.is_over() {
             break;
@@ -142,7 +147,8 @@ impl<L: Library> BoundSearch<'_, L> {
             return Bound::Unfollowed(what);
         }
         match settled {
-            f64::NEG_INFINITY => Bound::None,
+            f64::NEG_INFINITY if self.is_included => Bound::None,
+            f64::NEG_INFINITY => Bound::Excluded,
             settled => Bound::Value(self.signed(settled)),
         }
     }
@@ -160,6 +166,7 @@ impl<L: Library> BoundSearch<'_, L> {
         if let Some(what) = &finding.unfollowed {
             self.unfollowed.get_or_insert_with(|| what.clone());
         }
+        self.is_included |= range.is_empty() && finding.is_included;
         if range.is_empty() {
             return;
         }

@@ -2,13 +2,17 @@
 use std::sync::Arc;
 
 use gcode_control::symbolic::{Formula, Snapshot, SymbolicRun, Term, TermOperation, Terms, Test};
-use gcode_control::{Control, Limits};
+use gcode_control::{Control, Limits, Outcome};
 use gcode_lang::program::Library;
 
 use crate::leaf::{ClaimState, End, state_at};
 use crate::region::ClaimSet;
 use crate::request::Claim;
 use crate::tree::Question;
+use crate::watch::Watch;
+
+/// Number of blocks between two polls of the clock.
+const BLOCKS_PER_POLL: u64 = 65_536;
 
 /// Control that runs single points, each as from power-on.
 #[derive(Debug)]
@@ -26,6 +30,8 @@ pub(crate) struct PointResult {
     pub(crate) end: Option<End>,
     pub(crate) blocks: u64,
     pub(crate) failed: ClaimSet,
+    /// Claims that a run which a limit has cut off doesn't decide.
+    pub(crate) undecided: ClaimSet,
     /// Values of the variables whose bounds are wanted, at the end of a run.
     pub(crate) values: Vec<Option<f64>>,
 }
@@ -55,32 +61,43 @@ impl<L: Library> Witness<L> {
     }
 
     /// Runs a point.
-    pub(crate) fn run(&mut self, point: &[f64]) -> PointResult {
+    pub(crate) fn run(&mut self, point: &[f64], watch: &Watch) -> PointResult {
         self.run.restore(&self.start);
         for (range, value) in self.question.ranges.iter().zip(point) {
             // A variable that can't be set has been refused with the request.
             _ = self.run.set_term(range.variable, Term::Number(*value));
         }
-        let excluded =
-            PointResult { end: None, blocks: 0, failed: 0, values: vec![None; self.question.bounds.len()] };
+        let excluded = PointResult {
+            end: None,
+            blocks: 0,
+            failed: 0,
+            undecided: 0,
+            values: vec![None; self.question.bounds.len()],
+        };
         for code in &self.question.conditions {
             if !matches!(self.run.decide(code, &mut NoTerms, &[]), Ok((true, _))) {
                 return excluded;
             }
         }
         let enough = self.question.enough_blocks().saturating_add(1);
-        let limits = Limits { blocks: self.question.max_blocks.min(enough) };
-        let end = End::of(&self.run.run_numbers(limits, &mut self.library));
+        let outcome = self.run_blocks(self.question.max_blocks.min(enough), watch);
+        let end = End::of(&outcome, self.run.control());
         let blocks = self.run.control().blocks();
         self.run.leave_calls();
-        let mut failed = 0;
+        let (mut failed, mut undecided) = (0, 0);
         for (index, claim) in self.question.claims.iter().enumerate() {
             let holds = match (claim, &end) {
                 (Claim::Condition(code), End::Program) => {
                     let formula = self.run.condition(code, &mut NoTerms, &[]);
                     matches!(formula.map(|(formula, _)| value(&formula)), Ok(Some(true)))
                 }
-                (claim, end) => state_at(claim, end, blocks) == ClaimState::Holds,
+                (claim, end) => match state_at(claim, end, blocks) {
+                    ClaimState::Unfollowed(_) => {
+                        undecided |= 1 << index;
+                        true
+                    }
+                    state => state == ClaimState::Holds,
+                },
             };
             failed |= u64::from(!holds) << index;
         }
@@ -94,6 +111,22 @@ impl<L: Library> Witness<L> {
             end: Some(end),
             blocks,
             failed,
+            undecided,
+        }
+    }
+}
+
+impl<L: Library> Witness<L> {
+    /// Runs up to a number of blocks, as long as the work isn't to end.
+    fn run_blocks(&mut self, most: u64, watch: &Watch) -> Outcome {
+        let mut blocks = 0;
+        loop {
+            blocks = most.min(blocks + BLOCKS_PER_POLL);
+            let outcome = self.run.run_numbers(Limits { blocks }, &mut self.library);
+            let is_cut_off = matches!(outcome, Outcome::Limit) && self.run.control().endless_loop().is_none();
+            if !is_cut_off || blocks == most || watch.is_over() {
+                return outcome;
+            }
         }
     }
 }

@@ -6,7 +6,8 @@ use crate::division::divide;
 use crate::leaf::End;
 use crate::region::{ClaimSet, Finding, examine};
 use crate::search::Prober;
-use crate::shared::Pending;
+use crate::shared::{Pending, Shared};
+use crate::watch::Watch;
 
 /// Boxes with at most this many doubles are run double by double.
 const MAX_DOUBLES: u64 = 48;
@@ -14,13 +15,28 @@ const MAX_DOUBLES: u64 = 48;
 /// Relative width of a box that isn't divided further.
 const LEAST_WIDTH: f64 = 1e-13;
 
+/// Work on one box; it ends even by a fault, after which the other threads stop.
+struct BoxWork<'s> {
+    shared: &'s Shared,
+    watch: &'s Watch<'s>,
+}
+
+impl Drop for BoxWork<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.watch.stop();
+        }
+        self.shared.finish();
+    }
+}
+
 impl<L: Library> Prober<'_, L> {
     /// Examines boxes until none is left or the time is over.
     pub(crate) fn work(&mut self) {
         let (shared, watch) = (self.shared, self.watch);
         while let Some(pending) = shared.take(|| watch.is_over()) {
+            let _work = BoxWork { shared, watch };
             self.examine(pending);
-            shared.finish();
         }
     }
 
@@ -31,7 +47,7 @@ impl<L: Library> Prober<'_, L> {
             return;
         }
         if let Some(points) = doubles(&pending.domain) {
-            return self.run_points(&points, claims);
+            return self.run_points(&points, &Pending { claims, ..pending });
         }
         let ranges = Enclosures::with_degree(pending.domain.clone(), 0);
         let mut finding = examine(&mut self.tree, ranges, claims, self.watch);
@@ -72,14 +88,27 @@ impl<L: Library> Prober<'_, L> {
     }
 
     /// Decides claims at single points, by runs of the control.
-    fn run_points(&mut self, points: &[Vec<f64>], claims: ClaimSet) {
+    fn run_points(&mut self, points: &[Vec<f64>], pending: &Pending) {
+        let claims = pending.claims;
         for point in points {
+            if self.watch.is_over() {
+                self.shared.park(Pending { domain: pending.domain.clone(), ..*pending });
+                return;
+            }
             self.watch.count_run();
-            let result = self.witness.run(point);
+            let result = self.witness.run(point, self.watch);
             if let Some(end) = &result.end {
                 self.shared.include(*end == End::Program);
             }
             self.shared.refute(result.failed & claims, point);
+            let undecided = result.undecided & claims;
+            if undecided != 0 {
+                if let Some(End::Unfollowed(what)) = &result.end {
+                    self.shared.note_unfollowed(what);
+                }
+                let domain = Domain::new(point.iter().map(|value| Interval::point(*value)).collect());
+                self.shared.park(pending_box(domain, &self.question.domain(), undecided));
+            }
         }
     }
 }

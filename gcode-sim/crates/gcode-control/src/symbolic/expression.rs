@@ -284,6 +284,15 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
             let unfollowed = || Halt::unfollowed("an operand of a parameter, a name or an item");
             value.filter(|value| !value.number().is_nan()).ok_or_else(unfollowed)
         };
+        if let UncommonOp::ReadItem { number, .. } = operation
+            && self.registers.data.settings.has_variable_bits
+        {
+            let registers = self.registers;
+            let read = registers.block_effects.without_effects(|| registers.read_variable(*number));
+            if read.is_ok_and(|value| value.number().is_nan()) {
+                return Err(Halt::unfollowed(format!("a bit of #{number}")));
+            }
+        }
         let first = self.stack.len().saturating_sub(takes);
         for value in self.stack.drain(first..) {
             self.registers.operand_stack.push(known(value.stored())?);

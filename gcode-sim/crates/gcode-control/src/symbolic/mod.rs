@@ -21,7 +21,7 @@ pub use self::term::{Formula, Term, TermOperation, Terms, Test};
 use self::expression::Evaluation;
 use self::oracle::{Oracle, Symbolic};
 use self::statements::Place;
-use super::control::Control;
+use super::control::{Control, max_moves};
 use super::executor::Executor;
 use super::flow::CallFrame;
 use super::loop_detection::LoopDetector;
@@ -142,6 +142,11 @@ impl SymbolicRun {
         let value = self.control.variable(number).map_err(|_| Halt::unfollowed(format!("#{number}")))?;
         let Some(stored) = value.as_number() else { return Ok(None) };
         Term::of(stored).map(Some).ok_or_else(|| Halt::unfollowed(format!("#{number}")))
+    }
+
+    /// Returns true if the run has made more moves than a run with these limits.
+    pub fn exceeds_moves(&self, limits: Limits) -> bool {
+        self.control.executor.log.moves > max_moves(limits)
     }
 
     /// Runs to the end, when every variable is a known number.

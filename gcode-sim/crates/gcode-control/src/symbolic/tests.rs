@@ -120,3 +120,16 @@ fn what_depends_on_a_term_and_is_not_followed_is_named() {
         assert!(matches!(&end, Advance::Unfollowed(what) if what.contains(named)), "{text}: {end:?}");
     }
 }
+
+#[test]
+fn a_bit_of_a_term_is_not_followed_and_raises_no_alarm() {
+    let mut memory = Memory::default();
+    memory.load("O1.nc", b"O1\n#2=6\n#100=#2.1\n#101=#1.1\nM30\n".to_vec());
+    let settings = Settings { has_variable_bits: true, ..Settings::default() };
+    let mut run = SymbolicRun::new(Control::new(memory, settings));
+    run.set_term(1, Term::Node(0)).unwrap();
+    let end = advance(&mut run, &mut Recorded::default(), &[]);
+    assert!(matches!(&end, Advance::Unfollowed(what) if what == "a bit of #1"), "{end:?}");
+    // Bit 1 of 6, binary 110.
+    assert_eq!(run.variable(100).unwrap(), Some(Term::Number(1.0)));
+}
