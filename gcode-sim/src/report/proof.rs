@@ -143,7 +143,10 @@ impl ProofReport {
                 _ = writeln!(text, "             {call}\n             M30");
                 if !are_written {
                     // Numbers that a program can't write are set before it runs.
-                    _ = writeln!(text, "           gcode-sim run CALL.nc {sets}, where CALL.nc is this program");
+                    _ = writeln!(
+                        text,
+                        "           gcode-sim run CALL.nc {sets}, where CALL.nc is this program"
+                    );
                 }
             }
             None => _ = writeln!(text, "           gcode-sim run {} {sets}", self.program),
