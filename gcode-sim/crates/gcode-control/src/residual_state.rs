@@ -175,6 +175,7 @@ mod tests {
                 let (words, code) = match row.effect {
                     Effect::AdditionalWork => (" P1", 541),
                     Effect::NumberedWork(_) => ("", 541),
+                    // A Haas takes P with a point, a Fanuc without one.
                     Effect::Scaling(Scaling::On) if dialect == Dialect::HaasNgc => (" P2.", row.code),
                     Effect::Scaling(Scaling::On) => (" P2000", row.code),
                     Effect::Mirror(mirror) => (if mirror == Mirror::On { " X0" } else { "" }, mirror.code()),

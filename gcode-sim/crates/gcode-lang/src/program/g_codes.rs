@@ -24,6 +24,11 @@ impl RowLookup {
     }
 }
 
+/// Returns the rows of all codes, in ascending order.
+pub fn all() -> &'static [GCodeRow] {
+    CODES
+}
+
 /// Returns the rows of a code × 10.
 #[inline]
 pub fn find(code: u32) -> RowLookup {
