@@ -9,6 +9,7 @@ const COMMANDS: &[(&str, &str, &[&str])] = &[
     ("gcode-sim", "verify", &["text", "json", "sarif"]),
     ("gcode-sim", "render", &["text", "json"]),
     ("gcode-sim", "page", &[]),
+    ("gcode-sim", "sheet", &[]),
     ("gcode-sim", "readings", &["text", "json", "csv"]),
     ("gcode-sim", "check", &["text", "json", "sarif"]),
     ("gcode-sim", "diff", &["text", "json", "sarif"]),

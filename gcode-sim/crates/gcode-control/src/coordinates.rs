@@ -1,6 +1,6 @@
 //! Programmed, work and machine coordinates, and the stored stroke check.
 use super::data::ControlData;
-use super::kinematics::{scaled, sum};
+use super::kinematics::{remove_noise, scaled, sum};
 use super::state::{EndBeforeTransform, State};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{Increment, StrokeLimits};
@@ -293,11 +293,6 @@ fn extremes(arc: &PlanarArc, to: &Position) -> [Option<Position>; 4] {
 #[inline]
 pub(super) fn residue_grid(increment: Increment) -> f64 {
     increment.per_unit() * 100.0
-}
-
-/// Returns a coordinate that kinematics computes, to 1e-9: finer than any increment, coarser than rounding errors.
-pub(super) fn remove_noise(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
 }
 
 /// Returns the rotation of an axis that rolls over: the shorter one, 180° in the plus direction.

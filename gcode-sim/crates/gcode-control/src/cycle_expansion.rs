@@ -1,6 +1,6 @@
 //! Expands a checked block of a canned cycle: its holes, and the steps of the cycle at each of them.
-use super::coordinates::remove_noise;
 use super::data::ControlData;
+use super::kinematics::remove_noise;
 use super::state::{CycleState, PeckSchedule, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind, UnknownAxes};
 use gcode_lang::program::cycles::{Cycle, CycleStep};

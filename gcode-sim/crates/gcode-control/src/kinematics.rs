@@ -6,6 +6,11 @@ use gcode_lang::units::Deg;
 /// Vector along X, Y and Z.
 pub(super) type Vector = [f64; 3];
 
+/// Returns a coordinate that kinematics computes, to 1e-9: finer than any increment, coarser than rounding errors.
+pub(super) fn remove_noise(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
+}
+
 /// Sines of angles below this count as 0.
 const PARALLEL: f64 = 1e-9;
 
@@ -40,6 +45,13 @@ pub(super) fn sine_cosine(angle: f64) -> (f64, f64) {
         270.0 => (-1.0, 0.0),
         _ => (Deg(angle).sin(), Deg(angle).cos()),
     }
+}
+
+/// Shift of the part and its rotation about the work zero, with the axes of the table at machine position 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PartError {
+    pub(super) shift: Vector,
+    pub(super) rotation: Matrix,
 }
 
 /// Rotation by its rows.

@@ -1,7 +1,7 @@
 //! G54.2 and G54.4: where the part stands on the table, by values of the control, and what follows for X, Y and Z.
 use super::data::{ControlData, FIXTURES, SETTING_ERRORS};
 use super::functions::ExecResult;
-use super::kinematics::{Alignment, Frame, Matrix, Vector, cross, dot, scaled, sum};
+use super::kinematics::{Alignment, Frame, Matrix, PartError, cross, dot, scaled, sum};
 use super::plan::{BlockPlan, TableWrite};
 use super::plane::Plane as TiltedPlane;
 use super::planner::Planner;
@@ -11,13 +11,6 @@ use super::tip_control::Aligned;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::Position;
 use gcode_lang::program::modes::{CutterSide, DynamicOffset, Motion, Plane};
-
-/// Shift of the part and its rotation about the work zero, with the axes of the table at machine position 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PartError {
-    shift: Vector,
-    rotation: Matrix,
-}
 
 impl ControlData {
     /// Returns the error that P of G54.2 or G54.4 selects: `None` inside if nothing states its values or the machine's axes;

@@ -1,7 +1,6 @@
 //! Arcs and machine planes under a tilted plane: an arc stays one where the plane is that of two machine axes.
-use super::coordinates::remove_noise;
 use super::functions::ExecResult;
-use super::kinematics::{cross, dot};
+use super::kinematics::{cross, dot, remove_noise};
 use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
 use super::planner::Planner;

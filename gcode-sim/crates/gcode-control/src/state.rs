@@ -1,7 +1,7 @@
 //! State that one block can change besides variables and offset tables: modes, positions, codes with a number, the transform
 //! of coordinates. It is small enough to copy, so that a block that raises an alarm leaves no trace.
 use super::axis_word_use::AxisWordUse;
-use super::part_error::PartError;
+use super::kinematics::PartError;
 use super::transform::Transform;
 use super::virtual_plane::VirtualPlane;
 use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirection, UnknownAxes};

@@ -1,8 +1,9 @@
 //! Tool centre point control, G43.4 and G43.5: the program moves the tip on the part, and the rotary axes turn on the way.
-use super::coordinates::remove_noise;
 use super::data::ControlData;
 use super::functions::ExecResult;
-use super::kinematics::{Alignment, Frame, Matrix, Vector, cross, dot, scaled, sum, unit_vector};
+use super::kinematics::{
+    Alignment, Frame, Matrix, Vector, cross, dot, remove_noise, scaled, sum, unit_vector,
+};
 use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
 use super::planner::Planner;

@@ -1,5 +1,5 @@
 //! Virtual planes of polar and cylindrical interpolation: the control computes in lengths, and a rotary axis turns on the machine.
-use super::coordinates::remove_noise;
+use super::kinematics::remove_noise;
 use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
 use gcode_lang::program::modes::Plane;
 use gcode_lang::units::Deg;

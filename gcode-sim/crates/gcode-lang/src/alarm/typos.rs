@@ -334,7 +334,7 @@ mod tests {
             help(not_a_word(), "#1OO=5.", "OO")
                 .contains("'1OO' has the letter O instead of a zero: write 100")
         );
-        assert!(help(not_a_word(), "IF[#1 EQ 2]GOTO 1O", "O").contains("write 10"));
+        assert!(help(not_a_word(), "IF[#1 EQ 2]GOTO 1O", "1O").contains("write 10"));
         for (alarm, line) in [
             (no_value(), "GO 10"),
             (no_value(), "#1=2OR#3"),

@@ -33,7 +33,7 @@ pub fn apply(text: &str, settings: &mut Settings, takes_dialect: bool) -> Result
             continue;
         }
         let reader = Reader { text };
-        settings.set(&name, &value).map_err(|error| reader.error(&key, error.to_string()))?;
+        settings.set(&name, &value?).map_err(|error| reader.error(&key, error.to_string()))?;
     }
     Ok(())
 }
@@ -43,7 +43,7 @@ pub fn apply(text: &str, settings: &mut Settings, takes_dialect: bool) -> Result
 /// # Errors
 /// A text that is no TOML, or a value that is neither a number nor a text.
 pub fn entries(text: &str) -> Result<Vec<(String, String)>, FileError> {
-    Ok(read(text)?.into_iter().map(|entry| (entry.name, entry.value)).collect())
+    read(text)?.into_iter().map(|entry| Ok((entry.name, entry.value?))).collect()
 }
 
 /// Setting of a control file.
@@ -51,7 +51,8 @@ struct Entry {
     /// Key of the file: the setting, or the table that has it.
     key: Located<String>,
     name: String,
-    value: String,
+    /// Value as text; the error of one that is neither a number nor a text.
+    value: Result<String, FileError>,
 }
 
 fn is_dialect(name: &str) -> bool {
@@ -70,17 +71,17 @@ fn read(text: &str) -> Result<Vec<Entry>, FileError> {
         if let (CODES, Value::Table(codes)) = (name.as_str(), &value) {
             for (code, value) in codes {
                 let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-                entries.push(Entry { key: key.clone(), name: code.clone(), value });
+                entries.push(Entry { key: key.clone(), name: code.clone(), value: Ok(value) });
             }
             continue;
         }
         let value = match value {
-            Value::String(text) => text,
-            Value::Integer(number) => number.to_string(),
-            Value::Float(number) => number.to_string(),
-            Value::Boolean(on) if is_switch(&name) => u8::from(on).to_string(),
+            Value::String(text) => Ok(text),
+            Value::Integer(number) => Ok(number.to_string()),
+            Value::Float(number) => Ok(number.to_string()),
+            Value::Boolean(on) if is_switch(&name) => Ok(u8::from(on).to_string()),
             Value::Boolean(_) | Value::Datetime(_) | Value::Array(_) | Value::Table(_) => {
-                return Err(reader.error(&key, format!("key '{name}': a number or a text in quotes")));
+                Err(reader.error(&key, format!("key '{name}': a number or a text in quotes")))
             }
         };
         entries.push(Entry { key, name, value });
