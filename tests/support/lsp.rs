@@ -66,7 +66,7 @@ struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Starts the server and initializes it as the first lines say.
+    /// Starts the server as the first lines state.
     fn new(folder: &'a Path, lines: &[(usize, &str)]) -> Self {
         let (server, client) = Connection::memory();
         let host = Arc::new(EditorHost::new().unwrap());

@@ -55,6 +55,8 @@ impl Setup for Controls {
 struct Rows<'t> {
     ask: Ask,
     call: Option<String>,
+    /// Setting of the control with its value.
+    setting: Option<(&'t str, &'t str)>,
     verdicts: Vec<&'t str>,
     bounds: Vec<(f64, f64)>,
 }
@@ -81,7 +83,7 @@ impl<'t> Rows<'t> {
         rows
     }
 
-    fn conditions(&mut self, text: &str) {
+    fn conditions(&mut self, text: &'t str) {
         let mut parts = text.split("; ");
         self.ask.ranges = parts.next().unwrap().split(' ').map(str::to_owned).collect();
         for part in parts {
@@ -89,7 +91,8 @@ impl<'t> Rows<'t> {
                 ("where", condition) => self.ask.conditions.push(condition.to_owned()),
                 ("call", call) => self.call = Some(call.to_owned()),
                 ("max-blocks", blocks) => self.ask.max_blocks = blocks.parse().unwrap(),
-                _ => panic!("{part}: neither where, call nor max-blocks"),
+                ("control", setting) => self.setting = setting.split_once('='),
+                _ => panic!("{part}: neither where, call, max-blocks nor control"),
             }
         }
     }
@@ -157,7 +160,10 @@ pub(crate) fn run(case: &Case) {
             rest.lines().filter(|line| !line.is_empty() && !line.starts_with("-- ")).collect();
         let head = if blocks[0].starts_with('O') { "" } else { "O0001\n" };
         let program = format!("{head}{}\n", blocks.join("\n"));
-        let request = Request::new("case.nc", program.into_bytes(), Machine::default());
+        let mut request = Request::new("case.nc", program.into_bytes(), Machine::default());
+        if let Some((key, value)) = rows.setting {
+            request.settings.set(key, value).unwrap();
+        }
         let controls = Controls { request, call: rows.call.clone() };
         let start = Instant::now();
         let clock = || start.elapsed();

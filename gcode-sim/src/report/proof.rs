@@ -121,8 +121,9 @@ impl ProofReport {
                 "no run is known to end without an alarm: a condition at the end says nothing then\n",
             );
         }
-        let (boxes, runs) = (count(self.boxes as usize, "box"), count(self.runs as usize, "run"));
-        _ = writeln!(text, "{} and {}, {:.2} s", boxes.replace("boxs", "boxes"), runs, self.seconds);
+        let boxes = if self.boxes == 1 { "box" } else { "boxes" };
+        let runs = count(self.runs as usize, "run");
+        _ = writeln!(text, "{} {boxes} and {runs}, {:.2} s", self.boxes, self.seconds);
         text
     }
 

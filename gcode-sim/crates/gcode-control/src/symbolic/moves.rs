@@ -420,6 +420,12 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
     fn check_stroke(&mut self, ends: &[AxisEnd]) -> Symbolic<()> {
         let settings = &self.registers.data.settings;
         let Some(stroke) = settings.stroke_limits else { return Ok(()) };
+        let start = &self.registers.state.machine_position;
+        let is_outside = |axis: AxisIndex| {
+            stroke.max[axis].is_some_and(|max| start[axis] > max)
+                || stroke.min[axis].is_some_and(|min| start[axis] < min)
+        };
+        let starts_outside = (0..settings.axes.len()).any(is_outside);
         for end in ends {
             if settings.rolls_over[end.axis] {
                 continue;
@@ -430,6 +436,10 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 let Some(limit) = limit else { continue };
                 let machine = end.machine.ok_or_else(|| Halt::unfollowed(format!("{letter} of a move")))?;
                 if self.oracle.ask(Test::Compare(relation, machine, Term::Number(limit)))? {
+                    // The control checks no move whose ends are one point after rounding.
+                    if starts_outside {
+                        return Err(Halt::unfollowed("a move from a position outside the stroke"));
+                    }
                     let (low, high) = self.oracle.terms.bounds(machine);
                     let is_plus = relation == Relation::Gt;
                     let value = if is_plus { high } else { low };
