@@ -12,7 +12,7 @@
 //! -- bounds #100: 0 2.236
 //! ```
 //!
-//! A program that doesn't begin with O is O0001. `where` and `call` may be left out. `bounds` has the least and the largest value
+//! A program that doesn't begin with O is O0001. `where`, `call`, `max-blocks N` and `control KEY=VALUE` may be left out. `bounds` has the least and the largest value
 //! that a run gives: the bounds must hold both, and be wider by 5 % at most. The counterexample of a refuted claim must lie in the
 //! ranges, and the control must refute the claim when it runs that point alone.
 use std::time::{Duration, Instant};
