@@ -38,7 +38,7 @@ impl ControlData {
         })
     }
 
-    /// Returns the frame of a part that stands aside: X, Y and Z of the program keep their directions, and the error turns with
+    /// Returns the frame of a displaced part: X, Y and Z of the program keep their directions, and the error turns with
     /// the table.
     pub(super) fn error_alignment(&self, state: &State, error: &PartError, at: &Position) -> Option<Aligned> {
         let axes = self.linear_axes()?;
