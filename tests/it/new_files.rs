@@ -109,6 +109,53 @@ fn a_list_of_a_programs_holes_is_written_as_its_ending_says() {
     assert_eq!(std::fs::read_to_string(dir.join("holes.csv")).unwrap(), csv);
 }
 
+/// Features by hand: T1's cone of 90° is 2·4 wide where it is 4 deep, 8 of which T2 leaves open below 8.5, so that it makes
+/// none; T3's is 2·6 = 12 wide, T4 taps 750 / 500 = 1.5.
+#[test]
+fn a_hole_of_several_tools_is_listed_with_its_features() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    let pass = |tool, cycle: &str| format!("T{tool} M6\nS500 M3\nG43 H{tool} Z50.\n{cycle}\nG80 G0 Z50.\n");
+    let (spot, drill) = (pass(1, "G81 X9. Y8. Z-4. R2. F90."), pass(2, "G83 X9. Y8. Z-25. R1. Q4. F90."));
+    let (sink, tap) = (pass(3, "G82 X9. Y8. Z-6. R2. P9 F90."), pass(4, "G84 X9. Y8. Z-18. R5. F750."));
+    let program = format!("O1\nG90 G54 G0 X9. Y8.\n{spot}{drill}{sink}{tap}M30\n");
+    std::fs::write(dir.join("O1.nc"), program).unwrap();
+    let verify = "gcode-sim verify O1.nc --reference holes.csv";
+    let list = "gcode-sim new reference --from O1.nc -o holes.csv";
+
+    // No tool is known. The entry lies where the lowest feed begins; the program passes its own list.
+    assert_eq!(run(list, dir).0, 0);
+    let csv = std::fs::read_to_string(dir.join("holes.csv")).unwrap();
+    assert_eq!(csv, format!("{HEADER}1,9,8,1,0,0,1,26,\n"), "from R1. to Z-25.");
+    let (code, text, messages) = run(verify, dir);
+    assert_eq!(code, 0, "{text}{messages}");
+    assert!(text.contains("not checked: the thread that T4 cuts"), "{text}");
+
+    let tools =
+        ["spot-drill|12", "drill|8.5", "countersink|16", "tap|10"].map(|tool| tool.split_once('|').unwrap());
+    let mut machine = "[head]\nkind = \"fixed\"\ndirection = [0, 0, 1]\n\n[stock]\nkind = \"box\"\nmin = [0.0, 0.0, -40.0]\n\
+                       max = [20.0, 20.0, 0.0]\n"
+        .to_owned();
+    for (number, (kind, diameter)) in (1..).zip(tools) {
+        machine += &format!("\n[[tool]]\nnumber = {number}\nkind = \"{kind}\"\ndiameter = {diameter}\n");
+    }
+    std::fs::write(dir.join("machine.toml"), machine).unwrap();
+    assert_eq!(run(&format!("{list} --force"), dir).0, 0);
+    let csv = std::fs::read_to_string(dir.join("holes.csv")).unwrap();
+    let header = HEADER.replace("diameter", "diameter,features");
+    let features = "drill 8.5 25; countersink 12 angle=90; tap 10 18 pitch=1.5";
+    assert_eq!(csv, format!("{header}1,9,8,0,0,0,1,25,,{features}\n"));
+    let (code, text, messages) = run(verify, dir);
+    assert_eq!(code, 0, "{text}{messages}");
+    // The list judges each of them.
+    for (digit, other) in [("Z-25.", "Z-24."), ("Z-18.", "Z-17."), ("F750.", "F700."), ("Z-6.", "Z-5.5")] {
+        let program = std::fs::read_to_string(dir.join("O1.nc")).unwrap();
+        std::fs::write(dir.join("O1.nc"), program.replace(digit, other)).unwrap();
+        assert_eq!(run(verify, dir).0, 1, "{other}");
+        std::fs::write(dir.join("O1.nc"), program).unwrap();
+    }
+}
+
 #[test]
 fn no_list_is_written_of_a_run_that_stops_or_makes_no_hole() {
     let folder = tempfile::tempdir().unwrap();

@@ -2,7 +2,7 @@
 use std::fmt::Write;
 
 use super::verdict_table::append_assumptions;
-use gcode_part::{HoleList, STOPPED, Total};
+use gcode_part::{Feature, HoleList, STOPPED, Total};
 
 /// Point from which the depth of each hole counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,14 +62,21 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
 
 /// Formats the columns of a reference in CSV; the last line states that the run stopped.
 pub(crate) fn csv(list: &HoleList) -> String {
-    let mut text = String::from("id,x,y,z,i,j,k,depth,diameter\n");
+    let has_features = list.holes.iter().any(|hole| !hole.features.is_empty());
+    let mut text = String::from("id,x,y,z,i,j,k,depth,diameter");
+    text.push_str(if has_features { ",features\n" } else { "\n" });
     for (index, hole) in list.holes.iter().enumerate() {
         let id = hole.id.clone().unwrap_or_else(|| (index + 1).to_string());
         let quoted =
             if id.contains([',', '"', '\n']) { format!("\"{}\"", id.replace('"', "\"\"")) } else { id };
         let numbers = hole.entry.iter().chain(&hole.axis).map(|v| plain(*v).to_string()).collect::<Vec<_>>();
         let diameter = hole.diameter.map(|d| d.to_string()).unwrap_or_default();
-        let _ = writeln!(text, "{quoted},{},{},{diameter}", numbers.join(","), hole.depth);
+        let _ = write!(text, "{quoted},{},{},{diameter}", numbers.join(","), hole.depth);
+        if has_features {
+            let features = hole.features.iter().map(Feature::cell).collect::<Vec<_>>();
+            let _ = write!(text, ",{}", features.join("; "));
+        }
+        text.push('\n');
     }
     if let Some(sentence) = &list.stopped {
         let _ = writeln!(text, "{STOPPED}{sentence}");

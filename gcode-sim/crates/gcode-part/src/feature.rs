@@ -3,6 +3,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::limits::exceeds;
+use super::thread_size;
 use gcode_lang::units::Deg;
 
 /// Kind of a feature.
@@ -135,9 +136,20 @@ impl Feature {
         }
     }
 
+    /// Returns the notation of a CSV cell, which [`Self::parse`] reads.
+    pub fn cell(&self) -> String {
+        let depth = self.depth.map(|depth| format!(" {depth}"));
+        let to = (self.to == DepthTo::Full).then(|| " to=full".to_owned());
+        let angle = self.angle.map(|angle| format!(" angle={angle}"));
+        let pitch = self.pitch.map(|pitch| format!(" pitch={pitch}"));
+        let hand = (self.hand == Hand::Left).then(|| " hand=left".to_owned());
+        let words = [depth, to, angle, pitch, hand].into_iter().flatten().collect::<String>();
+        format!("{} {}{words}", self.kind.name(), self.diameter)
+    }
+
     /// Parses the notation of a CSV cell: kind, diameter and depth, then `to=full`, `angle=`, `pitch=` and
     /// `hand=`:
-    /// `tap 10 22 pitch=1.5`, `countersink 12 angle=90`.
+    /// `tap 10 22 pitch=1.5`, `tap M10 22`, `countersink 12 angle=90`.
     ///
     /// # Errors
     /// The part that is not understood, in words.
@@ -149,8 +161,12 @@ impl Feature {
             format!("'{name}' is no kind of feature: one of {names}")
         })?;
         let number = |word: &str| word.parse::<f64>().map_err(|_| format!("'{word}' is not a number"));
-        let diameter = number(words.next().ok_or("a feature needs its diameter behind its kind")?)?;
-        let mut feature = Self { diameter, ..Self::of(kind) };
+        let size = words.next().ok_or("a feature needs its diameter behind its kind")?;
+        let (diameter, pitch) = match thread_size::parse(size).filter(|_| kind == FeatureKind::Tap) {
+            Some(size) => size.map(|(diameter, pitch)| (diameter, Some(pitch)))?,
+            None => (number(size)?, None),
+        };
+        let mut feature = Self { diameter, pitch, ..Self::of(kind) };
         for word in words {
             match word.split_once('=') {
                 None if feature.depth.is_none() => feature.depth = Some(number(word)?),
@@ -233,9 +249,14 @@ mod tests {
 
     #[test]
     fn a_cell_of_a_list_has_kind_diameter_depth_and_keys() {
+        let cells = ["tap 10 22 pitch=1.5", "tap 8 9.5 pitch=1.25 hand=left", "countersink 12 angle=90"];
+        for cell in cells.into_iter().chain(["drill 8.5 30 to=full angle=118", "ream 9 20"]) {
+            assert_eq!(Feature::parse(cell).unwrap().cell(), cell);
+        }
         let feature = Feature::parse("tap 10 22 pitch=1.5").unwrap();
         assert_eq!((feature.kind, feature.diameter, feature.depth), (FeatureKind::Tap, 10.0, Some(22.0)));
         assert_eq!((feature.pitch, feature.hand), (Some(1.5), Hand::Right));
+        assert_eq!(Feature::parse("tap M10 22").unwrap(), feature);
         assert_eq!(Feature::parse("tap 10 22 pitch=1.5 hand=left").unwrap().hand, Hand::Left);
         assert_eq!(Feature::parse("drill 8.5 30 to=full").unwrap().to, DepthTo::Full);
         for (text, expected) in [

@@ -60,6 +60,7 @@ mod reference;
 mod solid;
 mod stock;
 mod surface;
+mod thread_size;
 mod touch_uncertainty;
 
 pub use assumption::{Assumption, AssumptionPlace, Total};

@@ -2,11 +2,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use nalgebra::{Point3, Vector3};
 
 use super::{ExitStatus, OutputFile, UsageError};
 use crate::cli::conditions::{ProgramArguments, RunConditions};
 use crate::cli::{options, output, progress};
 use crate::report::holes as report;
+use gcode_inspect::holes::DrilledHole;
 use gcode_part::{Hole, HoleList};
 use gcode_session::{Request, Simulation};
 
@@ -54,7 +56,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let count = list.holes.len();
     let plural = if count == 1 { "" } else { "s" };
     output::print_message(&format!("note: {count} hole{plural} as the program makes them; {entries}\n"));
-    if list.holes.iter().any(|hole| hole.diameter.is_none()) {
+    if list.holes.iter().any(|hole| hole.diameter.is_none() && hole.features.is_empty()) {
         output::print_message(
             "note: without a diameter: holes whose tool is not in the machine file; write those of the drawing\n",
         );
@@ -86,10 +88,9 @@ fn list(
     clearance: Option<f64>,
 ) -> Result<(HoleList, String), UsageError> {
     let mut list = simulation.hole_list();
-    let is_first =
-        |index: usize| simulation.extracted.holes.get(index).is_none_or(|hole| hole.first_on_line == index);
-    let mut index = 0..;
-    list.holes.retain(|_| index.next().is_some_and(is_first));
+    let drilled = &simulation.extracted.holes;
+    let (kept, firsts): (Vec<usize>, Vec<&DrilledHole>) = first_on_lines(drilled).unzip();
+    list.holes = kept.into_iter().filter_map(|index| list.holes.get(index).cloned()).collect();
     let body = request.part.or_else(|| request.machine.stock.as_ref()?.body(None));
     let entries = match (body, clearance) {
         (Some(_), Some(_)) => {
@@ -100,18 +101,27 @@ fn list(
             "entries lie on the surface of the part".to_owned()
         }
         (None, Some(clearance)) => {
-            for hole in &mut list.holes {
+            for (hole, drilled) in list.holes.iter_mut().zip(&firsts) {
+                sink(hole, drilled.deepest_feed_start())?;
                 sink(hole, clearance)?;
             }
             format!("entries lie {clearance} mm below the start of the feed")
         }
         (None, None) => {
+            for (hole, drilled) in list.holes.iter_mut().zip(&firsts) {
+                sink(hole, drilled.deepest_feed_start())?;
+            }
             "entries lie where the feed begins (R point level): give --clearance MM, or [stock] in the \
                          machine file"
                 .to_owned()
         }
     };
-    for (index, hole) in list.holes.iter_mut().enumerate() {
+    for (index, (hole, drilled)) in list.holes.iter_mut().zip(&firsts).enumerate() {
+        let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
+        hole.features = drilled.features(&entry, &out, &request.machine);
+        if !hole.features.is_empty() {
+            hole.diameter = None;
+        }
         hole.id = Some((index + 1).to_string());
         hole.from = None;
         hole.entry = hole.entry.map(|value| rounded(value, 1e4));
@@ -120,6 +130,11 @@ fn list(
         hole.diameter = hole.diameter.map(|diameter| rounded(diameter, 1e4));
     }
     Ok((list, entries))
+}
+
+/// Returns the holes, each once, with their indices in the extraction.
+fn first_on_lines(drilled: &[DrilledHole]) -> impl Iterator<Item = (usize, &DrilledHole)> {
+    drilled.iter().enumerate().filter(|(index, hole)| hole.first_on_line == *index)
 }
 
 /// Moves the entry of a hole into the part; its bottom stays.

@@ -13,6 +13,7 @@ mod drill_pass;
 #[cfg(test)]
 pub(crate) mod event_script;
 mod extraction;
+mod features_made;
 mod feed_law;
 mod group;
 mod hole_circles;

@@ -224,6 +224,13 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
                 let what = format!("the hole in which {} cuts", tool_name(tool));
                 NotChecked::gap(what, format!("the program does not drill {holes}"))
             }
+            ShapeGap::Thread(tool) => {
+                let what = format!("the thread that {} cuts", tool_name(tool));
+                NotChecked::gap(
+                    what,
+                    format!("the reference has no thread, neither its depth nor its pitch, in {holes}"),
+                )
+            }
             ShapeGap::ThreadLength(tool) => {
                 let what = format!("the length of the thread of {holes}");
                 let tool = tool_name(tool);

@@ -17,6 +17,15 @@ const COLUMNS: [(&str, &[&str]); 11] = [
     ("through", &[]),
 ];
 
+/// Other names of the columns of features, which `thread depth` begins with too.
+const FEATURE_NAMES: [(&str, FeatureKind); 5] = [
+    ("thread", FeatureKind::Tap),
+    ("cbore", FeatureKind::Counterbore),
+    ("c'bore", FeatureKind::Counterbore),
+    ("csink", FeatureKind::Countersink),
+    ("tap drill", FeatureKind::Drill),
+];
+
 /// Further values of a feature with columns of its own: `tap pitch`.
 pub(super) const FEATURE_COLUMNS: [&str; 5] = ["depth", "to", "angle", "pitch", "hand"];
 
@@ -99,6 +108,16 @@ impl Columns {
                 && let Some(place) = names.iter().position(|other| others.contains(&other.as_str()))
             {
                 name.clone_into(&mut names[place]);
+            }
+        }
+        for name in &mut names {
+            for (other, kind) in FEATURE_NAMES {
+                match name.strip_prefix(other) {
+                    Some(rest) if rest.is_empty() || rest.starts_with(' ') => {
+                        *name = format!("{}{rest}", kind.name());
+                    }
+                    _ => {}
+                }
             }
         }
         let kinds = FeatureKind::ALL.map(FeatureKind::name);

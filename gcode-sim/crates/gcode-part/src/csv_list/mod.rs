@@ -10,6 +10,7 @@ use super::feature::{DepthTo, Feature, FeatureKind, Hand};
 use super::hole::{Hole, HoleList, Unit};
 use super::read::{check, complete};
 use crate::reader::FileError;
+use crate::thread_size;
 
 /// Beginning of the last line of a list whose run stopped before its end.
 pub const STOPPED: &str = "# stopped: ";
@@ -211,13 +212,9 @@ impl Cells<'_> {
                 None => Ok(None),
             };
         }
-        // M10x1.5 is a thread with its pitch.
-        let (diameter, pitch) = match text.strip_prefix('m').and_then(|size| size.split_once(['x', '×', '*']))
-        {
-            Some((diameter, pitch)) if kind == FeatureKind::Tap => {
-                (self.parse(name, diameter.trim())?, Some(self.parse(name, pitch.trim())?))
-            }
-            _ => (self.parse(name, &text)?, None),
+        let (diameter, pitch) = match thread_size::parse(&text).filter(|_| kind == FeatureKind::Tap) {
+            Some(size) => size.map(|(diameter, pitch)| (diameter, Some(pitch)))?,
+            None => (self.parse(name, &text)?, None),
         };
         let to = own("to");
         let hand = own("hand");

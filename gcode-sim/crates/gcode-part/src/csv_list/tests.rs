@@ -49,6 +49,8 @@ fn features_have_columns_of_their_own() {
          1,30,10,30,8.5,30,full,10,22,1.5,12,90\n",
         "id;x;y;depth;Drill;Drill_depth;Drill-to;Tap;Tap depth;Countersink;Countersink angle\n\
          1;30;10;30;8,5;30;full;M10x1,5;22;12;90\n",
+        "nr,x,y,depth,tap drill,tap drill depth,tap drill to,thread,thread depth,csink,csink angle\n\
+         1,30,10,30,8.5,30,full,M10,22,12,90\n",
     ] {
         assert_eq!(read(text).holes, cell.holes, "{text}");
     }
@@ -87,7 +89,12 @@ fn an_error_shows_a_line_that_is_right() {
         ("x,y,depth\n3.5,,4\n", "line 2: column 'y' is '': a number; "),
         ("x,y,z,depth\n3.5,1,,4\n", "line 2: column 'z' is '': a number; "),
         ("x,y,depth,tap depth\n1,2,20,15\n", "line 2: column 'tap depth' is '15': 'tap' is empty; "),
-        ("x,y,depth,tap,tap depth\n1,2,20,M10,15\n", "line 2: column 'tap' is 'm10': a number; "),
+        (
+            "x,y,depth,tap,tap depth\n1,2,20,M9.5,15\n",
+            "line 2: M9.5 has no coarse pitch in ISO 261: give one, such as M9.5x1; ",
+        ),
+        ("x,y,depth,tap,tap depth\n1,2,20,G1/4,15\n", "line 2: column 'tap' is 'g1/4': a number; "),
+        ("x,y,depth,tap,thread\n1,2,20,M10,M10\n", "line 1: column 'tap' is there twice; "),
         ("x,y,tap,tap depth\n1,2,10,15\n", "line 2: hole 1: its tap has no pitch: give it in mm; "),
         ("x,y,depth\n", "no hole after the header: one line for each; a right line: 30.5,10,15"),
     ] {

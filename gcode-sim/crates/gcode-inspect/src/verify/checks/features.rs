@@ -21,6 +21,8 @@ pub(in crate::verify) enum ShapeGap {
     Floor(Option<u32>),
     /// It may be a comb mill, whose teeth are as long as its thread.
     ThreadLength(Option<u32>),
+    /// It cuts a thread that the reference doesn't have.
+    Thread(Option<u32>),
     /// It only widens or threads a hole, and the program doesn't drill that.
     Undrilled(Option<u32>),
 }
@@ -348,7 +350,8 @@ impl Judgement<'_> {
         self.findings.push(finding.help("check the programmed depth, the tool length and its offset"));
     }
 
-    /// Reports a finishing tool or a tap that ends above the bottom of a hole of one diameter.
+    /// Reports a finishing tool or a tap that ends above the bottom of a hole of one diameter. A hole without a diameter may
+    /// have a thread of any depth.
     fn judge_finished_depth(&mut self) {
         let tolerances = self.comparison.tolerances;
         let (depth, diameter) = (self.nominal.depth, self.nominal.diameter);
@@ -357,6 +360,11 @@ impl Judgement<'_> {
             off.is_some_and(|off| !exceeds(off, tolerances.diameter))
         };
         let (cut, missed) = if let Some(tap) = deepest(self.near.iter().filter(|cut| cut.is_thread())) {
+            if diameter.is_none() {
+                // The depth may be that of the drill, which has to go deeper than the tap.
+                self.gaps.push(ShapeGap::Thread(tap.pass.tool));
+                return;
+            }
             (tap, depth - tap.tip)
         } else if let Some(sized) = deepest(self.near.iter().filter(is_sized)) {
             let is_known = self.near.iter().all(|cut| cut.pass.diameter.is_some() || cut.tip <= sized.tip);
