@@ -28,9 +28,4 @@ impl Profile {
     pub(super) fn flat(radius: f64, is_certain: bool) -> Self {
         Self { parts: vec![ToolPart::flutes(0.0, f64::INFINITY, radius)], radius, is_certain }
     }
-
-    /// Returns true if the lowest part has no end: what it removes at a height it removes wherever it is above that.
-    pub(super) fn is_open(&self) -> bool {
-        self.parts.first().is_some_and(|part| part.to == f64::INFINITY)
-    }
 }

@@ -25,9 +25,6 @@ const NOISE: f64 = 1e-9;
 /// Largest deviation of feeds that are one sweep from a line, mm.
 const MAX_BEND: f64 = 0.003;
 
-/// Number of ways across the tool for each of which the last sweep is remembered.
-const REMEMBERED_WAYS: usize = 1 << 14;
-
 /// Straight motion of the tip with a tool.
 #[derive(Clone, Copy, Debug)]
 struct Sweep {
@@ -38,8 +35,6 @@ struct Sweep {
     profile: u32,
     /// Sweep before it in its cell.
     previous: u32,
-    /// Least number of first sweeps among which another one covers all that this one covers.
-    needless_among: Option<u32>,
 }
 
 /// End of the chain of a cell.
@@ -57,8 +52,6 @@ pub(super) struct RemovedMetal {
     levels: BTreeMap<i32, Cells>,
     /// The last sweep is in no cell: the next feed may lengthen it.
     is_last_open: bool,
-    /// Last sweep along each way across the tool, by a hash of the way: turns of a helix go the same way, each deeper.
-    along_way: Vec<u32>,
     /// Direction of its first feed.
     heading: Option<Unit<Vector3<f64>>>,
     /// Direction of the tool in all sweeps; `Some(None)` if they differ.
@@ -77,7 +70,6 @@ impl RemovedMetal {
             profiles: Vec::new(),
             levels: BTreeMap::new(),
             is_last_open: false,
-            along_way: Vec::new(),
             heading: None,
             common_axis: None,
             bounds,
@@ -109,7 +101,7 @@ impl RemovedMetal {
             self.is_full = true;
             return;
         }
-        self.sweeps.push(Sweep { from, to, axis, profile, previous: NONE, needless_among: None });
+        self.sweeps.push(Sweep { from, to, axis, profile, previous: NONE });
         self.common_axis = Some(self.common_axis.unwrap_or(Some(axis)).filter(|common| *common == axis));
         self.is_last_open = true;
         self.heading = Unit::try_new(to - from, ROUNDING);
@@ -121,7 +113,6 @@ impl RemovedMetal {
             return;
         }
         let index = self.sweeps.len() - 1;
-        self.compare_along_way(index);
         let sweep = &self.sweeps[index];
         let profile = &self.profiles[sweep.profile as usize];
         let (mut low, mut high) = (sweep.from.inf(&sweep.to), sweep.from.sup(&sweep.to));
@@ -137,31 +128,6 @@ impl RemovedMetal {
         let cell = cell_of(&nalgebra::center(&low, &high), level);
         let last = self.levels.entry(level).or_default().insert(cell, index as u32);
         self.sweeps[index].previous = last.unwrap_or(NONE);
-    }
-
-    /// Finds the last sweep that goes the same way across the tool, and marks the higher one of both as needless.
-    fn compare_along_way(&mut self, index: usize) {
-        let sweep = self.sweeps[index];
-        let profile = &self.profiles[sweep.profile as usize];
-        if !profile.is_open() || profile.parts.len() != 1 {
-            return;
-        }
-        if self.along_way.is_empty() {
-            self.along_way = vec![NONE; REMEMBERED_WAYS];
-        }
-        let place = &mut self.along_way[sweep.hash_of_way() % REMEMBERED_WAYS];
-        let Some(earlier) = self.sweeps.get(*place as usize) else {
-            *place = index as u32;
-            return;
-        };
-        match sweep.height_along_way(earlier) {
-            Some([start, end]) if 0.0 <= start.min(end) => self.sweeps[index].needless_among = Some(0),
-            Some([start, end]) if start.max(end) <= 0.0 => {
-                self.sweeps[*place as usize].needless_among = Some(index as u32 + 1);
-                *place = index as u32;
-            }
-            _ => *place = index as u32,
-        }
     }
 
     /// Returns the height above a point beyond which there is no metal along a direction.
@@ -201,8 +167,8 @@ impl RemovedMetal {
 
     /// Returns true if what is removed at a height above a tool of this direction is removed wherever it is above that.
     pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
-        self.common_axis.is_none_or(|common| common == Some(*axis))
-            && self.profiles.iter().all(Profile::is_open)
+        let is_open = |profile: &Profile| profile.parts.first().is_some_and(|part| part.to == f64::INFINITY);
+        self.common_axis.is_none_or(|common| common == Some(*axis)) && self.profiles.iter().all(is_open)
     }
 
     /// Keeps later feeds from lengthening the last sweep; returns the number of sweeps.
@@ -278,8 +244,7 @@ impl NearSweeps<'_> {
             if previous != NONE {
                 heads.push(previous);
             }
-            let needless_among = self.removed.sweeps[next as usize].needless_among;
-            if next < self.sweeps && needless_among.is_none_or(|count| self.sweeps < count) {
+            if next < self.sweeps {
                 found.push(next);
                 return true;
             }
@@ -303,41 +268,6 @@ fn cell_of(p: &Point3<f64>, level: i32) -> [i32; 3] {
 }
 
 impl Sweep {
-    /// Returns its ends across the tool, in an order that doesn't depend on the sense.
-    fn way(&self) -> [Point3<f64>; 2] {
-        let axis = self.axis.into_inner();
-        let [from, to] = [self.from, self.to].map(|p| p - axis * p.coords.dot(&axis));
-        let is_ordered =
-            (0..3).map(|i| to[i] - from[i]).find(|gain| ROUNDING < gain.abs()).is_none_or(|gain| 0.0 < gain);
-        if is_ordered { [from, to] } else { [to, from] }
-    }
-
-    /// Returns a number that is the same for sweeps that go the same way, but for rounding.
-    fn hash_of_way(&self) -> usize {
-        let steps = self.way().into_iter().flat_map(|p| [p.x, p.y, p.z]).map(|v| libm::round(v * 1e3) as i64);
-        let hash = steps.fold(0_u64, |hash, step| {
-            (hash.rotate_left(5) ^ step.cast_unsigned()).wrapping_mul(0x517c_c1b7_2722_0a95)
-        });
-        (hash >> 32) as usize
-    }
-
-    /// Returns how much higher the ends are than those of a sweep of the same tool that goes the same way; `None` for another
-    /// way or tool.
-    fn height_along_way(&self, other: &Self) -> Option<[f64; 2]> {
-        let is_same = self.axis == other.axis && self.profile == other.profile;
-        let [(from, to), (other_from, other_to)] = [self, other].map(|sweep| {
-            let height = |p: &Point3<f64>| p.coords.dot(&sweep.axis);
-            let [start, _] = sweep.way();
-            let is_forward = (sweep.from - start).cross(&sweep.axis).norm() < ROUNDING;
-            let ends = if is_forward { (sweep.from, sweep.to) } else { (sweep.to, sweep.from) };
-            ((ends.0, height(&ends.0)), (ends.1, height(&ends.1)))
-        });
-        let is_near =
-            |one: &Point3<f64>, other: &Point3<f64>| (one - other).cross(&self.axis).norm() < ROUNDING;
-        (is_same && is_near(&from.0, &other_from.0) && is_near(&to.0, &other_to.0))
-            .then(|| [from.1 - other_from.1, to.1 - other_to.1])
-    }
-
     /// Lengthens the sweep by a feed of the same tool along its axis; a feed out of the part adds nothing. Returns false
     /// for other feeds.
     fn lengthen_along_axis(&mut self, from: &Point3<f64>, to: &Point3<f64>) -> bool {
@@ -483,44 +413,6 @@ mod tests {
         assert_eq!(rest_of(&removed, p(3.0, 0.0, 0.0), p(3.0, 0.0, -40.0)), [[0.50025, 1.0]]);
     }
 
-    /// Turns of a helix go the same way, each deeper: only the lowest counts, in either sense. Before it, those before count.
-    #[test]
-    fn a_sweep_below_another_one_replaces_it() {
-        let profile = Profile::flat(5.0, true);
-        let mut removed = RemovedMetal::new([p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)]);
-        let add = |removed: &mut RemovedMetal, x: [f64; 2], z: [f64; 2]| {
-            removed.add(p(x[0], 0.0, z[0]), p(x[1], 0.0, z[1]), Vector3::z_axis(), &profile);
-            removed.close_last();
-        };
-        for (x, z) in [
-            ([0.0, 40.0], [-1.0, -2.0]),
-            ([40.0, 0.0], [-4.0, -3.0]),
-            // Higher at its end: both count.
-            ([0.0, 40.0], [-5.0, -2.0]),
-            ([0.0, 40.0], [-5.0, -4.0]),
-            ([0.0, 40.0], [-1.0, -1.0]),
-            // Another way.
-            ([0.0, 41.0], [-6.0, -6.0]),
-        ] {
-            add(&mut removed, x, z);
-        }
-        let needless: Vec<_> = removed.sweeps.iter().map(|sweep| sweep.needless_among).collect();
-        assert_eq!(needless, [Some(2), None, Some(4), None, Some(0), None]);
-        // At x 20 the second sweep is at −3.5, the fourth at −4.5, the last at −6.
-        for (count, depth) in [(1, 1.5), (2, 3.5), (5, 4.5), (6, 6.0)] {
-            let mut shares = Shares::default();
-            shares.extend([[0.0, 1.0]]);
-            let line = [p(20.0, 0.0, 0.0), p(20.0, 0.0, -10.0)];
-            removed.near(&[line[1], line[0]], count).uncover(&Strip::line(line), true, &mut shares);
-            let [first, _] = shares.pieces()[0];
-            // The flat end of a sloping sweep is lowest 5 away: up to 5 times its slope lower.
-            assert!(
-                (first * 10.0 - depth).abs() < 0.5 + TOUCH_DEPTH && depth <= first * 10.0,
-                "{count} {first}"
-            );
-        }
-    }
-
     /// A thousand steps of 0.05 along a line are one sweep; on a circle of 10 no sweep leaves it by more than 0.01.
     #[test]
     fn small_steps_along_a_line_are_one_sweep() {
@@ -568,7 +460,7 @@ mod tests {
                 ..ToolPart::flutes(low, low + length, 0.0)
             };
             let parts = if slope == 0.0 { vec![ToolPart::flutes(low, low + length, radius)] } else { vec![cone, cylinder] };
-            let sweep = Sweep { from, to, axis, profile: 0, previous: NONE, needless_among: None };
+            let sweep = Sweep { from, to, axis, profile: 0, previous: NONE };
             let (a, b) = (p(travel[0], travel[1], travel[2]), p(travel[3], travel[4], travel[5]));
             let covered: Vec<_> = parts.iter().filter_map(|part| sweep.covered(part, &[a, b])).collect();
             for s in 0..=50 {
