@@ -2,6 +2,7 @@
 mod arc_run;
 mod axis_box;
 mod bar_shift;
+mod box_tree;
 mod chord_run;
 mod circles;
 mod clamping;

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::metal::{KnownMetal, MAX_OFFSET, PointInMetal, ROUNDING, SIDE_SLACK, is_rounding};
-use super::removed_metal::NearSweeps;
+use super::removed_metal::FirstSweeps;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
 use crate::machine::TOUCH_DEPTH;
@@ -80,7 +80,7 @@ pub(super) struct NearMetal<'m> {
     judged: Judged<'m>,
     bounds: [Point3<f64>; 2],
     /// Sweeps and nominal holes near the motion, found when they are needed.
-    sweeps: OnceCell<NearSweeps<'m>>,
+    sweeps: OnceCell<FirstSweeps<'m>>,
     rooms: OnceCell<Vec<&'m Collar>>,
 }
 
@@ -251,7 +251,7 @@ impl<'m> NearMetal<'m> {
     fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
         if !shares.is_empty() {
             let count = if let Judged::Kept(_, sweeps) = self.judged { sweeps } else { u32::MAX };
-            let sweeps = self.sweeps.get_or_init(|| self.metal.removed.near(&self.bounds, count));
+            let sweeps = self.sweeps.get_or_init(|| self.metal.removed.first(count));
             sweeps.uncover(strip, is_certain, shares);
         }
     }

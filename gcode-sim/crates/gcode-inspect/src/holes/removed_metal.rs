@@ -1,9 +1,9 @@
 //! Metal that feeds have removed: volumes that the tool sweeps, and the parts of a travel that they cover.
 use std::cell::RefCell;
-use std::collections::{BTreeMap, BinaryHeap, HashMap};
 
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::box_tree::{BoxTree, group};
 use super::profile::Profile;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
@@ -33,24 +33,16 @@ struct Sweep {
     /// Direction of the tool, out of the part.
     axis: Unit<Vector3<f64>>,
     profile: u32,
-    /// Sweep before it in its cell.
-    previous: u32,
 }
-
-/// End of the chain of a cell.
-const NONE: u32 = u32::MAX;
-
-/// Last sweep of each cell: sweeps of one size, by the cell of their middles.
-type Cells = HashMap<[i32; 3], u32>;
 
 /// Volumes that the tool has swept in feeds.
 #[derive(Debug)]
 pub(super) struct RemovedMetal {
     sweeps: Vec<Sweep>,
     profiles: Vec<Profile>,
-    /// By the logarithm of the size of their cells.
-    levels: BTreeMap<i32, Cells>,
-    /// The last sweep is in no cell: the next feed may lengthen it.
+    /// Boxes about the sweeps.
+    boxes: BoxTree,
+    /// The next feed may lengthen the last sweep.
     is_last_open: bool,
     /// Direction of its first feed.
     heading: Option<Unit<Vector3<f64>>>,
@@ -68,7 +60,7 @@ impl RemovedMetal {
         Self {
             sweeps: Vec::new(),
             profiles: Vec::new(),
-            levels: BTreeMap::new(),
+            boxes: BoxTree::default(),
             is_last_open: false,
             heading: None,
             common_axis: None,
@@ -91,29 +83,25 @@ impl RemovedMetal {
             self.profiles.len() - 1
         }) as u32;
         let last = self.sweeps.last_mut().filter(|_| self.is_last_open);
-        if let Some(last) = last.filter(|last| last.axis == axis && last.profile == profile)
-            && (last.lengthen_along_axis(&from, &to) || last.go_on(&from, &to, self.heading))
-        {
-            return;
+        let is_longer = last
+            .filter(|last| last.axis == axis && last.profile == profile)
+            .is_some_and(|last| last.lengthen_along_axis(&from, &to) || last.go_on(&from, &to, self.heading));
+        if !is_longer {
+            if self.sweeps.len() == MAX_SWEEPS {
+                self.is_full = true;
+                return;
+            }
+            self.sweeps.push(Sweep { from, to, axis, profile });
+            self.common_axis = Some(self.common_axis.unwrap_or(Some(axis)).filter(|common| *common == axis));
+            self.is_last_open = true;
+            self.heading = Unit::try_new(to - from, ROUNDING);
         }
-        self.close_last();
-        if self.sweeps.len() == MAX_SWEEPS {
-            self.is_full = true;
-            return;
-        }
-        self.sweeps.push(Sweep { from, to, axis, profile, previous: NONE });
-        self.common_axis = Some(self.common_axis.unwrap_or(Some(axis)).filter(|common| *common == axis));
-        self.is_last_open = true;
-        self.heading = Unit::try_new(to - from, ROUNDING);
+        self.enclose_last();
     }
 
-    /// Enters the last sweep in its cell.
-    fn close_last(&mut self) {
-        if !std::mem::take(&mut self.is_last_open) {
-            return;
-        }
-        let index = self.sweeps.len() - 1;
-        let sweep = &self.sweeps[index];
+    /// Widens the boxes about the last sweep.
+    fn enclose_last(&mut self) {
+        let Some(sweep) = self.sweeps.last() else { return };
         let profile = &self.profiles[sweep.profile as usize];
         let (mut low, mut high) = (sweep.from.inf(&sweep.to), sweep.from.sup(&sweep.to));
         let axis = sweep.axis.into_inner();
@@ -123,11 +111,7 @@ impl RemovedMetal {
             (low, high) = (low.inf(&end), high.sup(&end));
         }
         let margin = Vector3::repeat(profile.radius + TOUCH_DEPTH);
-        let (low, high) = (low - margin, high + margin);
-        let level = level_of((high - low).amax());
-        let cell = cell_of(&nalgebra::center(&low, &high), level);
-        let last = self.levels.entry(level).or_default().insert(cell, index as u32);
-        self.sweeps[index].previous = last.unwrap_or(NONE);
+        self.boxes.enclose(self.sweeps.len() - 1, [low - margin, high + margin]);
     }
 
     /// Returns the height above a point beyond which there is no metal along a direction.
@@ -173,98 +157,71 @@ impl RemovedMetal {
 
     /// Keeps later feeds from lengthening the last sweep; returns the number of sweeps.
     pub(super) fn close(&mut self) -> u32 {
-        self.close_last();
+        self.is_last_open = false;
         self.sweeps.len() as u32
     }
 
-    /// Returns those of the first sweeps that may reach into a box.
-    pub(super) fn near(&self, [low, high]: &[Point3<f64>; 2], count: u32) -> NearSweeps<'_> {
-        let mut heads = BinaryHeap::new();
-        if self.is_last_open {
-            heads.push(self.sweeps.len() as u32 - 1);
+    /// Returns the first sweeps, for the strips of one motion.
+    pub(super) fn first(&self, count: u32) -> FirstSweeps<'_> {
+        FirstSweeps {
+            sweeps: &self.sweeps[..self.sweeps.len().min(count as usize)],
+            removed: self,
+            recent: RefCell::default(),
         }
-        for (level, cells) in &self.levels {
-            let half = Vector3::repeat(size_of(*level) / 2.0);
-            let (low, high) = (cell_of(&(low - half), *level), cell_of(&(high + half), *level));
-            let count = (0..3).map(|i| f64::from(high[i]) - f64::from(low[i]) + 1.0).product::<f64>();
-            if (cells.len() as f64) < count {
-                let is_near = |cell: &[i32; 3]| (0..3).all(|i| low[i] <= cell[i] && cell[i] <= high[i]);
-                heads.extend(cells.iter().filter(|(cell, _)| is_near(cell)).map(|(_, last)| *last));
-                continue;
-            }
-            for x in low[0]..=high[0] {
-                for y in low[1]..=high[1] {
-                    heads.extend((low[2]..=high[2]).filter_map(|z| cells.get(&[x, y, z])));
-                }
-            }
-        }
-        NearSweeps { removed: self, sweeps: count, found: RefCell::default(), heads: RefCell::new(heads) }
     }
 }
 
-/// Sweeps that may reach into a box, found as far as they are needed: the last ones first, and before them those that have
-/// covered something.
+/// Number of the sweeps that are tried before all others.
+const MAX_RECENT: usize = 8;
+
+/// The first sweeps: of them, those that have covered something of the motion are tried before the others.
 #[derive(Debug)]
-pub(super) struct NearSweeps<'r> {
+pub(super) struct FirstSweeps<'r> {
+    sweeps: &'r [Sweep],
     removed: &'r RemovedMetal,
-    /// Number of the first sweeps that count.
-    sweeps: u32,
-    found: RefCell<Vec<u32>>,
-    /// Next sweep of each chain.
-    heads: RefCell<BinaryHeap<u32>>,
+    /// The last ones that have covered something.
+    recent: RefCell<Vec<usize>>,
 }
 
-impl NearSweeps<'_> {
+impl FirstSweeps<'_> {
     /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included. `is_certain` leaves
     /// out tools of unknown diameter.
     pub(super) fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
-        let mut found = self.found.borrow_mut();
-        let mut index = 0;
-        while !shares.is_empty() {
-            if index == found.len() && !self.find_next(&mut found) {
-                return;
-            }
-            let sweep = &self.removed.sweeps[found[index] as usize];
+        let mut recent = self.recent.borrow_mut();
+        let cover = |index: usize, shares: &mut Shares| {
+            let Some(sweep) = self.sweeps.get(index) else { return false };
             let profile = &self.removed.profiles[sweep.profile as usize];
             let mut has_covered = false;
             for part in profile.parts.iter().filter(|_| profile.is_certain || !is_certain) {
                 has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, line)));
             }
-            if has_covered {
-                found.swap(index, index / 2);
+            has_covered
+        };
+        for place in (0..recent.len()).rev() {
+            if shares.is_empty() {
+                return;
             }
-            index += 1;
+            cover(recent[place], shares);
         }
-    }
-
-    fn find_next(&self, found: &mut Vec<u32>) -> bool {
-        let mut heads = self.heads.borrow_mut();
-        while let Some(next) = heads.pop() {
-            let previous = self.removed.sweeps[next as usize].previous;
-            if previous != NONE {
-                heads.push(previous);
-            }
-            if next < self.sweeps {
-                found.push(next);
-                return true;
-            }
+        if shares.is_empty() {
+            return;
         }
-        false
+        self.removed.boxes.near(&strip.bounds(), &mut |place| {
+            for index in group(place).rev() {
+                if shares.is_empty() {
+                    return false;
+                }
+                if cover(index, shares) {
+                    recent.retain(|other| *other != index);
+                    if recent.len() == MAX_RECENT {
+                        recent.remove(0);
+                    }
+                    recent.push(index);
+                }
+            }
+            !shares.is_empty()
+        });
     }
-}
-
-/// Returns the level of a size: the logarithm of the least cell that is as large.
-fn level_of(size: f64) -> i32 {
-    libm::ceil(libm::log2(size.clamp(0.5, 1e6))) as i32
-}
-
-fn size_of(level: i32) -> f64 {
-    libm::ldexp(1.0, level)
-}
-
-fn cell_of(p: &Point3<f64>, level: i32) -> [i32; 3] {
-    let size = size_of(level);
-    [p.x, p.y, p.z].map(|v| libm::floor(v / size) as i32)
 }
 
 impl Sweep {
@@ -369,11 +326,7 @@ mod tests {
     fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f64; 2]> {
         let mut shares = Shares::default();
         shares.extend([[0.0, 1.0]]);
-        removed.near(&[from.inf(&to), from.sup(&to)], u32::MAX).uncover(
-            &Strip::line([from, to]),
-            true,
-            &mut shares,
-        );
+        removed.first(u32::MAX).uncover(&Strip::line([from, to]), true, &mut shares);
         let mut pieces: Vec<_> =
             shares.pieces().iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
         pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -388,7 +341,7 @@ mod tests {
         removed.add(p(0.0, 0.0, -5.0), p(40.0, 0.0, -5.0), Vector3::z_axis(), &Profile::flat(5.0, true));
         for is_closed in [false, true] {
             if is_closed {
-                removed.close_last();
+                removed.close();
             }
             let along = |y, z| rest_of(&removed, p(-50.0, y, z), p(50.0, y, z));
             assert_eq!(along(0.0, -5.0), [[0.0, 0.4499], [0.9501, 1.0]]);
@@ -460,7 +413,7 @@ mod tests {
                 ..ToolPart::flutes(low, low + length, 0.0)
             };
             let parts = if slope == 0.0 { vec![ToolPart::flutes(low, low + length, radius)] } else { vec![cone, cylinder] };
-            let sweep = Sweep { from, to, axis, profile: 0, previous: NONE };
+            let sweep = Sweep { from, to, axis, profile: 0 };
             let (a, b) = (p(travel[0], travel[1], travel[2]), p(travel[3], travel[4], travel[5]));
             let covered: Vec<_> = parts.iter().filter_map(|part| sweep.covered(part, &[a, b])).collect();
             for s in 0..=50 {
