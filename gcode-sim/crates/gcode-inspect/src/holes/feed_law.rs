@@ -34,6 +34,9 @@ const MAX_OPEN_RADIUS: f64 = 50.0;
 /// Number of feeds with a gouge after which no more are compared.
 const MAX_GOUGES: u32 = 1000;
 
+/// Number of feeds with a gouge whose deepest point is looked for; of later ones the first contact counts.
+const MAX_MEASURED_GOUGES: u32 = 4;
+
 /// Largest excess of a shank or a holder over the hole in which it goes, mm in radius: half the tolerance of the diameter.
 const FIT: f64 = 0.025;
 
@@ -103,6 +106,7 @@ impl HoleExtractor<'_> {
         }
         let is_judged = is_judged && self.gouge_count < MAX_GOUGES;
         let mut worst: Option<Gouge> = None;
+        let is_deepest_wanted = self.gouge_count < MAX_MEASURED_GOUGES;
         for chord in path.windows(2) {
             let (from, to) = (chord[0], chord[1]);
             let Some(axis) = self.axis_in_motion(&from, &to) else { continue };
@@ -116,6 +120,7 @@ impl HoleExtractor<'_> {
             // A plunge may drill a hole: the motion after it shows that.
             match is_judged && !is_unclear {
                 true if is_plunge => self.record_plunge(&[from, to], &axis),
+                true if worst.is_some() && !is_deepest_wanted => {}
                 true => worst = Gouge::worse(worst, self.gouge(&[from, to], &axis, u32::MAX)),
                 false => {}
             }
