@@ -37,12 +37,14 @@ impl Planner<'_> {
         {
             plan.notes.push(Note::LengthOffsetZero(row.code));
         }
-        let offset = self.locate(self.data.length_offset(&plan.state))?;
-        let (changed, by) = (offset != plan.state.length_offset, plan.state.length_compensation());
-        if changed || by != self.registers.state.length_compensation() {
-            plan.push_event(EventKind::ToolLength { offset, compensation: by });
+        let (offset, wear) = self.locate(self.data.length_offset(&plan.state))?;
+        let changed = offset != plan.state.length_offset;
+        let has_other_source = wear != plan.state.length_wear
+            || plan.state.length_compensation() != self.registers.state.length_compensation();
+        (plan.state.length_offset, plan.state.length_wear) = (offset, wear);
+        if changed || has_other_source {
+            plan.push_event(self.data.length_event(&plan.state));
         }
-        plan.state.length_offset = offset;
         let (before, now) = (self.registers.state.controls_tip(), plan.state.controls_tip());
         if before && !now && plan.state.transform.is_identity() {
             plan.state.transform.unknown_centre = 0;
