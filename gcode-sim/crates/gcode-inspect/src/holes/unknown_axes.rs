@@ -152,7 +152,7 @@ impl HoleExtractor<'_> {
         if kind == MotionKind::Rapid {
             self.report_rapid_at_unknown_level(event, travel, (was, is));
             self.report_rapid_below_top(event, is);
-            self.report_rapid_down_to_part(event, (was, is));
+            self.report_rapid_to_surface(event, (was, is));
         }
         self.update_start();
     }
@@ -235,36 +235,34 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a rapid from a place that nothing has commanded to one beside or on the part and no higher than its top: it may
-    /// lead through the part.
-    fn report_rapid_down_to_part(&mut self, event: &Event<'_>, (was, is): (UnknownAxes, UnknownAxes)) {
+    /// Reports a rapid to the surface of the body from a place across the tool that nothing has commanded: it may lead through
+    /// the body.
+    fn report_rapid_to_surface(&mut self, event: &Event<'_>, (was, is): (UnknownAxes, UnknownAxes)) {
         let Some((surface, out)) = self.surface.zip(self.tool_direction()) else { return };
+        let tip = self.pose.tip;
+        let depth = surface.depth(&tip);
+        if !is.is_none() || depth <= -CONTACT_CLEARANCE || TOUCH_DEPTH < depth {
+            return;
+        }
         // Along the tool the way from any place is the one that is checked.
         let is_across = |axis: &AxisIndex| {
             let mut beside = self.axis_position;
             beside[*axis] += 1.0;
-            let by = self.machine.forward(&beside, &self.setup).tip - self.pose.tip;
+            let by = self.machine.forward(&beside, &self.setup).tip - tip;
             !self.machine.axes.is_rotary(*axis) && MAX_SINE < by.cross(&out).norm()
         };
-        let opened = (0..self.machine.axes.len()).filter(|axis| was.uncommanded & !is.all() & 1 << axis != 0);
+        let opened = (0..self.machine.axes.len()).filter(|axis| was.uncommanded >> axis & 1 == 1);
         let axes = opened.filter(is_across).fold(0, |axes, axis| axes | 1 << axis);
-        let (tip, [low, high]) = (self.pose.tip, surface.bounds());
-        let top: f64 = (0..3).map(|i| (out[i] * low[i]).max(out[i] * high[i])).sum();
-        let below = top - tip.coords.dot(&out);
-        if axes == 0 || !is.is_none() || below <= -CONTACT_CLEARANCE {
+        if axes == 0 {
             return;
         }
         let letters = self.machine.axes.names(axes);
         self.findings.add_in_program(&START_UNKNOWN, &event.backtrace(), LOW_RAPID_DETAIL, 1, |kind| {
-            let place = match below {
-                _ if TOUCH_DEPTH < below => format!("{below:.3} mm below the top of the part"),
-                _ => "at the level of the top of the part".to_owned(),
-            };
-            let message = format!("a rapid leads to {place} from an unknown position of {letters}: the part may be in its way");
-            Diagnostic::new(kind, message).help(format!(
-                "command {letters} above the part first, or state where the run starts: --start, or [start] in the machine \
-                 file"
-            ))
+            let message = format!(
+                "a rapid leads to the surface of the part from an unknown position of {letters}: the part may be in \
+                 its way"
+            );
+            Diagnostic::new(kind, message).help(format!("command {letters} in G90 above the part before it"))
         });
     }
 
