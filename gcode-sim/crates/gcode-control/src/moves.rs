@@ -208,6 +208,13 @@ impl Planner<'_> {
     /// Notes an axis that the block doesn't name, if a change of the transform has changed its coordinate.
     #[cold]
     fn note_axes_left_out(&self, state: &State) {
+        let plane = self.data.plane_axes(state.modal.plane).ok();
+        // Where all transforms have ended, a block of other axes moves none of the plane.
+        if state.transform.is_identity()
+            && plane.is_some_and(|(first, second)| !self.names(first) && !self.names(second))
+        {
+            return;
+        }
         let end = self.data.move_end(state);
         let is_left_out = |axis| !self.names(axis) && end[axis] != state.programmed_position[axis];
         if (0..self.data.settings.axes.len()).any(is_left_out) {

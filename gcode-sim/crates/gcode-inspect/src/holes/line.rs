@@ -157,15 +157,18 @@ impl CuttingLine {
         })
     }
 
-    /// Records rate and modal state of a feed inwards that cuts. A reversal before it taps no thread.
-    pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState) {
+    /// Records rate and modal state of a feed inwards that cuts, or enters a hole that is cut. A reversal before it taps no
+    /// thread.
+    pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState, cuts: bool) {
         self.is_fed_stopped |= state.spindle_direction == SpindleDirection::Off;
         self.cutting_state = state;
         self.is_tapping = false;
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
         self.last_feed = Some(feed);
         let own = [(feed, state.speed); 2];
-        self.extremes = Some(self.extremes.map_or(own, |all| widen(all, own)));
+        if cuts {
+            self.extremes = Some(self.extremes.map_or(own, |all| widen(all, own)));
+        }
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
     }
 
@@ -452,12 +455,12 @@ impl HoleExtractor<'_> {
             let diameter = self.machine.diameter_of(self.setup.tool);
             diameter.is_some_and(|own| ENTRY_FEED_SHARE * own * self.cutting_state.speed.0 < rate.0)
         };
-        if is_in_air
-            || (may_turn_idle || is_steep()) && self.cuts_known_metal(from, &tip) == Some(false)
-        {
+        let cuts_nothing = || self.cuts_known_metal(from, &tip) == Some(false);
+        if is_in_air || may_turn_idle && cuts_nothing() {
             return;
         }
+        let is_entry = is_steep() && cuts_nothing();
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-        line.record_feed(*rate, state);
+        line.record_feed(*rate, state, !is_entry);
     }
 }

@@ -80,6 +80,11 @@ pub(super) fn list(
     if machine.head.kind == HeadKind::Free && comparison.matched().any(|(.., drilled)| is_unknown(drilled)) {
         all.push(NotChecked::gap("head angles", "the head is unknown, each axis is taken along its feed"));
     }
+    let has_sides = machine.tools.iter().any(|tool| tool.diameter.is_some());
+    if machine.head.kind == HeadKind::Free && extraction.is_metal_known && has_sides {
+        let reason = "the direction of the tool is unknown: across its axis they are not compared";
+        all.push(NotChecked::gap("the sides of tools (no [head])", reason));
+    }
     if extraction.assumed_axes != 0 && !extraction.holes.is_empty() {
         let what = format!("the position of {}", machine.axes.names(extraction.assumed_axes));
         all.push(NotChecked::aside(what, "no block commands it, and it counts as 0"));
