@@ -86,8 +86,8 @@ use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPar
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
-    Backtrace, Event, EventKind, EventSink, LengthCompensation, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
-    StopKind,
+    Backtrace, Event, EventKind, EventSink, LengthCompensation, PlanarArc, Position, SkipMove, SkipSignal,
+    SpindleDirection, StopKind,
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;

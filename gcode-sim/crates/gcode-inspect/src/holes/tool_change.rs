@@ -72,7 +72,9 @@ impl HoleExtractor<'_> {
         let depth = (top - tip).norm();
         self.findings.add(&TOOL_LEFT_IN_HOLE, &event.backtrace(), 1, |kind| {
             let point = format_point(&tip);
-            let message = format!("the tool is changed {depth:.3} mm below the top of the part, with its tip at {point}");
+            let message = format!(
+                "the tool is changed {depth:.3} mm below the top of the part, with its tip at {point}"
+            );
             Diagnostic::new(kind, message).help("retract above the surface before the tool change")
         });
     }

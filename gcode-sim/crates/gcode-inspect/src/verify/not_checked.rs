@@ -211,7 +211,8 @@ fn pitches(comparison: &Comparison<'_>, machine: &Machine) -> Vec<NotChecked> {
             continue;
         }
         let cuts = Cut::all(nominal, drilled, machine);
-        let threads: BTreeSet<_> = cuts.iter().filter(|cut| cut.is_thread()).map(|cut| cut.pass.tool).collect();
+        let threads: BTreeSet<_> =
+            cuts.iter().filter(|cut| cut.is_thread()).map(|cut| cut.pass.tool).collect();
         for tool in threads {
             by_tool.entry(tool).or_default().push(comparison.id(pair.nominal));
         }
@@ -280,7 +281,9 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<NotChecked> {
     let gap = |(tool, compensation): (Option<u32>, LengthCompensation)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
         match compensation.number() {
-            Some(h) => NotChecked::gap(whose, format!("not in the machine file, which takes H{h} as its length")),
+            Some(h) => {
+                NotChecked::gap(whose, format!("not in the machine file, which takes H{h} as its length"))
+            }
             None => NotChecked::gap(
                 format!("{whose} (no length offset)"),
                 "not in the machine file, which takes its tip as the programmed point",

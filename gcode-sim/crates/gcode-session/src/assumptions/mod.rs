@@ -2,9 +2,9 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::causes::work_offset_name;
 use super::marked_events::{MarkedEvents, marks_of};
 use super::outside_text::names_outside;
-use super::causes::work_offset_name;
 use super::{Request, Run, set_up_control};
 use gcode_control::OperatorStop;
 use gcode_control::slice::{KEPT_GROUPS, Marks, OutsideRead, OutsideValue, Slice, StatedValues};
@@ -77,7 +77,9 @@ fn name_of(value: OutsideValue, run: &Run) -> String {
     let dialect = run.control.settings().dialect;
     match value {
         OutsideValue::WorkOffset(system, None) => work_offset_name(system, dialect),
-        OutsideValue::WorkOffset(system, Some(letter)) => format!("{} {letter}", work_offset_name(system, dialect)),
+        OutsideValue::WorkOffset(system, Some(letter)) => {
+            format!("{} {letter}", work_offset_name(system, dialect))
+        }
         _ => value.name(),
     }
 }

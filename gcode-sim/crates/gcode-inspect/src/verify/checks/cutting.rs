@@ -338,8 +338,7 @@ fn same_length(cut: &CutConditions, length: f64, machine: &Machine) -> Option<Di
 /// length cuts with one, this one has had one, or the program sets its length.
 fn without_offset(cut: &CutConditions, inspection: &HoleInspection<'_>) -> Option<Diagnostic> {
     let HoleInspection { extraction, machine, reference, .. } = inspection;
-    let is_specified =
-        reference.process_limits.tool_process(cut.tool).and_then(|tool| tool.offset).is_some();
+    let is_specified = reference.process_limits.tool_process(cut.tool).and_then(|tool| tool.offset).is_some();
     let is_open = |tool| machine.length_of(tool).is_none();
     // Where the job has the offset, another finding says so.
     if cut.compensation.number().is_some() || is_specified || !is_open(cut.tool) {

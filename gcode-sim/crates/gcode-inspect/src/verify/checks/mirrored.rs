@@ -39,7 +39,8 @@ impl MirrorImage {
                 Comparison::new(comparison.nominal, &mirrored, comparison.tolerances, comparison.pattern);
             // Only holes in their zones count: a rotated pattern lies near itself in many ways.
             let agreeing = count(&compared);
-            if agreeing < before + MIN_EXPLAINED || (agreeing as f64) < MIN_AGREEING_SHARE * comparison.nominal.len() as f64
+            if agreeing < before + MIN_EXPLAINED
+                || (agreeing as f64) < MIN_AGREEING_SHARE * comparison.nominal.len() as f64
             {
                 return None;
             }
@@ -87,7 +88,8 @@ fn is_wrong_rotation_sign(comparison: &Comparison<'_>, machine: &Machine, least:
                 DrilledHole { entry: by * hole.entry, axis: by.rotation * hole.axis, ..hole.clone() }
             })
             .collect();
-        let compared = Comparison::new(comparison.nominal, &turned, comparison.tolerances, comparison.pattern);
+        let compared =
+            Comparison::new(comparison.nominal, &turned, comparison.tolerances, comparison.pattern);
         least <= compared.pairs.iter().filter(|pair| compared.is_in_place(pair)).count()
     })
 }
