@@ -3,6 +3,9 @@ use super::per_block::PerBlock;
 use gcode_lang::motion::{Backtrace, LengthCompensation, SpindleDirection};
 use gcode_lang::units::{MmPerMin, Rpm};
 
+/// A feed, and the speed of the spindle with it.
+pub(crate) type FeedAtSpeed = (MmPerMin, Rpm);
+
 /// Depths that the strokes of a line add to the ones before, mm.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PeckExtent {
@@ -29,7 +32,7 @@ pub(crate) struct CutConditions {
     /// Slowest and fastest feed.
     pub feed_range: [MmPerMin; 2],
     /// Feeds that cut least and most in a revolution, with their speeds.
-    pub extremes: [(MmPerMin, Rpm); 2],
+    pub extremes: [FeedAtSpeed; 2],
     /// Largest depth of cut without a retract, mm.
     pub max_cut: f64,
     /// Least peck of the cuts in several strokes, each by its longest stroke, mm; `None` without pecks.
@@ -39,11 +42,8 @@ pub(crate) struct CutConditions {
 }
 
 /// Returns the least and the largest feed in a revolution of two pairs, each feed with its speed.
-pub(super) fn widen(
-    [least, most]: [(MmPerMin, Rpm); 2],
-    [low, high]: [(MmPerMin, Rpm); 2],
-) -> [(MmPerMin, Rpm); 2] {
-    let is_less = |one: (MmPerMin, Rpm), other: (MmPerMin, Rpm)| one.0.0 * other.1.0 < other.0.0 * one.1.0;
+pub(super) fn widen([least, most]: [FeedAtSpeed; 2], [low, high]: [FeedAtSpeed; 2]) -> [FeedAtSpeed; 2] {
+    let is_less = |one: FeedAtSpeed, other: FeedAtSpeed| one.0.0 * other.1.0 < other.0.0 * one.1.0;
     [if is_less(low, least) { low } else { least }, if is_less(most, high) { high } else { most }]
 }
 
@@ -92,7 +92,7 @@ impl CutConditionsByBlock {
         backtrace: &Backtrace,
         state: &CuttingState,
         is_tapping: bool,
-        (feed_range, extremes): ([MmPerMin; 2], [(MmPerMin, Rpm); 2]),
+        (feed_range, extremes): ([MmPerMin; 2], [FeedAtSpeed; 2]),
         pecks: PeckExtent,
     ) {
         let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;

@@ -2,13 +2,13 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::clamping::ClampState;
-use super::cutting::{CuttingState, PeckExtent, widen};
+use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent, widen};
 use super::drill_pass::{DrillPass, PassCut};
 use super::{HoleExtractor, MotionKind};
 use crate::machine::TOUCH_DEPTH;
 use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
-use gcode_lang::units::{MmPerMin, Rpm};
+use gcode_lang::units::MmPerMin;
 
 /// Least additional depth of a stroke that cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
@@ -58,7 +58,7 @@ pub(super) struct CuttingLine {
     /// Slowest and fastest feed that cuts.
     feed_range: Option<[MmPerMin; 2]>,
     /// Feeds that cut least and most in a revolution, with their speeds.
-    extremes: Option<[(MmPerMin, Rpm); 2]>,
+    extremes: Option<[FeedAtSpeed; 2]>,
     /// Last feed that cuts.
     last_feed: Option<MmPerMin>,
     /// Depth at which the part begins; `None` if its surface is unknown.
@@ -173,7 +173,7 @@ impl CuttingLine {
     }
 
     /// Returns the slowest and the fastest feed that cuts, and those that cut least and most in a revolution with their speeds.
-    pub(super) fn cutting_feeds(&self) -> Option<([MmPerMin; 2], [(MmPerMin, Rpm); 2])> {
+    pub(super) fn cutting_feeds(&self) -> Option<([MmPerMin; 2], [FeedAtSpeed; 2])> {
         self.feed_range.zip(self.extremes)
     }
 
