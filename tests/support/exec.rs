@@ -110,7 +110,7 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
         EventKind::Dwell { time } => format!("dwell {:.3} s", time.0),
         EventKind::ToolSelected { number } => format!("tool {number} selected"),
         EventKind::ToolChange { number } => format!("tool {number}"),
-        EventKind::ToolLength { offset, compensation: by } => match by {
+        EventKind::ToolLength { offset, compensation: by, .. } => match by {
             LengthCompensation::Off => format!("tool length {}", at(offset)),
             LengthCompensation::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
             LengthCompensation::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),

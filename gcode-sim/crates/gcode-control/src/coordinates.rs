@@ -1,5 +1,5 @@
 //! Programmed, work and machine coordinates, and the stored stroke check.
-use super::data::ControlData;
+use super::data::{ControlData, Register};
 use super::kinematics::{remove_noise, scaled, sum};
 use super::state::{EndBeforeTransform, State};
 use gcode_lang::alarm::Alarm;
@@ -188,23 +188,40 @@ impl ControlData {
         if state.modal.unit == Unit::Inch && !is_rotary { value / 25.4 } else { value }
     }
 
-    /// Returns the length offset of the modal state, on Z, or along the tool that G53.1 has turned.
-    pub(super) fn length_offset(&self, state: &State) -> Result<Position, Alarm> {
-        let mut offset = Position::default();
+    /// Returns the length offset of the modal state, on Z, or along the tool that G53.1 has turned; and its wear.
+    pub(super) fn length_offset(&self, state: &State) -> Result<(Position, f64), Alarm> {
         let sign = match state.modal.length {
             Length::Plus | Length::TipByAngles | Length::TipByVector | Length::TipOfHaas => 1.0,
             Length::Minus => -1.0,
-            Length::Off => return Ok(offset),
+            Length::Off => return Ok((Position::default(), 0.0)),
         };
-        let axis = self.settings.axes.find(b'Z').ok_or(Alarm::ImproperAddress { letter: 'Z' })?;
-        offset[axis] = sign * self.offsets.length(state.modal_words.h)?;
+        self.settings.axes.find(b'Z').ok_or(Alarm::ImproperAddress { letter: 'Z' })?;
+        let h = state.modal_words.h;
+        let wear = sign * self.offsets.tool(Register::HWear, h)?;
+        Ok((self.along_tool(state, sign * self.offsets.length(h)?), wear))
+    }
+
+    /// Returns a length on Z, or along the tool that G53.1 has turned.
+    pub(super) fn along_tool(&self, state: &State, length: f64) -> Position {
+        let mut offset = Position::default();
+        let Some(axis) = self.settings.axes.find(b'Z') else { return offset };
+        offset[axis] = length;
         if let Some((axes, alignment)) = state.alignment() {
             let length = alignment.tool.apply(axes.map(|axis| offset[axis]));
             for (axis, value) in axes.into_iter().zip(length) {
                 offset[axis] = value;
             }
         }
-        Ok(offset)
+        offset
+    }
+
+    /// Returns the event of the active length offset.
+    pub(super) fn length_event(&self, state: &State) -> EventKind {
+        EventKind::ToolLength {
+            offset: state.length_offset,
+            wear: self.along_tool(state, state.length_wear),
+            compensation: state.length_compensation(),
+        }
     }
 
     /// Returns an axis of the control by its number, counted from 0.

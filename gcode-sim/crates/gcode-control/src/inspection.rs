@@ -1,6 +1,7 @@
 //! Inspection and changes between two blocks, as on the screen of a control: the calls, locals of every level, typed
 //! expressions, and the next block.
 use super::control::Control;
+use super::data::Register;
 use super::executor::Executor;
 use super::flow::{CallFrame, FrameKind};
 use super::functions::variable_number;
@@ -189,6 +190,18 @@ impl Control {
     /// Returns the active tool length offset of each axis, mm and degrees.
     pub fn length_offset(&self) -> Position {
         self.executor.registers.state.length_offset
+    }
+
+    /// Returns the part of the active tool length offset that is wear.
+    pub fn length_wear(&self) -> Position {
+        let Registers { data, state, .. } = &self.executor.registers;
+        data.along_tool(state, state.length_wear)
+    }
+
+    /// Returns the tool length of each H whose geometry is not 0.
+    pub fn tool_lengths(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let lengths = &self.executor.registers.data.offsets.tools[Register::HGeometry as usize];
+        lengths.iter().enumerate().map(|(h, length)| (h as u32, *length)).filter(|(_, length)| *length != 0.0)
     }
 }
 

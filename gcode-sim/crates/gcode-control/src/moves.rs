@@ -37,12 +37,14 @@ impl Planner<'_> {
         {
             plan.notes.push(Note::LengthOffsetZero(row.code));
         }
-        let offset = self.locate(self.data.length_offset(&plan.state))?;
-        let (changed, by) = (offset != plan.state.length_offset, plan.state.length_compensation());
-        if changed || by != self.registers.state.length_compensation() {
-            plan.push_event(EventKind::ToolLength { offset, compensation: by });
+        let (offset, wear) = self.locate(self.data.length_offset(&plan.state))?;
+        let changed = offset != plan.state.length_offset;
+        let has_other_source = wear != plan.state.length_wear
+            || plan.state.length_compensation() != self.registers.state.length_compensation();
+        (plan.state.length_offset, plan.state.length_wear) = (offset, wear);
+        if changed || has_other_source {
+            plan.push_event(self.data.length_event(&plan.state));
         }
-        plan.state.length_offset = offset;
         let (before, now) = (self.registers.state.controls_tip(), plan.state.controls_tip());
         if before && !now && plan.state.transform.is_identity() {
             plan.state.transform.unknown_centre = 0;
@@ -206,6 +208,13 @@ impl Planner<'_> {
     /// Notes an axis that the block doesn't name, if a change of the transform has changed its coordinate.
     #[cold]
     fn note_axes_left_out(&self, state: &State) {
+        let plane = self.data.plane_axes(state.modal.plane).ok();
+        // Where all transforms have ended, a block of other axes moves none of the plane.
+        if state.transform.is_identity()
+            && plane.is_some_and(|(first, second)| !self.names(first) && !self.names(second))
+        {
+            return;
+        }
         let end = self.data.move_end(state);
         let is_left_out = |axis| !self.names(axis) && end[axis] != state.programmed_position[axis];
         if (0..self.data.settings.axes.len()).any(is_left_out) {

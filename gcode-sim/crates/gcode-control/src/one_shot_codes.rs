@@ -380,9 +380,9 @@ impl Planner<'_> {
 /// Cancels the tool length offset and G43 or G44.
 fn cancel_length(plan: &mut BlockPlan) {
     if plan.state.modal.length != Length::Off {
-        let (offset, compensation) = (Position::default(), LengthCompensation::Off);
-        plan.push_event(EventKind::ToolLength { offset, compensation });
+        let (offset, wear) = (Position::default(), Position::default());
+        plan.push_event(EventKind::ToolLength { offset, wear, compensation: LengthCompensation::Off });
     }
-    plan.state.length_offset = Position::default();
+    (plan.state.length_offset, plan.state.length_wear) = (Position::default(), 0.0);
     plan.state.modal.length = Length::Off;
 }

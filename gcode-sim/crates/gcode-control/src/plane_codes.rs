@@ -7,7 +7,7 @@ use super::planner::Planner;
 use super::state::State;
 
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
-use gcode_lang::motion::{AxisIndex, EventKind, Position};
+use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Rotation;
 
@@ -247,8 +247,7 @@ impl Planner<'_> {
     /// Emits the tool length if it has turned with the tool.
     pub(super) fn push_turned_length(&self, plan: &mut BlockPlan, before: Position) {
         if plan.state.length_offset != before {
-            let (offset, compensation) = (plan.state.length_offset, plan.state.length_compensation());
-            plan.push_event(EventKind::ToolLength { offset, compensation });
+            plan.push_event(self.data.length_event(&plan.state));
         }
     }
 }

@@ -30,6 +30,8 @@ pub struct State {
     pub(super) g92_shift: Position,
     /// Active tool length offset of each axis.
     pub(super) length_offset: Position,
+    /// Part of it that is wear, along the tool; negative with G44.
+    pub(super) length_wear: f64,
     /// Intermediate point of G28 for G29, from the work zero, tool length included.
     pub(super) intermediate_point: Position,
     /// Axes with an intermediate point, as bits.

@@ -321,7 +321,9 @@ impl EventSink for PathRecorder<'_> {
             EventKind::Arc { to, arc, .. } => self.motion(event, PathKind::Feed, to, Some(arc)),
             EventKind::Skip { to, .. } => self.motion(event, PathKind::Probe, to, None),
             EventKind::ToolChange { number } => self.setup.tool = Some(*number),
-            EventKind::ToolLength { offset, .. } => self.setup.offset = *offset,
+            EventKind::ToolLength { offset, wear, .. } => {
+                (self.setup.offset, self.setup.wear) = (*offset, *wear);
+            }
             EventKind::Start { at, unknown } => {
                 self.at = *at;
                 self.positions.apply_event(self.machine, *unknown);

@@ -233,6 +233,8 @@ pub enum EventKind {
     ToolLength {
         /// Offset of each axis.
         offset: Position,
+        /// Part of it that is wear: the deviation of the tool from its measured length.
+        wear: Position,
         /// Code and offset number that the offset comes from.
         compensation: LengthCompensation,
     },
@@ -332,6 +334,16 @@ pub enum LengthCompensation {
     Plus(u32),
     /// G44 with this H.
     Minus(u32),
+}
+
+impl LengthCompensation {
+    /// Returns H; `None` if there is no compensation, as by H0.
+    pub fn number(self) -> Option<u32> {
+        match self {
+            Self::Off | Self::Plus(0) | Self::Minus(0) => None,
+            Self::Plus(h) | Self::Minus(h) => Some(h),
+        }
+    }
 }
 
 /// State of the spindle.

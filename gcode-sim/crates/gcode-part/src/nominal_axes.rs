@@ -227,8 +227,7 @@ impl NominalAxes {
 /// Returns the steps of each stepped hole, and the stepped hole of each of its axes.
 fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
     let (mut stacks, mut stack_of) = (Vec::new(), BTreeMap::new());
-    let first = holes.first().map(Hole::widest_diameter);
-    if holes.iter().all(|hole| Some(hole.widest_diameter()) == first) {
+    if holes.iter().all(|hole| diameters(hole).eq(diameters(&holes[0]))) {
         return (stacks, stack_of);
     }
     // Holes on one axis have one foot of the perpendicular from the origin.
@@ -270,11 +269,21 @@ fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
     (stacks, stack_of)
 }
 
+/// Returns the diameters of a hole and its features.
+fn diameters(hole: &Hole) -> impl Iterator<Item = f64> + '_ {
+    hole.diameter.into_iter().chain(hole.features.iter().map(|feature| feature.diameter))
+}
+
+/// Returns the diameters of a hole at its bottom: a counterbore at its entry is none of them.
+fn through_diameters(hole: &Hole) -> impl Iterator<Item = f64> + '_ {
+    let deep = || hole.features.iter().filter(|feature| hole.depth - SAME_LEVEL <= feature.bottom());
+    let own = hole.diameter.filter(|_| deep().next().is_none());
+    own.into_iter().chain(deep().map(|feature| feature.diameter))
+}
+
 impl Step {
     fn of(hole: &Hole) -> Self {
-        let features = hole.features.iter().map(|feature| feature.diameter);
-        let diameters = hole.diameter.into_iter().chain(features).collect();
-        Self { entry: hole.entry.into(), depth: hole.depth, diameters }
+        Self { entry: hole.entry.into(), depth: hole.depth, diameters: diameters(hole).collect() }
     }
 
     /// Returns true if two holes on one line have one direction and different diameters.
@@ -283,7 +292,7 @@ impl Step {
         1.0 - NOISE < cosine && one.widest_diameter() != other.widest_diameter()
     }
 
-    /// Returns true if a hole begins at the far side of a wider or narrower through hole on its line, and is less deep.
+    /// Returns true if a hole begins at the far side of a through hole of another diameter on its line, and is less deep.
     fn is_at_far_side_of(hole: &Hole, through: &Hole) -> bool {
         let out = Vector3::from(through.axis);
         let cosine = Vector3::from(hole.axis).dot(&out);
@@ -293,13 +302,13 @@ impl Step {
             && cosine < -1.0 + NOISE
             && above <= through.depth / 2.0
             && hole.depth < through.depth
-            && hole.widest_diameter() != through.widest_diameter()
+            && !through_diameters(through).eq(through_diameters(hole))
     }
 
     /// Returns a through hole as it is from its far side.
     fn from_far_side(hole: &Hole) -> Self {
         let entry = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
-        Self { entry, ..Self::of(hole) }
+        Self { entry, depth: hole.depth, diameters: through_diameters(hole).collect() }
     }
 }
 

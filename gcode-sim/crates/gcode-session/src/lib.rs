@@ -370,6 +370,10 @@ pub fn simulate_observed<S: EventSink>(
     let mut feeds = second_start::FeedTrace::default();
     let run = run_observed(request, library, &mut (&mut extractor, (&mut feeds, sink)), observer)?;
     let mut extracted = extractor.finish();
+    let is_stated =
+        |h: &u32| request.machine.tools.iter().any(|tool| tool.number == *h && tool.length.is_some());
+    extracted.program_lengths =
+        run.control.tool_lengths().map(|(h, _)| h).filter(|h| !is_stated(h)).collect();
     extracted.findings.extend(second_start::finding(request, &run, &metal, (&extracted, feeds)));
     extracted.findings.extend(run.findings());
     Ok(Simulation { run, extracted, metal })

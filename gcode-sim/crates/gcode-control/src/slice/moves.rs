@@ -74,6 +74,8 @@ impl Slice {
                 for (axis, word) in named() {
                     let before = if word.is_fixed() { Marks::NONE } else { self.machine.shifts[axis] };
                     self.machine.shifts[axis] = before | word.marks | control;
+                    // Where no later block commands the axis, the shift is left to the next start.
+                    self.further |= word.marks;
                 }
                 return;
             }

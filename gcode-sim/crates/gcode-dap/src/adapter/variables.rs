@@ -192,7 +192,8 @@ fn positions(control: &Control, machine: &Machine) -> Vec<Variable> {
         }
     }
     let tool = Some(control.state().tool).filter(|tool| *tool > 0);
-    let setup = Setup { tool, offset: control.length_offset(), ..Setup::default() };
+    let (offset, wear) = (control.length_offset(), control.length_wear());
+    let setup = Setup { tool, offset, wear, ..Setup::default() };
     let pose = machine.forward(&control.machine_position(), &setup);
     for (name, value) in ["x", "y", "z"].into_iter().zip(pose.tip.coords.iter()) {
         all.push(shown(format!("part {name}"), values::number(*value), None));

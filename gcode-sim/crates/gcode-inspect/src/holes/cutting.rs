@@ -3,6 +3,9 @@ use super::per_block::PerBlock;
 use gcode_lang::motion::{Backtrace, LengthCompensation, SpindleDirection};
 use gcode_lang::units::{MmPerMin, Rpm};
 
+/// A feed, and the speed of the spindle with it.
+pub(crate) type FeedAtSpeed = (MmPerMin, Rpm);
+
 /// Depths that the strokes of a line add to the ones before, mm.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PeckExtent {
@@ -28,14 +31,20 @@ pub(crate) struct CutConditions {
     pub speed: Rpm,
     /// Slowest and fastest feed.
     pub feed_range: [MmPerMin; 2],
-    /// Feed that cuts most in a revolution, and its speed.
-    pub steepest: (MmPerMin, Rpm),
+    /// Feeds that cut least and most in a revolution, with their speeds.
+    pub extremes: [FeedAtSpeed; 2],
     /// Largest depth of cut without a retract, mm.
     pub max_cut: f64,
     /// Least peck of the cuts in several strokes, each by its longest stroke, mm; `None` without pecks.
     pub min_peck: Option<f64>,
     /// Number of such cuts at the block.
     pub count: u64,
+}
+
+/// Returns the least and the largest feed in a revolution of two pairs, each feed with its speed.
+pub(super) fn widen([least, most]: [FeedAtSpeed; 2], [low, high]: [FeedAtSpeed; 2]) -> [FeedAtSpeed; 2] {
+    let is_less = |one: FeedAtSpeed, other: FeedAtSpeed| one.0.0 * other.1.0 < other.0.0 * one.1.0;
+    [if is_less(low, least) { low } else { least }, if is_less(most, high) { high } else { most }]
 }
 
 /// Modal state of the program that concerns cutting.
@@ -83,7 +92,7 @@ impl CutConditionsByBlock {
         backtrace: &Backtrace,
         state: &CuttingState,
         is_tapping: bool,
-        (feed_range, steepest): ([MmPerMin; 2], (MmPerMin, Rpm)),
+        (feed_range, extremes): ([MmPerMin; 2], [FeedAtSpeed; 2]),
         pecks: PeckExtent,
     ) {
         let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;
@@ -96,15 +105,13 @@ impl CutConditionsByBlock {
             is_tapping,
             speed,
             feed_range,
-            steepest,
+            extremes,
             max_cut: 0.0,
             min_peck: None,
             count: 0,
         });
         let cut = &mut entry.value;
-        if cut.steepest.0.0 * steepest.1.0 < steepest.0.0 * cut.steepest.1.0 {
-            cut.steepest = steepest;
-        }
+        cut.extremes = widen(cut.extremes, extremes);
         cut.max_cut = cut.max_cut.max(pecks.max_cut);
         if 1 < pecks.strokes {
             cut.min_peck = Some(cut.min_peck.map_or(pecks.max_fed, |least| least.min(pecks.max_fed)));

@@ -1,4 +1,6 @@
 //! Result of following a run: its holes, the findings about its motion, and what was not compared.
+use std::collections::BTreeSet;
+
 use nalgebra::Point3;
 
 use super::clearance::CloseMotion;
@@ -21,6 +23,10 @@ pub struct HoleExtraction {
     pub(crate) cut_conditions: Vec<CutConditions>,
     /// Feeds of tools whose length differs from their length offset.
     pub(crate) length_mismatches: Vec<LengthMismatch>,
+    /// Tools that have had a length offset, cutting or not.
+    pub(crate) offset_tools: BTreeSet<Option<u32>>,
+    /// H numbers of the tool lengths that the program sets, without 0.
+    pub program_lengths: BTreeSet<u32>,
     /// Rapids whose path over the part is unknown; `None` if there are none.
     pub(crate) unknown_rapids: Option<UnknownRapids>,
     /// Rotary axes of the default machine that the program never commands, as bits; they count as 0.

@@ -2,13 +2,13 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::clamping::ClampState;
-use super::cutting::{CuttingState, PeckExtent};
+use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent, widen};
 use super::drill_pass::{DrillPass, PassCut};
 use super::{HoleExtractor, MotionKind};
 use crate::machine::TOUCH_DEPTH;
 use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
-use gcode_lang::units::{MmPerMin, Rpm};
+use gcode_lang::units::MmPerMin;
 
 /// Least additional depth of a stroke that cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
@@ -26,6 +26,9 @@ pub(super) enum ToolExit {
     /// The tool left sideways below the start of the feed, after a retract of `back` mm.
     Sideways { back: f64 },
 }
+
+/// Feed a revolution, as a share of the diameter, from which on a tool may enter a hole that is cut.
+const ENTRY_FEED_SHARE: f64 = 0.05;
 
 /// The current line. Depths count from `start`, positive into the part, mm.
 #[derive(Debug)]
@@ -54,8 +57,8 @@ pub(super) struct CuttingLine {
     pub length_excess: Option<f64>,
     /// Slowest and fastest feed that cuts.
     feed_range: Option<[MmPerMin; 2]>,
-    /// Feed that cuts most in a revolution, and its speed.
-    steepest: Option<(MmPerMin, Rpm)>,
+    /// Feeds that cut least and most in a revolution, with their speeds.
+    extremes: Option<[FeedAtSpeed; 2]>,
     /// Last feed that cuts.
     last_feed: Option<MmPerMin>,
     /// Depth at which the part begins; `None` if its surface is unknown.
@@ -138,7 +141,7 @@ impl CuttingLine {
             unknown_axes: UnknownAxes::default(),
             length_excess: None,
             feed_range: None,
-            steepest: None,
+            extremes: None,
             last_feed: None,
             surface_depth: None,
             pecks: PeckExtent::default(),
@@ -154,22 +157,24 @@ impl CuttingLine {
         })
     }
 
-    /// Records rate and modal state of a feed inwards that cuts. A reversal before it taps no thread.
-    pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState) {
+    /// Records rate and modal state of a feed inwards that cuts, or enters a hole that is cut. A reversal before it taps no
+    /// thread.
+    pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState, cuts: bool) {
         self.is_fed_stopped |= state.spindle_direction == SpindleDirection::Off;
         self.cutting_state = state;
         self.is_tapping = false;
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
         self.last_feed = Some(feed);
-        if self.steepest.is_none_or(|(most, speed)| most.0 * state.speed.0 < feed.0 * speed.0) {
-            self.steepest = Some((feed, state.speed));
+        let own = [(feed, state.speed); 2];
+        if cuts {
+            self.extremes = Some(self.extremes.map_or(own, |all| widen(all, own)));
         }
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
     }
 
-    /// Returns the slowest and the fastest feed that cuts, and the one that cuts most in a revolution with its speed.
-    pub(super) fn cutting_feeds(&self) -> Option<([MmPerMin; 2], (MmPerMin, Rpm))> {
-        self.feed_range.zip(self.steepest)
+    /// Returns the slowest and the fastest feed that cuts, and those that cut least and most in a revolution with their speeds.
+    pub(super) fn cutting_feeds(&self) -> Option<([MmPerMin; 2], [FeedAtSpeed; 2])> {
+        self.feed_range.zip(self.extremes)
     }
 
     /// Returns the extent of all strokes, the current one included.
@@ -445,10 +450,17 @@ impl HoleExtractor<'_> {
             SpindleDirection::Counterclockwise => self.machine.diameter_of(self.setup.tool).is_some(),
             SpindleDirection::Off => true,
         };
-        if is_in_air || may_turn_idle && self.cuts_known_metal(from, &tip) == Some(false) {
+        // A gun drill enters its pilot hole slowly turning.
+        let is_steep = || {
+            let diameter = self.machine.diameter_of(self.setup.tool);
+            diameter.is_some_and(|own| ENTRY_FEED_SHARE * own * self.cutting_state.speed.0 < rate.0)
+        };
+        let cuts_nothing = || self.cuts_known_metal(from, &tip) == Some(false);
+        if is_in_air || may_turn_idle && cuts_nothing() {
             return;
         }
+        let is_entry = is_steep() && cuts_nothing();
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-        line.record_feed(*rate, state);
+        line.record_feed(*rate, state, !is_entry);
     }
 }

@@ -48,7 +48,7 @@ impl HoleExtractor<'_> {
             let [least, most] = range.unwrap_or([rate.0; 2]);
             self.milling.0.insert(key, [least.min(rate.0), most.max(rate.0)]);
             self.check_tool_changed(&backtrace, &state);
-            let feeds = ([rate, rate], (rate, state.speed));
+            let feeds = ([rate, rate], [(rate, state.speed); 2]);
             self.cut_conditions.add(&backtrace, &state, false, feeds, PeckExtent::default());
         }
     }

@@ -64,6 +64,7 @@ pub(crate) use swept_tool::ring;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
 use std::cell::Cell;
+use std::collections::BTreeSet;
 
 use nalgebra::Point3;
 
@@ -87,8 +88,8 @@ use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPar
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
-    Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
-    StopKind,
+    Backtrace, Event, EventKind, EventSink, LengthCompensation, PlanarArc, Position, SkipMove, SkipSignal,
+    SpindleDirection, StopKind,
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
@@ -146,6 +147,8 @@ pub struct HoleExtractor<'m> {
     cut_conditions: CutConditionsByBlock,
     milling: MillingRates,
     length_mismatches: Vec<LengthMismatch>,
+    /// Tools that have had a length offset.
+    offset_tools: BTreeSet<Option<u32>>,
     /// Number of probing moves.
     probe_count: u64,
     search_budget: SearchBudget,
@@ -209,6 +212,7 @@ impl<'m> HoleExtractor<'m> {
             cut_conditions: CutConditionsByBlock::default(),
             milling: MillingRates::default(),
             length_mismatches: Vec::new(),
+            offset_tools: BTreeSet::new(),
             probe_count: 0,
             search_budget: SearchBudget::default(),
             unsearched_rapids: UnsearchedMotions::default(),
@@ -285,6 +289,8 @@ impl<'m> HoleExtractor<'m> {
             close_motions: self.close_motions.finish(),
             cut_conditions: self.cut_conditions.finish(),
             length_mismatches: self.length_mismatches,
+            offset_tools: self.offset_tools,
+            program_lengths: BTreeSet::new(),
             unknown_rapids: self.positions.finish(self.machine),
             assumed_axes,
             process_limits: self.process_limits,
@@ -415,6 +421,14 @@ impl<'m> HoleExtractor<'m> {
         self.has_left_start |= is_outside && self.positions.is_known(self.machine);
     }
 
+    /// Applies a change of the source of the length offset.
+    fn apply_compensation(&mut self, compensation: LengthCompensation) {
+        self.cutting_state.compensation = compensation;
+        if compensation.number().is_some() {
+            self.offset_tools.insert(self.setup.tool);
+        }
+    }
+
     /// Applies a change of the tool, its offset or the head, which moves the tip.
     fn update_setup(&mut self, change: impl FnOnce(&mut Setup)) {
         let before = self.setup;
@@ -451,9 +465,9 @@ impl EventSink for HoleExtractor<'_> {
                 self.update_setup(|setup| setup.tool = Some(*number));
                 self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
             }
-            EventKind::ToolLength { offset, compensation } => {
-                self.update_setup(|setup| setup.offset = *offset);
-                self.cutting_state.compensation = *compensation;
+            EventKind::ToolLength { offset, wear, compensation } => {
+                self.update_setup(|setup| (setup.offset, setup.wear) = (*offset, *wear));
+                self.apply_compensation(*compensation);
             }
             EventKind::Start { at, unknown } => {
                 self.axis_position = *at;

@@ -1,5 +1,5 @@
 //! Rapids behind a tool change: most machines retract the tool for it, and the program doesn't say so.
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::metal::PointInMetal;
@@ -51,12 +51,29 @@ impl HoleExtractor<'_> {
         let up = axis.into_inner() * self.metal.removed.height_of_metal(&tip, &axis);
         let ring = ring(&axis, &Vector3::zeros(), radius, RING_POINTS).into_iter().map(|offset| tip + offset);
         let walls = ring.chain([tip]).filter_map(|p| self.metal.uncut(&[p, p + up]));
-        let Some(wall) = walls.reduce(PointInMetal::deeper) else { return };
+        let Some(wall) = walls.reduce(PointInMetal::deeper) else {
+            return self.report_change_below_top(event, &axis);
+        };
         let (depth, level) = (wall.depth, self.metal.level_at(&wall.point));
         self.findings.add(&TOOL_LEFT_IN_HOLE, &event.backtrace(), 1, |kind| {
             let point = format_point(&tip);
             let message = format!(
                 "the tool is changed beside metal {depth:.3} mm below {level}, with its tip at {point}"
+            );
+            Diagnostic::new(kind, message).help("retract above the surface before the tool change")
+        });
+    }
+
+    /// Reports a tool change where the part has been, as in a pocket that is milled.
+    fn report_change_below_top(&mut self, event: &Event<'_>, axis: &Unit<Vector3<f64>>) {
+        let tip = self.pose.tip;
+        let Some(body) = self.surface.filter(|body| body.is_deeper(&tip, TOUCH_DEPTH)) else { return };
+        let Some(top) = body.exit(&tip, axis) else { return };
+        let depth = (top - tip).norm();
+        self.findings.add(&TOOL_LEFT_IN_HOLE, &event.backtrace(), 1, |kind| {
+            let point = format_point(&tip);
+            let message = format!(
+                "the tool is changed {depth:.3} mm below the top of the part, with its tip at {point}"
             );
             Diagnostic::new(kind, message).help("retract above the surface before the tool change")
         });

@@ -152,6 +152,7 @@ impl HoleExtractor<'_> {
         if kind == MotionKind::Rapid {
             self.report_rapid_at_unknown_level(event, travel, (was, is));
             self.report_rapid_below_top(event, is);
+            self.report_rapid_to_surface(event, (was, is));
         }
         self.update_start();
     }
@@ -231,6 +232,37 @@ impl HoleExtractor<'_> {
             );
             Diagnostic::new(kind, message)
                 .help(format!("command {letters} in G90 before it, or end it above the part"))
+        });
+    }
+
+    /// Reports a rapid to the surface of the body from a place across the tool that nothing has commanded: it may lead through
+    /// the body.
+    fn report_rapid_to_surface(&mut self, event: &Event<'_>, (was, is): (UnknownAxes, UnknownAxes)) {
+        let Some((surface, out)) = self.surface.zip(self.tool_direction()) else { return };
+        let tip = self.pose.tip;
+        let depth = surface.depth(&tip);
+        if !is.is_none() || depth <= -CONTACT_CLEARANCE || TOUCH_DEPTH < depth {
+            return;
+        }
+        // Along the tool the way from any place is the one that is checked.
+        let is_across = |axis: &AxisIndex| {
+            let mut beside = self.axis_position;
+            beside[*axis] += 1.0;
+            let by = self.machine.forward(&beside, &self.setup).tip - tip;
+            !self.machine.axes.is_rotary(*axis) && MAX_SINE < by.cross(&out).norm()
+        };
+        let opened = (0..self.machine.axes.len()).filter(|axis| was.uncommanded >> axis & 1 == 1);
+        let axes = opened.filter(is_across).fold(0, |axes, axis| axes | 1 << axis);
+        if axes == 0 {
+            return;
+        }
+        let letters = self.machine.axes.names(axes);
+        self.findings.add_in_program(&START_UNKNOWN, &event.backtrace(), LOW_RAPID_DETAIL, 1, |kind| {
+            let message = format!(
+                "a rapid leads to the surface of the part from an unknown position of {letters}: the part may be in \
+                 its way"
+            );
+            Diagnostic::new(kind, message).help(format!("command {letters} in G90 above the part before it"))
         });
     }
 

@@ -145,6 +145,8 @@ pub struct Setup {
     pub tool: Option<u32>,
     /// Tool length offset contained in every machine position.
     pub offset: Position,
+    /// Part of it that is wear: the tool deviates by it from its measured length.
+    pub wear: Position,
 }
 
 /// Tip and direction of the tool.
@@ -212,7 +214,7 @@ impl Machine {
     ///
     /// The position of the axes is the head's pivot. The tip is the pivot's distance from the gauge line plus
     /// the tool length away from it, along the tool. If the direction of the tool is unknown, the tip is the
-    /// control's own: the position minus the length offset.
+    /// control's own: the position minus the length offset without its wear.
     pub(crate) fn tool_pose(&self, at: &Position, setup: &Setup) -> Pose {
         let carried = self.slides.carried_origin(at);
         match self.head.direction(at, setup) {
@@ -220,7 +222,7 @@ impl Machine {
                 let reach = self.head.pivot + self.tip_distance(setup, &axis);
                 Pose { tip: carried + self.head.tip_displacement(at, &axis, reach), axis: Some(axis) }
             }
-            None => Pose { tip: carried - self.slides.displacement(&setup.offset), axis: None },
+            None => Pose { tip: carried - self.measured_length(setup), axis: None },
         }
     }
 
@@ -229,17 +231,21 @@ impl Machine {
         self.tool_pose(at, setup).relative_to(&self.part_frame(at))
     }
 
-    /// Returns the tool length from the tool table, or else that of the length offset, mm.
+    /// Returns the tool length from the tool table, or else that of the length offset without wear, mm.
     pub(crate) fn tool_length(&self, setup: &Setup) -> f64 {
-        let known = self.length_of(setup.tool);
-        known.unwrap_or_else(|| self.slides.displacement(&setup.offset).norm())
+        self.length_of(setup.tool).unwrap_or_else(|| self.measured_length(setup).norm())
+    }
+
+    /// Returns the length offset without its wear: wear moves the tip of a tool that is as long as measured.
+    fn measured_length(&self, setup: &Setup) -> Vector3<f64> {
+        self.slides.displacement(&setup.offset) - self.slides.displacement(&setup.wear)
     }
 
     /// Returns the distance from the gauge line to the tip against `axis`, the tool's direction out of the part, mm: the
-    /// length of the tool, or else the length offset. A touched-off offset counts from machine zero and is negative. An offset
+    /// length of the tool, or else the length offset without wear. A touched-off offset counts from machine zero and is negative. An offset
     /// is along the tool, or, in tool centre point control, along the tool with the head at 0.
     fn tip_distance(&self, setup: &Setup, axis: &Unit<Vector3<f64>>) -> f64 {
-        let offset = self.slides.displacement(&setup.offset);
+        let offset = self.measured_length(setup);
         let is_along = |axis: &Vector3<f64>| offset.dot(axis).abs() > (1.0 - 1e-9) * offset.norm();
         let at_zero = self.head.direction(&Position::default(), setup);
         let basis = at_zero.filter(|zero| !is_along(axis) && is_along(zero)).unwrap_or(*axis);

@@ -43,7 +43,9 @@ impl Ball {
             EventKind::Feed { to, .. } => self.move_to(to, None, BallMove::Feed),
             EventKind::Arc { to, arc, .. } => self.move_to(to, Some(arc), BallMove::Feed),
             EventKind::ToolChange { number } => self.update_setup(|setup| setup.tool = Some(*number)),
-            EventKind::ToolLength { offset, .. } => self.update_setup(|setup| setup.offset = *offset),
+            EventKind::ToolLength { offset, wear, .. } => {
+                self.update_setup(|setup| (setup.offset, setup.wear) = (*offset, *wear))
+            }
             EventKind::Stop { kind: StopKind::Message, text, variables } if machine.head.is_set_by_hand() => {
                 match HeadMessage::parse(text, variables) {
                     HeadMessage::Angle(angle) => self.update_setup(|setup| setup.head_angle = Some(angle)),

@@ -3,13 +3,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::checks::features::ShapeGap;
 use super::checks::stock::deeper_than_stock;
+use super::hole_cuts::Cut;
 use super::{Comparison, HoleInspection};
 use crate::findings::BACK_BORED;
 use crate::holes::{DrilledHole, HoleExtraction};
 use crate::machine::{HeadKind, Machine, tool_name};
 use gcode_lang::motion::LengthCompensation;
 use gcode_lang::source::Span;
-use gcode_part::{Reference, ToolProcess};
+use gcode_part::{FeatureKind, Reference, ToolProcess};
 
 /// Motion that no check covers if neither stock nor surface is known.
 const MOTION: &str = "motion beside the holes (no stock)";
@@ -67,6 +68,7 @@ pub(super) fn list(
         let what = "the tool in the spindle at the start";
         all.push(NotChecked::gap(what, "it cuts before the first tool change"));
     }
+    all.extend(pitches(comparison, machine));
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
     all.extend(holders(extraction, machine));
@@ -77,6 +79,11 @@ pub(super) fn list(
     let is_unknown = |drilled: &DrilledHole| !drilled.is_tool_axis_known;
     if machine.head.kind == HeadKind::Free && comparison.matched().any(|(.., drilled)| is_unknown(drilled)) {
         all.push(NotChecked::gap("head angles", "the head is unknown, each axis is taken along its feed"));
+    }
+    let has_sides = machine.tools.iter().any(|tool| tool.diameter.is_some());
+    if machine.head.kind == HeadKind::Free && extraction.is_metal_known && has_sides {
+        let reason = "the direction of the tool is unknown: across its axis they are not compared";
+        all.push(NotChecked::gap("the sides of tools (no [head])", reason));
     }
     if extraction.assumed_axes != 0 && !extraction.holes.is_empty() {
         let what = format!("the position of {}", machine.axes.names(extraction.assumed_axes));
@@ -196,6 +203,27 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<NotChecked> 
     by_tool.into_iter().map(gap).chain(unspecified).collect()
 }
 
+/// Returns the tools that cut a thread in holes where the reference has none, or none with a pitch.
+fn pitches(comparison: &Comparison<'_>, machine: &Machine) -> Vec<NotChecked> {
+    let mut by_tool: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
+    for (pair, nominal, drilled) in comparison.matched() {
+        if nominal.features.iter().any(|one| one.kind == FeatureKind::Tap && one.pitch.is_some()) {
+            continue;
+        }
+        let cuts = Cut::all(nominal, drilled, machine);
+        let threads: BTreeSet<_> =
+            cuts.iter().filter(|cut| cut.is_thread()).map(|cut| cut.pass.tool).collect();
+        for tool in threads {
+            by_tool.entry(tool).or_default().push(comparison.id(pair.nominal));
+        }
+    }
+    let gap = |(tool, ids): (Option<u32>, Vec<&str>)| {
+        let what = format!("the pitch of the thread of {}", tool_name(tool));
+        NotChecked::gap(what, format!("the reference has none for {}", hole_names(&ids)))
+    };
+    by_tool.into_iter().map(gap).collect()
+}
+
 /// Returns the tools whose end the machine file does not describe, with what was taken for it.
 fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
     let mut ids: BTreeMap<ShapeGap, Vec<&str>> = BTreeMap::new();
@@ -259,13 +287,15 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<NotChecked> {
     let tools: BTreeSet<_> = unknown.map(|cut| (cut.tool, cut.compensation)).collect();
     let gap = |(tool, compensation): (Option<u32>, LengthCompensation)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
-        let taken = match compensation {
-            LengthCompensation::Off | LengthCompensation::Plus(0) | LengthCompensation::Minus(0) => {
-                "its tip as the programmed point".to_owned()
+        match compensation.number() {
+            Some(h) => {
+                NotChecked::gap(whose, format!("not in the machine file, which takes H{h} as its length"))
             }
-            LengthCompensation::Plus(h) | LengthCompensation::Minus(h) => format!("H{h} as its length"),
-        };
-        NotChecked::gap(whose, format!("not in the machine file, which takes {taken}"))
+            None => NotChecked::gap(
+                format!("{whose} (no length offset)"),
+                "not in the machine file, which takes its tip as the programmed point",
+            ),
+        }
     };
     tools.into_iter().map(gap).collect()
 }

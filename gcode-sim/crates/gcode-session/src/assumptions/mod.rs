@@ -2,11 +2,12 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::causes::work_offset_name;
 use super::marked_events::{MarkedEvents, marks_of};
 use super::outside_text::names_outside;
 use super::{Request, Run, set_up_control};
 use gcode_control::OperatorStop;
-use gcode_control::slice::{KEPT_GROUPS, Marks, OutsideRead, Slice, StatedValues};
+use gcode_control::slice::{KEPT_GROUPS, Marks, OutsideRead, OutsideValue, Slice, StatedValues};
 use gcode_inspect::flutes::FluteTracker;
 use gcode_inspect::holes::DrilledHole;
 use gcode_lang::motion::{Backtrace, EventSink, StopKind};
@@ -71,6 +72,18 @@ fn follow<S: EventSink>(
     Some((reads, events.sink, events.strokes))
 }
 
+/// Returns the name of an outside value on the control of a run.
+fn name_of(value: OutsideValue, run: &Run) -> String {
+    let dialect = run.control.settings().dialect;
+    match value {
+        OutsideValue::WorkOffset(system, None) => work_offset_name(system, dialect),
+        OutsideValue::WorkOffset(system, Some(letter)) => {
+            format!("{} {letter}", work_offset_name(system, dialect))
+        }
+        _ => value.name(),
+    }
+}
+
 impl Dependencies {
     /// Returns the assumptions that can touch a hole or flute, each with its block; `names` returns the name of a hole or pass
     /// by its index in the extraction.
@@ -90,8 +103,8 @@ impl Dependencies {
             // Values that share an index are one line.
             let sharing = if index == Marks::LAST_INDEX { &self.reads[index..] } else { &[] };
             let (what, value) = match sharing.len() {
-                0 | 1 => (read.source.name(), read.value),
-                count => (format!("{count} further values, first {}", read.source.name()), None),
+                0 | 1 => (name_of(read.source, run), read.value),
+                count => (format!("{count} further values, first {}", name_of(read.source, run)), None),
             };
             let decides_further = sharing.iter().any(|one| one.decides_further_cuts);
             let is_assumed = read.decides_further_cuts || decides_further || !decides.is_empty();

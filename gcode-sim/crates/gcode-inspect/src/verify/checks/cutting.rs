@@ -24,6 +24,15 @@ const MAX_DRILL_FEED_SHARE: f64 = 0.25;
 /// Feed that no drill stands, mm/min: coated drills in aluminium reach some 6000.
 const MAX_DRILL_FEED: f64 = 15_000.0;
 
+/// Share of its diameter that each drill feeds in a revolution: tables give 0.005 and more.
+const LEAST_FEED_SHARE: f64 = 0.0005;
+
+/// Feed that other tools have in a revolution, mm: below the radius of a sharp edge, some 2 µm, no chip comes off.
+const LEAST_FEED: f64 = 0.002;
+
+/// Feed that a tool of unknown diameter has in a revolution, mm: that of a drill of Φ0.4.
+const LEAST_OPEN_FEED: f64 = 0.0002;
+
 /// Pecks up to this length, mm, and up to this share of the drill's diameter are none: the drill only rubs.
 const LEAST_PECK: f64 = 0.01;
 const LEAST_PECK_SHARE: f64 = 0.005;
@@ -39,7 +48,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         }
         reported[index].1 += cut.count;
     };
-    for check in [reversed, speed, feed, feed_per_turn, peck, fine_peck, length, tool] {
+    for check in [reversed, speed, feed, feed_per_turn, rubbing_feed, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
             // Lengths that the machine file states are compared.
@@ -54,7 +63,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         }
     }
     for cut in conditions {
-        if let Some(finding) = without_offset(cut, conditions, limits, inspection.machine) {
+        if let Some(finding) = without_offset(cut, inspection) {
             report(finding, cut);
         }
     }
@@ -134,9 +143,8 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
 /// a quarter of it.
 fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
     let kind = machine.kind_of(cut.tool);
-    let (feed, speed) = cut.steepest;
-    let is_turning = cut.spindle_direction != SpindleDirection::Off && 0.0 < speed.0;
-    if cut.is_tapping || kind == Some(ToolKind::Tap) || !is_turning {
+    let [_, (feed, speed)] = cut.extremes;
+    if !is_fed_by_turns(cut, machine) || speed.0 <= 0.0 {
         return None;
     }
     let per_turn = feed.0 / speed.0;
@@ -168,6 +176,41 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
     Some(Diagnostic::new(&DRILL_FEED, message).with_severity(severity).help(
         "check F and S, whether F is left from another tool, and whether G95 is in force instead of G94",
     ))
+}
+
+/// Returns true if a tool other than a tap cuts while it turns.
+fn is_fed_by_turns(cut: &CutConditions, machine: &Machine) -> bool {
+    let is_tap = cut.is_tapping || machine.kind_of(cut.tool) == Some(ToolKind::Tap);
+    !is_tap && cut.spindle_direction != SpindleDirection::Off
+}
+
+/// Reports a feed per revolution so small that the edges rub and cut no chip, as of an F without its decimal point.
+fn rubbing_feed(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+    let [(feed, speed), _] = cut.extremes;
+    let is_specified = limits.tool_process(cut.tool).and_then(|tool| tool.feed).is_some();
+    if is_specified || !is_fed_by_turns(cut, machine) || speed.0 <= 0.0 || feed.0 <= 0.0 {
+        return None;
+    }
+    let share = machine.diameter_of(cut.tool).map(|diameter| LEAST_FEED_SHARE * diameter);
+    let limit = match machine.kind_of(cut.tool) {
+        Some(ToolKind::Drill) => share,
+        _ => share.map(|share| share.min(LEAST_FEED)),
+    };
+    let (per_turn, limit) = (feed.0 / speed.0, limit.unwrap_or(LEAST_OPEN_FEED));
+    let message = format!(
+        "{} feeds {} µm a revolution ({} mm/min at S{}), limit {}",
+        tool_name(cut.tool),
+        round_thousandth(per_turn * 1e3),
+        round_thousandth(feed.0),
+        speed.0,
+        round_thousandth(limit * 1e3)
+    );
+    let finding = Diagnostic::new(&DRILL_FEED, message).with_severity(Severity::Warning);
+    exceeds(limit, per_turn).then(|| {
+        finding.note("the edges rub and cut no chip").help(
+            "check F for a missing decimal point, which counts in thousandths, and whether G94 is in force instead of G95",
+        )
+    })
 }
 
 fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
@@ -260,9 +303,12 @@ fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Opt
             format!("{tool} cuts with H{h}, the length of another tool; the job specifies H{own}"),
             format!("command G43 H{own}, or correct the tool's number in the job"),
         ),
-        (LengthCompensation::Plus(h), None) => {
+        (LengthCompensation::Plus(h), None) if h != 0 => {
             let number = cut.tool.filter(|number| *number != h)?;
-            machine.find_tool(h)?;
+            // Without a tool table numbers alone show the tool.
+            if !machine.tools.is_empty() {
+                machine.find_tool(h)?;
+            }
             (
                 Severity::Warning,
                 format!("{tool} cuts with H{h}, the number of another tool"),
@@ -288,31 +334,29 @@ fn same_length(cut: &CutConditions, length: f64, machine: &Machine) -> Option<Di
     is_as_long.then(|| finding.help(format!("command H{number}, if offsets have the numbers of their tools")))
 }
 
-/// Reports a tool that cuts without a length offset where others of the program have one, if the machine file gives none of
-/// their lengths.
-fn without_offset(
-    cut: &CutConditions,
-    all: &[CutConditions],
-    limits: &ProcessLimits,
-    machine: &Machine,
-) -> Option<Diagnostic> {
+/// Reports a tool of unknown length that cuts without a length offset where the program uses lengths: another tool of unknown
+/// length cuts with one, this one has had one, or the program sets its length.
+fn without_offset(cut: &CutConditions, inspection: &HoleInspection<'_>) -> Option<Diagnostic> {
+    let HoleInspection { extraction, machine, reference, .. } = inspection;
+    let is_specified = reference.process_limits.tool_process(cut.tool).and_then(|tool| tool.offset).is_some();
+    let is_open = |tool| machine.length_of(tool).is_none();
     // Where the job has the offset, another finding says so.
-    let is_specified = limits.tool_process(cut.tool).and_then(|tool| tool.offset).is_some();
-    let is_off = matches!(cut.compensation, LengthCompensation::Off | LengthCompensation::Plus(0));
+    if cut.compensation.number().is_some() || is_specified || !is_open(cut.tool) {
+        return None;
+    }
     let has_offset = |other: &&CutConditions| {
-        matches!(other.compensation, LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0)
-            && machine.length_of(other.tool).is_none()
-            && other.tool != cut.tool
+        other.compensation.number().is_some() && is_open(other.tool) && other.tool != cut.tool
     };
-    let other = all
-        .iter()
-        .find(has_offset)
-        .filter(|_| is_off && !is_specified && machine.length_of(cut.tool).is_none())?;
-    let message = format!(
-        "{} cuts without a length offset, and {} with one",
-        tool_name(cut.tool),
-        tool_name(other.tool)
-    );
+    let own = cut.tool.filter(|tool| extraction.program_lengths.contains(tool));
+    let reason = match (extraction.cut_conditions.iter().find(has_offset), own) {
+        (Some(other), _) => format!("{} with one", tool_name(other.tool)),
+        (None, Some(h)) => format!("the program sets the length of H{h}"),
+        (None, None) if extraction.offset_tools.contains(&cut.tool) => {
+            "the program moves it by one before or after it".to_owned()
+        }
+        (None, None) => return None,
+    };
+    let message = format!("{} cuts without a length offset, and {reason}", tool_name(cut.tool));
     Some(Diagnostic::new(&LENGTH_OFFSET, message).help(
         "command G43 with the tool's H before the cut, or give the lengths of the tools in the machine file",
     ))

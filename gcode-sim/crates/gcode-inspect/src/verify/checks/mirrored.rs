@@ -5,6 +5,9 @@ use crate::findings::{MIRROR_IMAGE, ROTARY_SIGN};
 /// Least share of the nominal holes that the mirrored ones must match.
 const MIN_AGREEING_SHARE: f64 = 0.8;
 
+/// Least number of holes that only the mirror image has in position: a single one has a wrong sign of its own.
+const MIN_EXPLAINED: usize = 2;
+
 /// Cosine of the largest angle between the negated axis and holes that the image turns over: 30°.
 const MIN_TURNED_COSINE: f64 = 0.866_025_403_784_438_6;
 
@@ -36,7 +39,8 @@ impl MirrorImage {
                 Comparison::new(comparison.nominal, &mirrored, comparison.tolerances, comparison.pattern);
             // Only holes in their zones count: a rotated pattern lies near itself in many ways.
             let agreeing = count(&compared);
-            if agreeing <= before || (agreeing as f64) < MIN_AGREEING_SHARE * comparison.nominal.len() as f64
+            if agreeing < before + MIN_EXPLAINED
+                || (agreeing as f64) < MIN_AGREEING_SHARE * comparison.nominal.len() as f64
             {
                 return None;
             }
@@ -56,7 +60,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         ["x", "y", "z"][*axis],
         comparison.nominal.len()
     );
-    let finding = match is_wrong_rotation_sign(comparison, machine, *axis) {
+    let finding = match is_wrong_rotation_sign(comparison, machine, *agreeing) {
         true => Diagnostic::new(
             &ROTARY_SIGN,
             format!("{fault}; the rotary table direction is opposite to the one the program assumes"),
@@ -69,15 +73,24 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     findings.add(Subject::Whole, finding.with_backtrace(backtrace));
 }
 
-/// Returns true if the opposite direction of the table mirrors the part so: the table rotates between the holes, about
-/// another axis.
-fn is_wrong_rotation_sign(comparison: &Comparison<'_>, machine: &Machine, axis: usize) -> bool {
-    let part = machine.part.frame();
-    machine.table.0.iter().any(|link| {
-        let LinkMotion::Rotary { about, .. } = &link.motion else { return false };
-        let own = part.rotation.inverse_transform_unit_vector(about);
-        let rotates = comparison.actual.iter().any(|hole| hole.axis_position[link.axis] != 0.0);
-        rotates && own[axis].abs() < std::f64::consts::FRAC_1_SQRT_2
+/// Returns true if the opposite direction of a rotary axis of the table puts the holes in position.
+fn is_wrong_rotation_sign(comparison: &Comparison<'_>, machine: &Machine, least: usize) -> bool {
+    let links = machine.table.0.iter().enumerate();
+    links.filter(|(_, link)| matches!(link.motion, LinkMotion::Rotary { .. })).any(|(index, _)| {
+        let mut reversed = machine.clone();
+        reversed.table.0[index].sign *= -1.0;
+        let turned: Vec<_> = comparison
+            .actual
+            .iter()
+            .map(|hole| {
+                let at = &hole.axis_position;
+                let by = reversed.part_frame(at).inverse() * machine.part_frame(at);
+                DrilledHole { entry: by * hole.entry, axis: by.rotation * hole.axis, ..hole.clone() }
+            })
+            .collect();
+        let compared =
+            Comparison::new(comparison.nominal, &turned, comparison.tolerances, comparison.pattern);
+        least <= compared.pairs.iter().filter(|pair| compared.is_in_place(pair)).count()
     })
 }
 
