@@ -240,7 +240,14 @@ fn machine_file(job: &PatternJob) -> String {
         ),
     };
     let tool = |tool: &PatternTool| {
-        format!("\n[[tool]]\nnumber = {}\ndiameter = {:?}\n", tool.number, tool.diameter)
+        let kind = match tool.operation {
+            Operation::Drill | Operation::Peck => "kind = \"drill\"\n",
+            Operation::Tap => "kind = \"tap\"\n",
+            Operation::Bore => "kind = \"boring-bar\"\n",
+            Operation::MillCircle => "kind = \"end-mill\"\n",
+            Operation::ThreadMill => "",
+        };
+        format!("\n[[tool]]\nnumber = {}\n{kind}diameter = {:?}\n", tool.number, tool.diameter)
     };
     format!(
         "{}{tables}\n\

@@ -63,7 +63,8 @@ fn process_limits(job: &PatternJob) -> ProcessLimits {
         retract: job.machine.retract.filter(|_| rotary.is_some()),
         rotary,
         clamp: job.machine.clamp,
-        tools: job.tools.iter().map(limits).collect(),
+        // Listed tools drill: their spindle may not reverse in the hole.
+        tools: job.tools.iter().filter(|tool| tool.operation != Operation::Tap).map(limits).collect(),
         ..ProcessLimits::default()
     }
 }

@@ -1,9 +1,9 @@
 //! The machine that a job assumes, without errors.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::{AxisLink, Chain, Head, HeadKind, Machine, Placement, Probe, Tool};
+use super::{AxisLink, Chain, Head, HeadKind, Machine, Placement, Probe, Tool, ToolKind};
 use gcode_lang::units::Deg;
-use gcode_part::job::{self, Job, PatternJob, PatternPlace, PatternTool, Rotary};
+use gcode_part::job::{self, Job, Operation, PatternJob, PatternPlace, PatternTool, Rotary};
 
 impl Machine {
     /// Returns the arrangement of the job's family. `None` if the control lacks the rotary axis, and for a
@@ -79,8 +79,16 @@ impl Machine {
                 (Chain(bed.0.into_iter().chain(on_it.0).collect()), Point3::origin())
             }
         };
+        let kind = |operation: Operation| match operation {
+            Operation::Drill | Operation::Peck => Some(ToolKind::Drill),
+            Operation::Tap => Some(ToolKind::Tap),
+            Operation::Bore => Some(ToolKind::BoringBar),
+            Operation::MillCircle => Some(ToolKind::EndMill),
+            Operation::ThreadMill => None,
+        };
         let tool = |tool: &PatternTool| Tool {
             number: tool.number,
+            kind: kind(tool.operation),
             length: None,
             diameter: Some(tool.diameter),
             ..Tool::default()
