@@ -63,8 +63,7 @@ fn process_limits(job: &PatternJob) -> ProcessLimits {
         retract: job.machine.retract.filter(|_| rotary.is_some()),
         rotary,
         clamp: job.machine.clamp,
-        // Listed tools drill: their spindle may not reverse in the hole.
-        tools: job.tools.iter().filter(|tool| tool.operation != Operation::Tap).map(limits).collect(),
+        tools: job.tools.iter().map(limits).collect(),
         ..ProcessLimits::default()
     }
 }
