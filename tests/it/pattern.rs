@@ -26,17 +26,27 @@ const LAYOUTS: [&str; 6] = [
 const OPERATIONS: [(&str, &str, f64); 6] = [
     ("operation = \"drill\"\ndiameter = 8.0\nfeed = 200.0", "depth = 20.0", 0.0),
     ("operation = \"peck\"\ndiameter = 8.0\nfeed = 200.0\npeck = 5.0", "depth = 20.0", 0.0),
-    ("operation = \"mill-circle\"\ndiameter = 8.0\nfeed = 200.0\npeck = 1.0", "depth = 20.0, diameter = 12.0", 0.0),
+    (
+        "operation = \"mill-circle\"\ndiameter = 8.0\nfeed = 200.0\npeck = 1.0",
+        "depth = 20.0, diameter = 12.0",
+        0.0,
+    ),
     ("operation = \"bore\"\ndiameter = 8.0\nfeed = 200.0", "depth = 15.0", 7.8),
     ("operation = \"tap\"\ndiameter = 8.0\npitch = 1.25", "depth = 15.0", 6.8),
-    ("operation = \"thread-mill\"\ndiameter = 8.0\nfeed = 200.0\npitch = 1.5", "depth = 15.0, diameter = 12.0", 10.4),
+    (
+        "operation = \"thread-mill\"\ndiameter = 8.0\nfeed = 200.0\npitch = 1.5",
+        "depth = 15.0, diameter = 12.0",
+        10.4,
+    ),
 ];
 
 fn job(place: &str, layout: &str, (tool, step, pilot): (&str, &str, f64)) -> String {
     let (drill, first) = match pilot {
         0.0 => (String::new(), ""),
         pilot => (
-            format!("[[tool]]\nnumber = 1\nspeed = 1000\noperation = \"drill\"\ndiameter = {pilot:?}\nfeed = 200.0\n"),
+            format!(
+                "[[tool]]\nnumber = 1\nspeed = 1000\noperation = \"drill\"\ndiameter = {pilot:?}\nfeed = 200.0\n"
+            ),
             "{ tool = 1, depth = 22.0 }, ",
         ),
     };

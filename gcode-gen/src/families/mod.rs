@@ -24,7 +24,8 @@ pub struct Family {
 }
 
 /// All families.
-pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY, alignment::FAMILY, pattern::FAMILY];
+pub const ALL: &[Family] =
+    &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY, alignment::FAMILY, pattern::FAMILY];
 
 /// Returns the family of a job.
 pub(crate) fn of(job: &Job) -> &'static Family {

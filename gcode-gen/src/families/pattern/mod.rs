@@ -164,9 +164,8 @@ fn calls(job: &PatternJob, pattern: &PatternSpec, step: &PatternStep, tool: &Pat
         ('W', width),
         ('U', sign),
     ];
-    let call = |program: u32, place: &[(char, f64)]| {
-        Block::call(program, place.iter().chain(&operation).copied())
-    };
+    let call =
+        |program: u32, place: &[(char, f64)]| Block::call(program, place.iter().chain(&operation).copied());
     let (x, y) = (pattern.x, pattern.y);
     let zero = [('X', x), ('Y', y)];
     let skips = [('S', skip), ('K', more)];
@@ -187,7 +186,9 @@ fn calls(job: &PatternJob, pattern: &PatternSpec, step: &PatternStep, tool: &Pat
         HoleLayout::Arc(arc) => round(arc.diameter, arc.holes, arc.angle, arc.step),
         HoleLayout::Grid(grid) => rows(grid.columns, grid.rows, grid.pitch, grid.angle),
         // On a cylinder a line round it is a grid of one column.
-        HoleLayout::Line(line) if sign != 0.0 && line.angle == 90.0 => rows(1, line.holes, [0.0, line.pitch], 0.0),
+        HoleLayout::Line(line) if sign != 0.0 && line.angle == 90.0 => {
+            rows(1, line.holes, [0.0, line.pitch], 0.0)
+        }
         HoleLayout::Line(line) => rows(line.holes, 1, [line.pitch, 0.0], line.angle),
         HoleLayout::Points(points) => {
             let numbered = points.iter().zip(1u32..).filter(|(_, number)| !pattern.skip.contains(number));

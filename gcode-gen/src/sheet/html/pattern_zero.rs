@@ -37,7 +37,9 @@ pub(super) fn words(job: &PatternJob) -> Vec<String> {
                     "G54 is the zero point of the part with {}0 and {}0; in this job both axes go through it.",
                     tilt.letter, rotary.letter
                 ),
-                format!("The face begins at X{x} Y{y} Z{z} and is turned by I{i} J{j} K{k}: G68.2, then G53.1."),
+                format!(
+                    "The face begins at X{x} Y{y} Z{z} and is turned by I{i} J{j} K{k}: G68.2, then G53.1."
+                ),
             ]
         }
     };

@@ -114,7 +114,8 @@ fn frames(pattern: &PatternSpec, place: PatternPlace) -> Vec<Isometry3<f64>> {
         PatternPlace::Face { face, .. } => {
             let [x, y, z] = face.origin;
             let [first, tilt, last] = face.angles.map(Deg);
-            let rotation = turned(Vector3::z(), first) * turned(Vector3::x(), tilt) * turned(Vector3::z(), last);
+            let rotation =
+                turned(Vector3::z(), first) * turned(Vector3::x(), tilt) * turned(Vector3::z(), last);
             let plane = Isometry3::from_parts(Translation3::new(x, y, z), rotation);
             points(pattern).into_iter().map(|point| plane * on_plane(point)).collect()
         }
@@ -160,7 +161,8 @@ fn points(pattern: &PatternSpec) -> Vec<Complex<f64>> {
         let along = direction(Deg(angle)) * along;
         let across = direction(Deg(angle)) * Complex::i() * across;
         let starts = std::iter::successors(Some(zero), |start| Some(start + across)).take(rows as usize);
-        let row = |start| std::iter::successors(Some(start), |point| Some(point + along)).take(columns as usize);
+        let row =
+            |start| std::iter::successors(Some(start), |point| Some(point + along)).take(columns as usize);
         starts.flat_map(row).collect()
     };
     match pattern.layout() {

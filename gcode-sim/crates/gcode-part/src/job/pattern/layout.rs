@@ -180,7 +180,8 @@ impl PatternSpec {
                 return Err(reader.error_at(&id_key, message));
             }
             [first, second, ..] => {
-                let message = format!("key 'pattern.{second}' excludes '{first}': write a [[pattern]] for each");
+                let message =
+                    format!("key 'pattern.{second}' excludes '{first}': write a [[pattern]] for each");
                 return Err(reader.error_at(&format!("{key}.{second}"), message));
             }
         }

@@ -163,11 +163,13 @@ impl PatternStep {
         match (self.diameter, tool.operation.is_milling()) {
             (None, false) => Ok(()),
             (None, true) => {
-                let message = format!("key 'pattern.make.diameter' is missing: {of} of tool {} needs it", self.tool);
+                let message =
+                    format!("key 'pattern.make.diameter' is missing: {of} of tool {} needs it", self.tool);
                 Err(reader.error_at(&format!("{key}.tool"), message))
             }
             (Some(_), false) => {
-                let message = format!("key 'pattern.make.diameter' is not for {of}: remove it, the tool has its own");
+                let message =
+                    format!("key 'pattern.make.diameter' is not for {of}: remove it, the tool has its own");
                 Err(reader.error_at(&format!("{key}.diameter"), message))
             }
             (Some(diameter), true) if tool.operation == Operation::ThreadMill => {

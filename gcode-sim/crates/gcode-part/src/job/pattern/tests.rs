@@ -32,15 +32,31 @@ fn a_wrong_key_is_named_with_its_line() {
         ("holes = 6", "holes = 0", "line 15: key 'pattern.circle.holes' is 0: 1 to 9999"),
         ("circle = {", "cirle = {", "line 15: key 'pattern.cirle' is unknown (did you mean 'circle'?)"),
         ("holes = 6", "hole = 6", "line 15: key 'pattern.circle.hole' is unknown (did you mean 'holes'?)"),
-        ("id = \"A\"\n", "id = \"A\"\npoints = [[1.0, 2.0]]\n", "line 15: key 'pattern.points' excludes 'circle'"),
+        (
+            "id = \"A\"\n",
+            "id = \"A\"\npoints = [[1.0, 2.0]]\n",
+            "line 15: key 'pattern.points' excludes 'circle'",
+        ),
         ("make = [", "skip = [7]\nmake = [", "line 16: key 'pattern.skip' is 7: one of the holes 1 to 6"),
         ("make = [", "skip = [2, 2]\nmake = [", "line 16: key 'pattern.skip' is 2: it is named twice"),
-        ("make = [", "skip = [1, 2, 3, 4, 5, 6]\nmake = [", "line 16: key 'pattern.skip' is 6: left out of 6"),
+        (
+            "make = [",
+            "skip = [1, 2, 3, 4, 5, 6]\nmake = [",
+            "line 16: key 'pattern.skip' is 6: left out of 6",
+        ),
         ("tool = 1", "tool = 2", "line 16: key 'pattern.make.tool' names tool 2, which is not in [[tool]]"),
         ("\"drill\"", "\"peck\"", "line 9: key 'tool.peck' is missing: operation = \"peck\" needs it"),
-        ("feed = 200.0", "feed = 200.0\npitch = 1.0", "line 13: key 'tool.pitch' is not for operation = \"drill\""),
+        (
+            "feed = 200.0",
+            "feed = 200.0\npitch = 1.0",
+            "line 13: key 'tool.pitch' is not for operation = \"drill\"",
+        ),
         ("depth = 20.0", "depth = 20.0, diameter = 9.0", "line 16: key 'pattern.make.diameter' is not for"),
-        ("[tolerance]", "[cylinder]\ndiameter = 90.0\n[tolerance]", "line 5: key 'machine.rotary' is missing"),
+        (
+            "[tolerance]",
+            "[cylinder]\ndiameter = 90.0\n[tolerance]",
+            "line 5: key 'machine.rotary' is missing",
+        ),
         (
             "[tolerance]",
             "[machine]\nrotary = { letter = \"A\", sign = 1 }\n[tolerance]",
@@ -58,7 +74,10 @@ fn numbers_at_their_limits_are_read() {
         ("holes = 6", "holes = 1"),
         ("holes = 6", "holes = 6, angle = -90.0, clockwise = true"),
         ("make = [", "skip = [1, 6]\nmake = ["),
-        ("circle = { diameter = 80.0, holes = 6 }", "arc = { diameter = 80.0, holes = 5, angle = 0.0, step = -72.0 }"),
+        (
+            "circle = { diameter = 80.0, holes = 6 }",
+            "arc = { diameter = 80.0, holes = 5, angle = 0.0, step = -72.0 }",
+        ),
         ("circle = { diameter = 80.0, holes = 6 }", "line = { holes = 3, pitch = -12.5 }"),
     ] {
         assert_eq!(message(from, to), "no error", "{to}");
