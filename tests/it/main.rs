@@ -40,6 +40,7 @@ mod new_files;
 mod one_verdict;
 #[cfg(feature = "browser")]
 mod page;
+mod pattern;
 mod pin_holes;
 mod real_files;
 mod results;

@@ -191,3 +191,16 @@ fn the_rounded_angle_of_the_head_is_no_other_angle_for_a_deep_hole() {
     assert_eq!(alarm(&done), None);
     assert_eq!(done.control.stops().len(), 6, "no setting of the head is repeated");
 }
+
+/// The simulation has the job's pivot, so that only a warning tells of one that was left out.
+#[test]
+fn tools_with_lengths_on_a_head_without_pivot_are_warned_of() {
+    let warned = |edits: &[&str]| {
+        let bench = Bench::example("melon-mould", edits);
+        let checked = check(&bench.job, &bench.package).unwrap();
+        checked.warnings.iter().any(|warning| warning.contains("'machine.head.pivot' is 0 and tool 1"))
+    };
+    let long = "length = 0.0                 # from => length = 120.0 # from";
+    assert!(!warned(&[]));
+    assert!(warned(&[long]));
+}

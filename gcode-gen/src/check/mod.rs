@@ -120,7 +120,8 @@ fn check_holes(
         also.extend(cut.iter().map(|overlap| format!("error: {}\n", overlap.sentence(&reference.holes))));
     }
     also.extend(rounding_messages(&verdict, job.control().increment.size()));
-    let (refusals, warnings) = messages(&verdict.diagnostics, &simulation.run, also, verdict.verdict);
+    let (refusals, mut warnings) = messages(&verdict.diagnostics, &simulation.run, also, verdict.verdict);
+    warnings.extend(pivot_warning(job));
     Ok(CheckedPackage {
         refusals,
         warnings,
@@ -129,6 +130,18 @@ fn check_holes(
         pictures: vec![(stem.to_owned(), gcode_draw::main_view(&top))],
         verdict: PackageVerdict::Holes(verdict),
     })
+}
+
+/// Returns the warning on a head whose pivot is at the gauge line of tools with lengths: the simulation has the same pivot, so
+/// no hole shows a wrong one.
+fn pivot_warning(job: &Job) -> Option<String> {
+    let Job::PinHoles(job) = job else { return None };
+    let tool = job.tools.iter().find(|tool| tool.length != 0.0).filter(|_| job.machine.head.pivot == 0.0)?;
+    Some(format!(
+        "warning: key 'machine.head.pivot' is 0 and tool {} has a length of {} mm: no real head has its pivot at the gauge \
+         line; give the distance from the pivot to it, or length 0 to every tool whose tip is set by hand\n",
+        tool.number, tool.length
+    ))
 }
 
 fn check_flutes(

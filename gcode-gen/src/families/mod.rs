@@ -3,6 +3,7 @@ pub(crate) mod alignment;
 pub(crate) mod burr;
 pub(crate) mod control;
 mod honeycomb;
+mod pattern;
 mod pin_holes;
 mod resident;
 mod start;
@@ -23,7 +24,8 @@ pub struct Family {
 }
 
 /// All families.
-pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY, alignment::FAMILY];
+pub const ALL: &[Family] =
+    &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY, alignment::FAMILY, pattern::FAMILY];
 
 /// Returns the family of a job.
 pub(crate) fn of(job: &Job) -> &'static Family {
@@ -32,6 +34,7 @@ pub(crate) fn of(job: &Job) -> &'static Family {
         Job::Honeycomb(_) => &honeycomb::FAMILY,
         Job::Burr(_) => &burr::FAMILY,
         Job::Alignment(_) => &alignment::FAMILY,
+        Job::Pattern(_) => &pattern::FAMILY,
     }
 }
 
@@ -42,6 +45,7 @@ pub fn emit(job: &Job) -> Package {
         Job::Honeycomb(job) => honeycomb::emit(job),
         Job::Burr(job) => burr::emit(job),
         Job::Alignment(job) => alignment::emit(job),
+        Job::Pattern(job) => pattern::emit(job),
     }
 }
 

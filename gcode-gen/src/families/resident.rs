@@ -72,12 +72,13 @@ mod tests {
             Job::Honeycomb(job) => &mut job.control,
             Job::Burr(job) => &mut job.control,
             Job::Alignment(job) => &mut job.control,
+            Job::Pattern(job) => &mut job.control,
         } = control;
         job
     }
 
     /// Changes of the new jobs that change the text of a macro.
-    const CHANGES: [[&str; 3]; 10] = [
+    const CHANGES: [[&str; 3]; 12] = [
         ["pin-holes", "", ""],
         ["pin-holes", "kind = \"manual\"", "kind = \"axis\"\nletter = \"A\""],
         ["honeycomb", "", ""],
@@ -88,6 +89,8 @@ mod tests {
         ["alignment", "", ""],
         ["alignment", "letter = \"B\"", "letter = \"A\""],
         ["alignment", "letter = \"B\"", "letter = \"C\""],
+        ["pattern", "", ""],
+        ["pattern", "dialect = \"fanuc-31i\"", "dialect = \"haas-ngc\""],
     ];
 
     #[test]

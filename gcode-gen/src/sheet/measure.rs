@@ -25,7 +25,7 @@ pub(super) fn characteristics(job: &Job, judgement: &PackageVerdict) -> Vec<Char
     match judgement {
         PackageVerdict::Measured => match job {
             Job::Alignment(job) => of_alignment(job),
-            Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => Vec::new(),
+            Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) | Job::Pattern(_) => Vec::new(),
         },
         PackageVerdict::Holes(verdict) if verdict.holes.len() <= LISTED => {
             let each = verdict.holes.iter().flat_map(|hole| of_hole(hole, verdict));

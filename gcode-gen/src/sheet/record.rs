@@ -122,7 +122,9 @@ pub(super) fn run_with_part<S: EventSink>(
             let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
             run(request, &mut Programs(package), &mut (&mut probe, sink))
         }
-        Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => run(request, &mut Programs(package), sink),
+        Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) | Job::Pattern(_) => {
+            run(request, &mut Programs(package), sink)
+        }
     }
 }
 

@@ -224,7 +224,7 @@ fn changed(value: &Value, name: &str, schemas: &[&Json]) -> Vec<(String, Value)>
 }
 
 /// Words of messages about keys that contradict each other, which a schema cannot state.
-const ACROSS: [&str; 37] = [
+const ACROSS: [&str; 53] = [
     "which is not in [[tool]]",
     "names tools of [[tool]], but there are none",
     "every [[tool]] is larger",
@@ -262,6 +262,22 @@ const ACROSS: [&str; 37] = [
     "max above min",
     "to above from",
     "does not matter on a straight line",
+    "needs it",
+    "is for a [cylinder]",
+    "is for a tilted [face] only",
+    "[face] excludes [cylinder]",
+    "[face] needs G68.2",
+    "the letter of 'rotary'",
+    "no pattern names tool",
+    "is not for operation",
+    "whose minor diameter",
+    "one circle leaves a core",
+    "or the last ones meet the first",
+    "where y is an angle",
+    "one of the holes 1 to",
+    "it is named twice",
+    "no hole remains",
+    "split the pattern, or list its points",
 ];
 
 #[test]

@@ -1,7 +1,7 @@
 //! Set-up of the machine: the tools, the sequence of head angles, the control settings.
 use gcode_inspect::verify::Verdict;
 use gcode_lang::units::Deg;
-use gcode_part::job::{HeadKind, Job, PinHoles};
+use gcode_part::job::{HeadKind, Job, PatternTool, PinHoles};
 use gcode_sim::report::figures::short;
 use maud::{Markup, html};
 
@@ -43,6 +43,17 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
                 drill.speed(),
                 short(drill.feed()),
             )]
+        }
+        Job::Pattern(job) => {
+            let of = |tool: &PatternTool| {
+                let length = html! { "measured, in H" (tool.number) };
+                let feed = match tool.feed() {
+                    Some(feed) => short(feed),
+                    None => format!("pitch {}", short(tool.increment())),
+                };
+                row(format!("T{}", tool.number), &tool.name(), tool.diameter, length, tool.speed, feed)
+            };
+            job.tools.iter().map(of).collect()
         }
         Job::Alignment(job) => {
             let ball = short(2.0 * job.probe.radius);

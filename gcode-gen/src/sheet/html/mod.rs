@@ -6,6 +6,7 @@ mod gauge;
 mod head;
 mod inspection;
 mod machine;
+mod pattern_zero;
 mod stops;
 mod time;
 mod zero;
@@ -66,5 +67,6 @@ fn kind(job: &Job) -> &'static str {
         Job::Honeycomb(_) => "honeycomb of radial holes on a cylinder",
         Job::Burr(_) => "ball-end rotary burr",
         Job::Alignment(_) => "setting up a part of revolution",
+        Job::Pattern(_) => "patterns of holes",
     }
 }

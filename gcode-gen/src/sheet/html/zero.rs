@@ -7,6 +7,7 @@ use gcode_sim::report::figures::short;
 use maud::{Markup, html};
 
 use super::drawing::{Drawing, WIDTH};
+use super::pattern_zero;
 use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
 use crate::sheet::stop_instructions::tip_is_programmed;
@@ -20,6 +21,12 @@ pub(super) fn zero(sheet: &Sheet<'_>) -> Markup {
             (html! {}, pin_holes(job))
         }
         (Job::Alignment(job), _) => (of_alignment(job), alignment(job)),
+        (Job::Pattern(job), PackageVerdict::Holes(verdict)) => {
+            (pattern_zero::drawing(job, verdict), pattern_zero::words(job))
+        }
+        (Job::Pattern(job), PackageVerdict::Flutes(_) | PackageVerdict::Measured) => {
+            (html! {}, pattern_zero::words(job))
+        }
     };
     html! {
         div.together {

@@ -38,6 +38,7 @@ mod clusters;
 mod contact;
 mod csv_list;
 mod distance;
+mod drawn_pattern;
 mod entry_planes;
 mod feature;
 mod flutes;

@@ -49,6 +49,7 @@ impl NominalPart {
         match job {
             Job::PinHoles(job) => super::pin_holes::reference(job).map(Self::Holes),
             Job::Honeycomb(job) => super::honeycomb::reference(job).map(Self::Holes),
+            Job::Pattern(job) => super::drawn_pattern::reference(job).map(Self::Holes),
             Job::Burr(job) => Ok(Self::Flutes(Flutes::from_job(job))),
             Job::Alignment(_) => {
                 let message = "the family 'alignment' measures the position of a part and makes nothing, \

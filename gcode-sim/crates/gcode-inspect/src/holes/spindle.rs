@@ -54,7 +54,8 @@ impl HoleExtractor<'_> {
         let kind = self.machine.kind_of(number);
         let is_bar = matches!(kind, Some(ToolKind::BoringBar)) && line.spindle != SpindleInHole::Reversed;
         let needs_spindle = kind.is_some_and(|kind| kind != ToolKind::Tap) && !is_bar;
-        if !needs_spindle && self.process_limits.tool_process(number).is_none() {
+        let is_tap = kind == Some(ToolKind::Tap);
+        if is_tap || (!needs_spindle && self.process_limits.tool_process(number).is_none()) {
             return;
         }
         let (verb, severity, note) = match line.spindle {

@@ -1,9 +1,9 @@
 //! The machine that a job assumes, without errors.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::{AxisLink, Chain, Head, HeadKind, Machine, Placement, Probe, Tool};
+use super::{AxisLink, Chain, Head, HeadKind, Machine, Placement, Probe, Tool, ToolKind};
 use gcode_lang::units::Deg;
-use gcode_part::job::{self, Job, Rotary};
+use gcode_part::job::{self, Job, Operation, PatternJob, PatternPlace, PatternTool, Rotary};
 
 impl Machine {
     /// Returns the arrangement of the job's family. `None` if the control lacks the rotary axis, and for a
@@ -54,6 +54,7 @@ impl Machine {
                     ..nominal
                 })
             }
+            Job::Pattern(job) => nominal.of_pattern(job),
             Job::Burr(_) => None,
             // The programmed point is the centre of the ball; the head does not move.
             Job::Alignment(job) => Some(Self {
@@ -62,6 +63,43 @@ impl Machine {
                 ..nominal
             }),
         }
+    }
+
+    fn of_pattern(self, job: &PatternJob) -> Option<Self> {
+        let (table, origin) = match job.place() {
+            PatternPlace::Plate => (Chain::default(), Point3::origin()),
+            // Z0 of the programs is on the surface of the cylinder.
+            PatternPlace::Cylinder { diameter, rotary } => {
+                let origin = Point3::new(0.0, 0.0, -diameter / 2.0);
+                (self.rotary_table(rotary, Vector3::x_axis(), origin)?, origin)
+            }
+            PatternPlace::Face { tilt, rotary, .. } => {
+                let bed = self.rotary_table(tilt, Vector3::x_axis(), Point3::origin())?;
+                let on_it = self.rotary_table(rotary, Vector3::z_axis(), Point3::origin())?;
+                (Chain(bed.0.into_iter().chain(on_it.0).collect()), Point3::origin())
+            }
+        };
+        let kind = |operation: Operation| match operation {
+            Operation::Drill | Operation::Peck => Some(ToolKind::Drill),
+            Operation::Tap => Some(ToolKind::Tap),
+            Operation::Bore => Some(ToolKind::BoringBar),
+            Operation::MillCircle => Some(ToolKind::EndMill),
+            Operation::ThreadMill => None,
+        };
+        let tool = |tool: &PatternTool| Tool {
+            number: tool.number,
+            kind: kind(tool.operation),
+            length: None,
+            diameter: Some(tool.diameter),
+            ..Tool::default()
+        };
+        Some(Self {
+            table,
+            head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0),
+            tools: job.tools.iter().map(tool).collect(),
+            part: Placement { origin, ..Placement::default() },
+            ..self
+        })
     }
 
     fn rotary_table(&self, rotary: Rotary, about: Unit<Vector3<f64>>, centre: Point3<f64>) -> Option<Chain> {

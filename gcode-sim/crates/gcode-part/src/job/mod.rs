@@ -7,6 +7,7 @@ mod alignment;
 mod burr;
 pub mod control_file;
 mod honeycomb;
+mod pattern;
 mod pin_holes;
 pub mod project;
 mod sheet;
@@ -24,6 +25,10 @@ pub use burr::{
     AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm,
 };
 pub use honeycomb::{Clamp, CombMachine, Cylinder, Drill, HolePattern, Honeycomb, Metric, Spacing};
+pub use pattern::{
+    HoleArc, HoleCircle, HoleGrid, HoleLayout, HoleLine, Operation, PatternJob, PatternMachine, PatternPlace,
+    PatternSpec, PatternStep, PatternTool, TiltedFace,
+};
 pub use pin_holes::{
     AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool,
 };
@@ -44,6 +49,8 @@ pub enum Job {
     Burr(Burr),
     /// Measurements of a part's position.
     Alignment(Alignment),
+    /// Bolt circles, grids, lines and lists of holes.
+    Pattern(PatternJob),
 }
 
 /// The control of the programs.
@@ -144,13 +151,14 @@ impl JsonSchema for JobFile {
                 generator.subschema_for::<Honeycomb>(),
                 generator.subschema_for::<burr::File>(),
                 generator.subschema_for::<Alignment>(),
+                generator.subschema_for::<PatternJob>(),
             ],
         })
     }
 }
 
 /// Values of the key `family`.
-pub const FAMILIES: [&str; 4] = ["pin-holes", "honeycomb", "burr", "alignment"];
+pub const FAMILIES: [&str; 5] = ["pin-holes", "honeycomb", "burr", "alignment", "pattern"];
 
 impl Job {
     /// Parses the text of a job file.
@@ -173,6 +181,7 @@ impl Job {
             "honeycomb" => Honeycomb::read(&reader).map(Self::Honeycomb),
             "burr" => burr::parse(&reader).map(Self::Burr),
             "alignment" => Alignment::read(&reader).map(Self::Alignment),
+            "pattern" => PatternJob::read(&reader).map(Self::Pattern),
             other => {
                 Err(reader
                     .error(&family, format!("family '{other}' is unknown: one of {}", FAMILIES.join(", "))))
@@ -187,6 +196,7 @@ impl Job {
             Self::Honeycomb(job) => job.machine.clearance(),
             Self::Burr(job) => job.grinder.clearance(),
             Self::Alignment(job) => job.machine.clearance(),
+            Self::Pattern(job) => job.machine.clearance(),
         }
     }
 
@@ -197,6 +207,7 @@ impl Job {
             Self::Honeycomb(job) => &job.sheet,
             Self::Burr(job) => &job.sheet,
             Self::Alignment(job) => &job.sheet,
+            Self::Pattern(job) => &job.sheet,
         }
     }
 
@@ -207,6 +218,7 @@ impl Job {
             Self::Honeycomb(job) => job.control,
             Self::Burr(job) => job.control,
             Self::Alignment(job) => job.control,
+            Self::Pattern(job) => job.control,
         }
     }
 }

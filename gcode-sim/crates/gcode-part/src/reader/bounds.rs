@@ -272,6 +272,13 @@ ranges! {
     TiltLimit: Any f64, 0.001, 1.0, "degrees";
     PathFeed: Any f64, 1.0, 10_000.0, "mm/min";
 
+    HoleCount: Any u32, 1, 9_999, "";
+    /// Two digits of a letter state it.
+    SkippedHole: Any u32, 1, 99, "";
+    SignedPitch: Any f64, -9_999.0, 9_999.0, "without 0" {
+        const EXCEPT: &'static [f64] = &[0.0];
+    };
+
     DurationMinutes: Any f64, 0.0, 1_000_000.0, "minutes";
     HourlyRate: Any f64, 0.01, 1e9, "";
 

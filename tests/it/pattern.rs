@@ -1,0 +1,126 @@
+//! Patterns of holes on the control: every layout on every place with every operation, wrong twins of programs and macros, and
+//! refused arguments.
+use gcode_gen::check::check;
+use gcode_inspect::machine::Placement;
+use gcode_tests::bench::{Bench, alarm};
+
+/// Sections of a job for each place.
+const PLACES: [&str; 3] = [
+    "",
+    "machine = { rotary = { letter = \"A\", sign = -1 } }\ncylinder = { diameter = 150.0 }\n",
+    "machine = { tilt = { letter = \"A\", sign = -1 }, rotary = { letter = \"C\", sign = -1 } }\n\
+     face = { origin = [50.0, 20.0, -10.0], angles = [40.0, -25.0, 10.0] }\n",
+];
+
+/// Layouts with both senses, negative angles, one hole and holes left out.
+const LAYOUTS: [&str; 6] = [
+    "circle = { diameter = 80.0, holes = 5, angle = -90.0, clockwise = true }\nskip = [2]",
+    "arc = { diameter = 100.0, holes = 3, angle = -30.0, step = -40.0 }",
+    "circle = { diameter = 80.0, holes = 1, angle = 200.0 }",
+    "grid = { columns = 3, rows = 4, pitch = [25.0, -30.0] }\nskip = [1, 5, 6, 12, 7]",
+    "line = { holes = 3, pitch = 30.0 }",
+    "points = [[0.0, 0.0], [40.0, -25.0]]",
+];
+
+/// Operations: the keys of the tool, and what a pattern makes with it. A bore, a tap and a thread mill follow a drill.
+const OPERATIONS: [(&str, &str, f64); 6] = [
+    ("operation = \"drill\"\ndiameter = 8.0\nfeed = 200.0", "depth = 20.0", 0.0),
+    ("operation = \"peck\"\ndiameter = 8.0\nfeed = 200.0\npeck = 5.0", "depth = 20.0", 0.0),
+    (
+        "operation = \"mill-circle\"\ndiameter = 8.0\nfeed = 200.0\npeck = 1.0",
+        "depth = 20.0, diameter = 12.0",
+        0.0,
+    ),
+    ("operation = \"bore\"\ndiameter = 8.0\nfeed = 200.0", "depth = 15.0", 7.8),
+    ("operation = \"tap\"\ndiameter = 8.0\npitch = 1.25", "depth = 15.0", 6.8),
+    (
+        "operation = \"thread-mill\"\ndiameter = 8.0\nfeed = 200.0\npitch = 1.5",
+        "depth = 15.0, diameter = 12.0",
+        10.4,
+    ),
+];
+
+fn job(place: &str, layout: &str, (tool, step, pilot): (&str, &str, f64)) -> String {
+    let (drill, first) = match pilot {
+        0.0 => (String::new(), ""),
+        pilot => (
+            format!(
+                "[[tool]]\nnumber = 1\nspeed = 1000\noperation = \"drill\"\ndiameter = {pilot:?}\nfeed = 200.0\n"
+            ),
+            "{ tool = 1, depth = 22.0 }, ",
+        ),
+    };
+    format!(
+        "family = \"pattern\"\ncontrol = {{ dialect = \"fanuc-31i\", increment = \"IS-B\" }}\n\
+         tolerance = {{ position = 0.05 }}\n{place}{drill}[[tool]]\nnumber = 2\nspeed = 1000\n{tool}\n\
+         [[pattern]]\nid = \"A\"\nx = 5.0\ny = 7.0\n{layout}\nmake = [{first}{{ tool = 2, {step} }}]\n"
+    )
+}
+
+/// The refusals of the check before a file is written.
+fn refusals(bench: &Bench) -> Vec<String> {
+    check(&bench.job, &bench.package).unwrap().refusals
+}
+
+#[test]
+fn every_layout_passes_on_every_place_with_every_operation() {
+    for place in PLACES {
+        for layout in LAYOUTS {
+            for operation in OPERATIONS {
+                let job = job(place, layout, operation);
+                let found = refusals(&Bench::of(&job));
+                assert!(found.is_empty(), "{job}\n{}", found.join("\n"));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wrong_digit_of_a_macro_or_a_call_is_refused() {
+    for (layout, program, edit) in [
+        (0, 8501, "#7/2*COS => #7/3*COS"),
+        (0, 8501, "SIN[#27]*#28 => SIN[#27]*#29"),
+        (0, 8501, "#2=#2/#11 => #2=#2/[#11+1]"),
+        (0, 8500, "S2. => S3."),
+        (0, 8500, "A-90. => A-91."),
+        (0, 8500, "B-360. => B360."),
+        (1, 8500, "B-40. => B40."),
+        (3, 8502, "-#28*#5*SIN => +#27*#5*COS"),
+        (3, 8502, "#33-1-#28*#11 => #33-#28*#11"),
+        (3, 8500, "K7. => K0."),
+        (3, 8500, "J-30. => J30."),
+        (4, 8500, "I30. => I30.1"),
+        (5, 8503, "Z-#26 R#3 F#9\nGOTO 80\nN40 => Z-#26-1 R#3 F#9\nGOTO 80\nN40"),
+    ] {
+        let bench = Bench::of(&job("", LAYOUTS[layout], OPERATIONS[0])).edited(program, edit);
+        assert!(!refusals(&bench).is_empty(), "O{program}: {edit}");
+    }
+}
+
+#[test]
+fn wrong_arguments_are_refused_before_anything_moves() {
+    let bench = Bench::of(&job("", LAYOUTS[0], OPERATIONS[0]));
+    for (edit, number) in [
+        ("H5. => H0.", 189),
+        ("H5. => H2.5", 189),
+        ("D80. => D0.", 188),
+        ("A-90. => ", 186),
+        ("B-360. => B0.", 187),
+        ("R0. => R-1.", 190),
+        ("R0. => R75.", 193),
+        ("S2. => S6.", 194),
+        ("S2. => S25.", 194),
+        ("S2. => S200.", 194),
+        ("U0. => U0.5", 193),
+        ("M81. Z => M82. Z", 178),
+        ("Z20. => Z0.", 176),
+        ("V50. => V1.9", 177),
+        ("F200. => F0.", 179),
+    ] {
+        let bench = bench.clone().edited(8500, edit);
+        let run = bench.run(8500, &Placement::default(), &[]);
+        assert_eq!(alarm(&run), Some(3000 + number), "{edit}");
+    }
+    let inches = bench.edited(8500, "M08 => G20");
+    assert_eq!(alarm(&inches.run(8500, &Placement::default(), &[])), Some(3185));
+}
