@@ -200,12 +200,16 @@ impl Debuggee {
             if !self.breakpoints.is_empty() {
                 let site = (site.source, site.start);
                 let hits = self.breakpoints.reach_block(control, site, position);
-                if let Some(ids) = write_messages(hits, self.run.next_block(), output).filter(|_| goal.is_some()) {
+                if let Some(ids) =
+                    write_messages(hits, self.run.next_block(), output).filter(|_| goal.is_some())
+                {
                     return Some(Stop::Breakpoint(ids));
                 }
                 let arrival = Arrival { control, has_entered: self.has_entered };
                 let hits = self.breakpoints.reach_programs(&arrival, position);
-                if let Some(ids) = write_messages(hits, self.run.next_block(), output).filter(|_| goal.is_some()) {
+                if let Some(ids) =
+                    write_messages(hits, self.run.next_block(), output).filter(|_| goal.is_some())
+                {
                     return Some(Stop::ProgramBreakpoint(ids));
                 }
             }
