@@ -371,6 +371,14 @@ impl Debugger {
         }
     }
 
+    /// Removes all breakpoints.
+    fn clear(&mut self) {
+        self.ask("setBreakpoints", json!({ "source": { "path": "O1.nc" }, "breakpoints": [] }));
+        self.ask("setFunctionBreakpoints", json!({ "breakpoints": [] }));
+        self.ask("setDataBreakpoints", json!({ "breakpoints": [] }));
+        self.ask("setExceptionBreakpoints", json!({ "filters": [] }));
+    }
+
     /// Returns what the run has at its place, and what it does from there to its end.
     fn rest(&mut self) -> Vec<Vec<Value>> {
         let mut rest = vec![self.ask("stackTrace", json!({ "threadId": 1 }))];
@@ -389,11 +397,10 @@ pub fn debugger(input: &[u8]) {
     for _ in 0..STEPS {
         debugger.step(&mut choices);
     }
-    debugger.ask("setBreakpoints", json!({ "source": { "path": "O1.nc" }, "breakpoints": [] }));
-    debugger.ask("setFunctionBreakpoints", json!({ "breakpoints": [] }));
-    debugger.ask("setDataBreakpoints", json!({ "breakpoints": [] }));
-    debugger.ask("setExceptionBreakpoints", json!({ "filters": [] }));
+    debugger.clear();
     debugger.ask("restart", json!({}));
     let mut fresh = Debugger::launch(&text);
+    // The client names the file here too: the debugger answers with its name for it.
+    fresh.clear();
     assert_eq!(debugger.rest(), fresh.rest(), "restarted, and launched: {text:?}");
 }
