@@ -36,6 +36,7 @@ mod lsp;
 mod misplaced;
 mod module_circles;
 mod mutations;
+mod neovim;
 mod new_files;
 mod one_verdict;
 #[cfg(feature = "browser")]

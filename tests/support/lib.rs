@@ -16,6 +16,7 @@ pub mod dap;
 mod exec;
 pub mod expect;
 pub mod fuzz;
+pub mod fuzz_sessions;
 mod r#gen;
 mod lsp;
 mod macros;

@@ -1,28 +1,26 @@
 //! `gcode-sim dap`: the Debug Adapter Protocol over standard input and output, and the files that a launch names.
 #![expect(clippy::disallowed_methods, reason = "the command line reads standard input and finds files")]
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
-use gcode_dap::{Adapter, Framing, FramingError, Host, LaunchArguments, LaunchedProgram};
+use gcode_dap::{Adapter, Host, LaunchArguments, LaunchedProgram};
 use gcode_inspect::verify::Tolerances;
 use gcode_lang::source::Bytes;
 use gcode_part::NominalPart;
 use serde_json::Value;
 
 use super::conditions::{ProgramArguments, RunConditions};
+use super::message_frames::{FrameError, read_body, write_body};
 use super::{ExitStatus, UsageError, input, options};
 
 /// Blocks after which the search for bad holes ends.
 const MAX_BLOCKS: u64 = 10_000_000;
 
-/// Bytes read at a time.
-const CHUNK: usize = 64 * 1024;
-
 /// Message of the client, or bytes that are none.
-type Incoming = Result<Vec<u8>, FramingError>;
+type Incoming = Result<Vec<u8>, FrameError>;
 
 pub(super) fn run() -> Result<ExitStatus, UsageError> {
     let (sender, receiver) = channel();
@@ -32,20 +30,10 @@ pub(super) fn run() -> Result<ExitStatus, UsageError> {
 
 /// Reads standard input to its end.
 fn read_messages(sender: &Sender<Incoming>) {
-    let mut framing = Framing::default();
-    let mut chunk = vec![0; CHUNK];
     let mut stdin = std::io::stdin().lock();
-    loop {
-        match stdin.read(&mut chunk) {
-            Ok(0) => return,
-            Ok(length) => framing.push(&chunk[..length]),
-            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
-            Err(_) => return,
-        }
-        while let Some(message) = framing.next_message() {
-            if sender.send(message).is_err() {
-                return;
-            }
+    while let Ok(Some(message)) = read_body(&mut stdin) {
+        if sender.send(message).is_err() {
+            return;
         }
     }
 }
@@ -68,7 +56,7 @@ fn serve(receiver: &Receiver<Incoming>) -> Result<ExitStatus, UsageError> {
         };
         match message {
             Some(Ok(message)) => adapter.receive(&message),
-            Some(Err(FramingError(reason))) => adapter.refuse(&reason),
+            Some(Err(reason)) => adapter.refuse(&reason),
             None => adapter.work(),
         }
         if !send(&adapter.take_messages())? {
@@ -80,9 +68,9 @@ fn serve(receiver: &Receiver<Incoming>) -> Result<ExitStatus, UsageError> {
 
 /// Writes messages; returns false if their reader is gone.
 fn send(messages: &[String]) -> Result<bool, UsageError> {
-    let text: String = messages.iter().map(|message| Framing::framed(message)).collect();
-    let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    let mut stdout = BufWriter::new(std::io::stdout().lock());
+    let written = messages.iter().try_for_each(|message| write_body(&mut stdout, message.as_bytes()));
+    match written {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
         Err(error) => Err(UsageError::new(format!("standard output cannot be written: {error}"))),

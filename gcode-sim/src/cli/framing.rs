@@ -2,7 +2,7 @@
 //! error and does not end the server.
 #![expect(clippy::disallowed_methods, reason = "the command line reads standard input")]
 
-use std::io::{self, BufRead, Read, Write};
+use std::io::{self, BufRead, Write};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -11,14 +11,13 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use lsp_server::{Connection, Message, Notification, Request, RequestId, Response};
 use serde_json::{Value, json};
 
+use super::message_frames::{read_body, write_body};
+
 /// JSON-RPC: the text is not JSON.
 const PARSE_ERROR: i32 = -32700;
 
 /// JSON-RPC: the document is no message.
 const INVALID_REQUEST: i32 = -32600;
-
-/// Largest message, bytes.
-const MAX_LENGTH: usize = 1 << 30;
 
 /// The thread that writes.
 pub(super) struct Writer {
@@ -52,7 +51,11 @@ pub(super) fn stdio() -> (Connection, Writer) {
 /// Reads messages to the end of the input.
 fn read_all(input: &mut impl BufRead, messages: &Sender<Message>, errors: &mut impl Write) {
     while let Ok(Some(body)) = read_body(input) {
-        match parse(&body) {
+        let message = match body {
+            Ok(body) => parse(&body),
+            Err(reason) => Err((PARSE_ERROR, Value::Null, reason)),
+        };
+        match message {
             Ok(message) => {
                 let is_exit = matches!(&message, Message::Notification(message) if message.method == "exit");
                 if messages.send(message).is_err() || is_exit {
@@ -94,35 +97,6 @@ fn parse(body: &[u8]) -> Result<Message, (i32, Value, String)> {
     }
 }
 
-/// Reads one message; `None` at the end of the input.
-fn read_body(input: &mut impl BufRead) -> io::Result<Option<Vec<u8>>> {
-    let mut length: Option<usize> = None;
-    loop {
-        let mut line = Vec::new();
-        if input.read_until(b'\n', &mut line)? == 0 {
-            return Ok(None);
-        }
-        let line = String::from_utf8_lossy(&line);
-        let line = line.trim();
-        if line.is_empty() {
-            match length {
-                Some(length) => {
-                    let mut body = Vec::new();
-                    let read = input.by_ref().take(length as u64).read_to_end(&mut body)?;
-                    return Ok((read == length).then_some(body));
-                }
-                // Blank lines between messages.
-                None => continue,
-            }
-        }
-        if let Some((name, value)) = line.split_once(':')
-            && name.trim().eq_ignore_ascii_case("content-length")
-        {
-            length = value.trim().parse().ok().filter(|length| *length <= MAX_LENGTH);
-        }
-    }
-}
-
 /// Writes messages until the last sender is gone.
 fn write_all(messages: &Receiver<Message>, output: &mut impl Write) {
     for message in messages {
@@ -134,13 +108,6 @@ fn write_all(messages: &Receiver<Message>, output: &mut impl Write) {
             return;
         }
     }
-}
-
-/// Writes one message with its header at once, so that no other stands in between.
-fn write_body(output: &mut impl Write, body: &[u8]) -> io::Result<()> {
-    let message = [format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes(), body].concat();
-    output.write_all(&message)?;
-    output.flush()
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 #![expect(clippy::disallowed_methods, reason = "the command line finds files and reads standard input")]
 
 use std::io::Read;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::UNIX_EPOCH;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant, UNIX_EPOCH};
 
 use clap::Args;
 use serde_json::Value;
@@ -14,15 +15,24 @@ use super::conditions::RunConditions;
 use super::disk_files::DiskFiles;
 use super::project::Project;
 use super::{ExitStatus, UsageError, framing, input, options, output, page};
+use crate::report::proof::ProofReport;
 use crate::report::run::RunReport;
+use gcode_control::Control;
 use gcode_inspect::verify::Tolerances;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
-use gcode_lsp::{Ending, Host, serve};
+use gcode_lsp::{Ending, Host, LibrarySource, serve};
 use gcode_part::{NominalPart, Total};
+use gcode_prove::{Ask, Setup, Watch, prove};
 use gcode_review::Revision;
 use gcode_session::files::FileAccess;
 use gcode_session::{Request, Trace};
+
+/// Exit code of a server that a signal ends.
+const SIGNALLED: i32 = 1;
+
+/// Time of a proof for an editor.
+const PROOF_TIME: Duration = Duration::from_secs(10);
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -32,12 +42,19 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(_: &Arguments) -> Result<ExitStatus, UsageError> {
-    let host = Arc::new(EditorHost::new()?);
+    let host = Arc::new(EditorHost::default());
+    let at_signal = Arc::clone(&host);
+    // Work in the background may hold the host: the folder of pages is removed by its name.
+    _ = ctrlc::set_handler(move || {
+        at_signal.remove_pages();
+        std::process::exit(SIGNALLED);
+    });
     let (connection, writer) = framing::stdio();
-    let ending = serve(&connection, host);
+    let ending = serve(&connection, Arc::clone(&host) as Arc<dyn Host>);
     // The writer ends with the last sender of its messages; work in the background may hold one.
     drop(connection);
     writer.finish();
+    host.remove_pages();
     Ok(match ending {
         Ending::Shutdown => ExitStatus::Passed,
         Ending::Exit => ExitStatus::Failed,
@@ -45,17 +62,29 @@ pub(super) fn run(_: &Arguments) -> Result<ExitStatus, UsageError> {
 }
 
 /// The disk, the reports and the pages of this program.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct EditorHost {
-    /// Folder of the pages that were shown.
-    pages: TempDir,
+    /// Folder of the pages that were shown; none before the first page.
+    pages: Mutex<Option<TempDir>>,
 }
 
 impl EditorHost {
-    /// Creates the host with a folder for pages, which goes with it.
-    pub fn new() -> Result<Self, UsageError> {
-        let unusable = |error| UsageError::new(format!("no folder for pages: {error}"));
-        Ok(Self { pages: tempfile::Builder::new().prefix("gcode-sim-").tempdir().map_err(unusable)? })
+    /// Returns the folder of pages, created with the first page.
+    fn page_folder(&self) -> Result<PathBuf, String> {
+        let mut pages = self.pages.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = match pages.take() {
+            Some(folder) => folder,
+            None => tempfile::Builder::new()
+                .prefix("gcode-sim-")
+                .tempdir()
+                .map_err(|error| format!("no folder for pages: {error}"))?,
+        };
+        Ok(pages.insert(folder).path().to_owned())
+    }
+
+    /// Removes the folder of pages.
+    fn remove_pages(&self) {
+        _ = self.pages.lock().unwrap_or_else(PoisonError::into_inner).take().map(TempDir::close);
     }
 }
 
@@ -133,6 +162,26 @@ impl Host for EditorHost {
         }
     }
 
+    fn proof_report(
+        &self,
+        request: &Request,
+        libraries: LibrarySource<'_>,
+        (ranges, claims): (&[String], &[String]),
+    ) -> Result<Value, String> {
+        let ask = Ask {
+            ranges: ranges.to_vec(),
+            claims: claims.to_vec(),
+            max_blocks: request.limits.blocks,
+            threads: std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN),
+            ..Ask::default()
+        };
+        let start = Instant::now();
+        let clock = || start.elapsed();
+        let controls = EditedProgram { request, libraries };
+        let answer = sentence(prove(&controls, &ask, &Watch::new(&clock, PROOF_TIME)))?;
+        json(&ProofReport::new(&answer, start.elapsed().as_secs_f64(), request.name.clone(), None))
+    }
+
     fn write_page(
         &self,
         request: &Request,
@@ -141,7 +190,7 @@ impl Host for EditorHost {
     ) -> Result<PathBuf, String> {
         let html = self.page(request, library, reference)?;
         let stem = Path::new(&request.name).file_stem().unwrap_or_default().to_string_lossy();
-        let path = self.pages.path().join(format!("{stem}.html"));
+        let path = self.page_folder()?.join(format!("{stem}.html"));
         sentence(output::write(&path, html.as_bytes()))?;
         Ok(path)
     }
@@ -172,6 +221,45 @@ impl Host for EditorHost {
         };
         let (conditions, _) = sentence(Project::of(program))?.complete(program, &given);
         sentence(page::alone(&request, &(revision, trace), judged, &conditions))
+    }
+}
+
+/// Source of the controls of a proof: a program as the editor has it.
+struct EditedProgram<'a> {
+    request: &'a Request,
+    libraries: LibrarySource<'a>,
+}
+
+impl Setup for EditedProgram<'_> {
+    type Library = EditedPrograms;
+
+    fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
+        let mut request = self.request.clone();
+        for (key, value) in settings {
+            sentence(request.settings.set(key, value))?;
+        }
+        sentence(gcode_session::set_up(&request, None))
+    }
+
+    fn library(&self) -> Self::Library {
+        EditedPrograms((self.libraries)())
+    }
+}
+
+/// Called programs as the editor has them.
+struct EditedPrograms(Box<dyn Library>);
+
+impl Library for EditedPrograms {
+    fn program(&mut self, number: u32) -> Option<(String, Bytes)> {
+        self.0.program(number)
+    }
+
+    fn named(&mut self, name: &str) -> Option<(String, Bytes)> {
+        self.0.named(name)
+    }
+
+    fn read_error(&self) -> Option<String> {
+        self.0.read_error()
     }
 }
 

@@ -15,6 +15,7 @@ mod holes;
 pub mod input;
 pub mod library;
 pub mod lsp;
+mod message_frames;
 mod new;
 mod options;
 pub mod output;

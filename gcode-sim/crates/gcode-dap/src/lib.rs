@@ -2,7 +2,7 @@
 //!
 //! **In:** messages of a client ([`Adapter::receive`]), and a [`Host`] that reads files. **Out:** messages for the client
 //! ([`Adapter::take_messages`]). A run goes on in slices ([`Adapter::work`]), so that requests are heard in between; the crate
-//! itself reads and writes nothing. [`Framing`] splits a stream of bytes into messages.
+//! itself reads and writes nothing.
 //!
 //! The modules stand in the order in which they use one another. `run` is a run that goes back: checkpoints at growing
 //! distances, and the same blocks again from the last of them. `debuggee` adds breakpoints, exceptions and steps. Neither knows
@@ -66,4 +66,3 @@ mod adapter;
 
 pub use adapter::{Adapter, Host, LaunchedProgram};
 pub use protocol::arguments::Launch as LaunchArguments;
-pub use protocol::framing::{Framing, FramingError};

@@ -56,8 +56,8 @@ pub struct Completion {
 /// Most sequence numbers and variables of a list.
 const MAX_OFFERED: usize = 500;
 
-/// What is typed before the cursor.
-struct Typed {
+/// Word before the cursor, as far as it is typed.
+struct CursorWord {
     /// Text of the word so far, in capitals: `G8`, `#10`, `WH`, empty behind a space.
     text: String,
     range: TextRange,
@@ -123,7 +123,7 @@ impl Project {
         found
     }
 
-    fn g_codes(&self, typed: &Typed) -> Vec<Completion> {
+    fn g_codes(&self, typed: &CursorWord) -> Vec<Completion> {
         let settings = self.settings();
         let mut codes: BTreeSet<u32> = g_codes::all()
             .iter()
@@ -136,7 +136,7 @@ impl Project {
         codes.map(|(code, detail)| code_completion('G', code, detail, CompletionKind::GCode, typed)).collect()
     }
 
-    fn m_codes(&self, typed: &Typed) -> Vec<Completion> {
+    fn m_codes(&self, typed: &CursorWord) -> Vec<Completion> {
         let settings = self.settings();
         let mut codes: BTreeSet<u32> =
             M_CODES.iter().filter(|row| row.dialects.contains(&settings.codes)).map(|row| row.code).collect();
@@ -148,7 +148,7 @@ impl Project {
     }
 
     /// Returns the sequence numbers of a program; the typed word has `letters` letters before its number.
-    fn numbers(&self, key: ProgramKey, typed: &Typed, letters: u32) -> Vec<Completion> {
+    fn numbers(&self, key: ProgramKey, typed: &CursorWord, letters: u32) -> Vec<Completion> {
         let Some(index) = self.file(key.file) else { return Vec::new() };
         let replace = TextRange::new(typed.range.start + letters, typed.range.end);
         let mut seen = BTreeSet::new();
@@ -169,7 +169,7 @@ impl Project {
         numbers.collect()
     }
 
-    fn program_numbers(&self, typed: &Typed) -> Vec<Completion> {
+    fn program_numbers(&self, typed: &CursorWord) -> Vec<Completion> {
         let replace = TextRange::new(typed.range.start + 1, typed.range.end);
         let mut seen = BTreeSet::new();
         let keys: Vec<_> = self.programs().map(|(key, _)| key).collect();
@@ -184,7 +184,7 @@ impl Project {
     }
 
     /// Returns the letters that the macro call of a block still lacks; `None` outside a macro call.
-    fn arguments(&self, file: FileId, offset: u32, typed: &Typed) -> Option<Vec<Completion>> {
+    fn arguments(&self, file: FileId, offset: u32, typed: &CursorWord) -> Option<Vec<Completion>> {
         let call = self.macro_call_at(file, offset).filter(|call| call.code.end <= typed.range.start)?;
         let called = self.called_program(file, &call.record.target)?;
         if typed.text.bytes().any(|byte| byte.is_ascii_digit()) {
@@ -214,7 +214,7 @@ impl Project {
         Some(offered.collect())
     }
 
-    fn variables(&self, key: ProgramKey, typed: &Typed) -> Vec<Completion> {
+    fn variables(&self, key: ProgramKey, typed: &CursorWord) -> Vec<Completion> {
         let kind = CompletionKind::Variable;
         let settings = self.settings();
         if typed.text.starts_with("#_") {
@@ -276,7 +276,8 @@ impl Project {
         kind.is_macro_call || kind.is_subprogram_call
     }
 
-    /// Returns true if P is a sequence number of the same program in a line: M97, and M99 of a main program.
+    /// Returns true if P in a line is a sequence number of its program. So it is with M97, and with M99 of a main
+    /// program.
     fn takes_number(&self, text: &[u8], lexemes: &[Lexeme]) -> bool {
         let is_local = lexemes.windows(2).any(|pair| {
             let number = lossy(pair[1].range.of(text));
@@ -287,7 +288,7 @@ impl Project {
 }
 
 /// Returns what is typed of the word at an offset.
-fn typed(text: &[u8], line: TextRange, offset: u32, lexemes: &[Lexeme]) -> Typed {
+fn typed(text: &[u8], line: TextRange, offset: u32, lexemes: &[Lexeme]) -> CursorWord {
     let before = TextRange::new(line.start, offset).of(text);
     let behind = |fits: fn(&u8) -> bool, from: usize| {
         before[..from].iter().rev().take_while(|byte| fits(byte)).count()
@@ -307,7 +308,7 @@ fn typed(text: &[u8], line: TextRange, offset: u32, lexemes: &[Lexeme]) -> Typed
     let range = TextRange::new(start, offset);
     let text = lossy(range.of(text)).to_ascii_uppercase();
     let before = lexemes.iter().filter(|lexeme| lexeme.range.end <= start).copied().collect();
-    Typed { text, range, before }
+    CursorWord { text, range, before }
 }
 
 /// Returns true inside brackets, and behind `=`.
@@ -327,7 +328,7 @@ fn is_expression(text: &[u8], before: &[Lexeme]) -> bool {
 }
 
 /// Returns the words of the language: functions and operators in an expression, otherwise the keywords.
-fn words(typed: &Typed, in_expression: bool) -> Vec<Completion> {
+fn words(typed: &CursorWord, in_expression: bool) -> Vec<Completion> {
     let is_operator = |word: &str| crate::lexer::OPERATORS.contains(&word);
     let fits = |row: &&crate::language_text::LanguageRow| {
         (row.is_function || is_operator(row.word)) == in_expression
@@ -349,7 +350,7 @@ fn code_completion(
     code: u32,
     detail: String,
     kind: CompletionKind,
-    typed: &Typed,
+    typed: &CursorWord,
 ) -> Completion {
     let label = format!("{letter}{}", g_codes::spelled(code));
     let plain = format!("{letter}{}", f64::from(code) / 10.0);

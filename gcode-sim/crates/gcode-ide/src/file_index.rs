@@ -167,7 +167,7 @@ impl FileIndex {
     }
 }
 
-/// Reads the chunks of a range that begins at a line start and ends at another or at the end of the text.
+/// Reads the chunks of a range of whole lines.
 fn read_chunks(text: &[u8], range: TextRange, settings: &Settings) -> Vec<PlacedChunk> {
     let mut chunks = Vec::new();
     let mut start = range.start;

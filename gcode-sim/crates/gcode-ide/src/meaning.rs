@@ -53,7 +53,7 @@ impl Project {
         others.find_map(|other| Some((self.stated_meaning(number, other)?, Some(self.label(other)))))
     }
 
-    /// Returns the arguments that a macro takes: those of its head, and the locals that it reads before it sets them.
+    /// Returns the arguments of a macro: those of its head, and the locals that it reads before it sets them.
     pub(crate) fn parameters_of(&self, key: ProgramKey) -> Vec<MacroParameter> {
         let Some(index) = self.file(key.file) else { return Vec::new() };
         let stated: Vec<VariableMeaning> = meanings(index, key.program);

@@ -168,8 +168,8 @@ impl Project {
         found
     }
 
-    /// Returns the programs of a name that a call from a file may find: in the same file, else in its folder, else in
-    /// the others.
+    /// Returns the programs that a call from a file may find by a name. Those of the same file win, then those of its
+    /// folder.
     pub(crate) fn reached_programs(&self, name: &ProgramName, from: FileId) -> Vec<ProgramKey> {
         let mut found = self.programs_named(name, from);
         let nearest = found.first().map(|key| self.distance(*key, from));

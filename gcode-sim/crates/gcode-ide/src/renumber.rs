@@ -8,7 +8,7 @@ use crate::rename::{MAX_NUMBER, is_number};
 use crate::text::{FileEdit, Refusal, TextEdit, TextRange};
 
 impl Project {
-    /// Returns the edits that number the N words of a program anew, or those in a range of it, with the jumps to them.
+    /// Returns the edits that renumber a program, or a range of it, with the jumps to its blocks.
     ///
     /// N0 stays, and no block gets an N that has none.
     ///

@@ -56,7 +56,7 @@ pub(crate) fn canonical(number: u32, settings: &Settings) -> u32 {
 }
 
 impl Project {
-    /// Returns the programs that share the locals of a program: those that it calls by M98 or that call it so, and on.
+    /// Returns the programs that share the locals of a program: they call one another by M98.
     pub(crate) fn programs_of_level(&self, key: ProgramKey) -> Vec<ProgramKey> {
         let links: Vec<_> = self
             .all_calls()
@@ -94,7 +94,7 @@ impl Project {
         names.flatten().collect()
     }
 
-    /// Returns the number of the variable that is spelled by a name, `[#TOOL_NO]`, if a SETVN of the project gives it.
+    /// Returns the number of the variable that a SETVN of the project gives a name, `[#TOOL_NO]`.
     pub(crate) fn named_variable(&self, file: FileId, range: TextRange) -> Option<u32> {
         let text = lossy(range.of(self.file(file)?.text())).to_ascii_uppercase();
         let (_, behind) = text.split_once('#')?;

@@ -119,8 +119,8 @@ impl Project {
         top
     }
 
-    /// Returns the programs and sequence numbers whose name or title contains a text, in any case; all programs for an
-    /// empty text.
+    /// Returns the programs and sequence numbers whose name or title contains a text, in any case. An empty text finds
+    /// all programs.
     pub fn workspace_symbols(&self, query: &str, limit: usize) -> Vec<WorkspaceSymbol> {
         let query = query.trim().to_ascii_uppercase();
         let mut found = Vec::new();

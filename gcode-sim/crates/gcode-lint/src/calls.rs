@@ -37,7 +37,7 @@ pub struct CallSite {
 }
 
 /// Program of a call, as far as it is known without a run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CalledProgramName {
     /// O number.
     Number(u32),

@@ -11,7 +11,7 @@ use gcode_lang::program::g_codes::{self, Effect, GCodeRow};
 use gcode_lang::program::{
     CallCode, LoweredWord, Memory, Op, OpIndex, OpKind, Program, ProgramId, Statement, WordOperand, Words,
 };
-use gcode_lang::source::Spanned;
+use gcode_lang::source::{Span, Spanned};
 use gcode_lang::syntax::ast;
 
 use super::ControlKnowledge;
@@ -36,6 +36,13 @@ pub(crate) struct CheckContext<'a> {
     unit_indices: BTreeMap<ProgramId, usize>,
 }
 
+/// Sequence number of a block that is left out of a check.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LeftOutNumber {
+    pub number: u32,
+    pub block: Span,
+}
+
 /// One program under check.
 #[derive(Debug)]
 pub(crate) struct ProgramUnit<'a> {
@@ -56,6 +63,8 @@ pub(crate) struct ProgramUnit<'a> {
     pub role: Role,
     /// Modes before each block, see `modes`.
     pub modes: OnceCell<Vec<Option<PossibleModes>>>,
+    /// Sequence numbers of the blocks that are left out, in the order of the blocks.
+    pub left_out_numbers: Vec<LeftOutNumber>,
 }
 
 /// Way in which a program is entered.
@@ -226,6 +235,7 @@ impl<'a> ProgramUnit<'a> {
             reaches_end: false,
             role: Role::Main,
             modes: OnceCell::new(),
+            left_out_numbers: Vec::new(),
             program,
         }
     }

@@ -99,7 +99,10 @@ pub fn check_loaded(
 ) -> CheckResult {
     let mut repetitions = Repetitions::default();
     let programs = load_called_programs(&mut memory, settings, library, &mut repetitions);
-    let context = CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes());
+    let mut context = CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes());
+    for (unit, id) in context.units.iter_mut().zip(&programs) {
+        unit.left_out_numbers = repetitions.take_numbers(*id);
+    }
     let mut findings = rules::findings(&context);
     if !repetitions.is_exact(&context, &findings) {
         repetitions.restore(&mut memory);
@@ -123,7 +126,11 @@ fn load_called_programs(
         // Each program finds what a main program in its folder would find.
         memory.set_main(id);
         repetitions.leave_out(memory, id, settings);
-        for target in calls::called_programs(memory.lower_program(id), settings) {
+        let mut targets = calls::called_programs(memory.lower_program(id), settings);
+        // A missing program is looked for once, not at each of its calls.
+        let mut named = BTreeSet::new();
+        targets.retain(|target| named.insert(target.clone()));
+        for target in targets {
             let called = match target {
                 CalledProgramName::Number(number) => memory.fetch(number, library),
                 CalledProgramName::Name(name) => memory.fetch_name(&name, library),

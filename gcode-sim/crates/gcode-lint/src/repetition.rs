@@ -2,8 +2,9 @@
 //!
 //! A long file consists of moves of axis words with decimal points. No rule depends on their values, only on the form of a
 //! block (its letters and its code) and the modes in which it stands. In a run of moves one block of each form in each mode
-//! stands for all of them, and the last block for the end of the run. If a rule finds something at such a block, or a
-//! sequence number that is left out may matter, all blocks are checked.
+//! stands for all of them, and the last block for the end of the run. If a rule finds something at such a block, or a jump
+//! may lead to a sequence number that is left out, all blocks are checked. The rule of repeated sequence numbers knows those
+//! that are left out.
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::control::Settings;
@@ -11,8 +12,8 @@ use gcode_lang::diag::Diagnostic;
 use gcode_lang::program::{CallOp, CallTarget, Memory, Op, OpIndex, OpKind, Program, ProgramId, WordOperand};
 use gcode_lang::source::SourceId;
 
-use super::context::CheckContext;
-use super::literal;
+use super::context::{CheckContext, LeftOutNumber};
+use super::{literal, rules};
 
 /// Programs under check of which repeated moves are left out.
 #[derive(Debug, Default)]
@@ -23,6 +24,8 @@ pub(super) struct Repetitions {
     stand_ins: BTreeSet<(SourceId, u32)>,
     /// A block within a run has a sequence number.
     has_numbers: bool,
+    /// Sequence numbers that are left out, by program.
+    numbers: BTreeMap<ProgramId, Vec<LeftOutNumber>>,
 }
 
 /// Form of a move.
@@ -67,12 +70,14 @@ impl Repetitions {
         let source = program.span.source;
         let mut is_left_out = vec![false; program.block_count()];
         let mut run = MoveRun::default();
+        let mut numbers: Vec<(OpIndex, LeftOutNumber)> = Vec::new();
         program.visit_number_blocks(|block, op| {
-            let form = op.and_then(|op| MoveForm::of(op, settings).zip(Some(op.span.start)));
-            let Some((form, start)) = form else {
+            let form = op.and_then(|op| MoveForm::of(op, settings).zip(Some(op)));
+            let Some((form, op)) = form else {
                 self.end_run(&std::mem::take(&mut run), source, &mut is_left_out);
                 return;
             };
+            let start = op.span.start;
             // A jump may lead to a number; where all blocks have one, no jump is likely.
             if form.has_number && !run.is_numbered {
                 self.end_run(&std::mem::take(&mut run), source, &mut is_left_out);
@@ -85,11 +90,15 @@ impl Repetitions {
             if is_left_out[block] {
                 self.stand_ins.insert((source, first));
                 run.last_left_out = Some((block, start));
+                let numbered = op.number.map(|number| (block, LeftOutNumber { number, block: op.span }));
+                numbers.extend(numbered);
             }
             run.modes = run.modes.after(form);
         });
         self.end_run(&run, source, &mut is_left_out);
         if is_left_out.contains(&true) {
+            let left_out = numbers.into_iter().filter(|(block, _)| is_left_out[*block]);
+            self.numbers.insert(id, left_out.map(|(_, number)| number).collect());
             let short = program.without(&is_left_out);
             self.programs.push((id, memory.replace(id, short)));
         }
@@ -107,14 +116,18 @@ impl Repetitions {
     pub(super) fn is_exact(&self, context: &CheckContext<'_>, findings: &[Diagnostic]) -> bool {
         let stands_in = |finding: &Diagnostic| {
             let place = finding.backtrace.as_ref().map(|place| (place.block.source, place.block.start));
-            place.is_some_and(|place| self.stand_ins.contains(&place))
+            finding.kind != rules::DOUBLED_N && place.is_some_and(|place| self.stand_ins.contains(&place))
         };
         let is_found = findings.iter().any(stands_in);
         let may_lead_there = |op: &Op| may_jump(op.kind());
-        let may_number_matter = self.has_numbers
-            && (context.units.iter().flat_map(|unit| unit.program.ops()).any(may_lead_there)
-                || self.programs.iter().any(|(_, program)| program.has_duplicate_numbers()));
+        let may_number_matter =
+            self.has_numbers && context.units.iter().flat_map(|unit| unit.program.ops()).any(may_lead_there);
         !is_found && !may_number_matter
+    }
+
+    /// Returns the sequence numbers that are left out of a program, in the order of the blocks.
+    pub(super) fn take_numbers(&mut self, id: ProgramId) -> Vec<LeftOutNumber> {
+        self.numbers.remove(&id).unwrap_or_default()
     }
 
     /// Puts the whole programs back.
@@ -187,7 +200,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::{check, rules};
+    use crate::check;
 
     /// Text after the moves: shortly before the end of a text no block is read as numbers alone.
     const END: &str = "(THE END OF THE WHOLE PROGRAM)\n";
@@ -228,7 +241,7 @@ mod tests {
     fn block() -> impl Strategy<Value = String> {
         let number = "-?[0-9]{1,2}\\.?[0-9]?";
         let moves = format!("(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(F[0-9]0\\.?)?");
-        let others = "M30|M99|G81Z-1\\.R1\\.|G80|#1=#2|IF\\[#1EQ#0\\]GOTO[1-4]0|GOTO[1-4]0|M98P2|M98P2Q20|WHILE\\[#1LT2\\]DO1|END1\
+        let others = "N9999 M9|M30|M99|G81Z-1\\.R1\\.|G80|#1=#2|IF\\[#1EQ#0\\]GOTO[1-4]0|GOTO[1-4]0|M98P2|M98P2Q20|WHILE\\[#1LT2\\]DO1|END1\
             |G10L52|G11|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|U5\\.|O2|M3M4|M99P20|X#1";
         let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();
         prop_oneof![6 => of(&moves), 1 => of(others)]

@@ -1,10 +1,10 @@
 //! Runs of programs for an editor, with a limit: values of variables, deviations of holes.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::Path;
 use std::sync::Arc;
 
 use gcode_control::{Limits, Outcome, Progress};
-use gcode_ide::{FileId, Project};
+use gcode_ide::{FileId, ProgramKey, Project};
 use gcode_inspect::verify::Tolerances;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::program::Library;
@@ -119,7 +119,7 @@ fn reference(
     Some(reference)
 }
 
-/// Returns the file with the main program that leads to a file: itself, if it ends a run or nothing calls it.
+/// Returns the file with the main program that leads to a file. It is the file itself if nothing calls it.
 pub(crate) fn main_of(project: &Project, file: FileId) -> FileId {
     mains_of(project, file).first().copied().unwrap_or(file)
 }
@@ -127,22 +127,17 @@ pub(crate) fn main_of(project: &Project, file: FileId) -> FileId {
 /// Returns the files with all main programs that lead to a file, the nearest first.
 pub(crate) fn mains_of(project: &Project, file: FileId) -> Vec<FileId> {
     let mut mains = Vec::new();
-    let mut seen = vec![file];
-    let mut next = 0;
-    while let Some(current) = seen.get(next).copied() {
-        let keys = project.programs().map(|(key, _)| key).filter(|key| key.file == current);
-        let callers: Vec<_> =
-            keys.flat_map(|key| project.incoming_calls(key)).map(|group| group.item.key.file).collect();
-        let callers: Vec<_> = callers.into_iter().filter(|caller| *caller != current).collect();
+    let mut known = BTreeSet::from([file]);
+    let mut waiting = VecDeque::from([file]);
+    while let Some(current) = waiting.pop_front() {
+        let count = project.file(current).map_or(0, |index| index.programs().len());
+        let keys = (0..count).map(|program| ProgramKey { file: current, program });
+        let callers = keys.flat_map(|key| project.incoming_calls(key)).map(|group| group.item.key.file);
+        let callers: Vec<_> = callers.filter(|caller| *caller != current).collect();
         if callers.is_empty() {
             mains.push(current);
         }
-        for caller in callers {
-            if !seen.contains(&caller) {
-                seen.push(caller);
-            }
-        }
-        next += 1;
+        waiting.extend(callers.into_iter().filter(|caller| known.insert(*caller)));
     }
     if mains.is_empty() { vec![file] } else { mains }
 }

@@ -1,10 +1,11 @@
-//! Commands of the lenses above a program: run, verify, show, debug; and renumber.
+//! Commands of the lenses above a program: run, verify, prove, show, debug; and renumber.
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use gcode_control::Progress;
 use gcode_ide::{FileId, ProgramKey};
+use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
 use gcode_lang::syntax::ast::ProgramPath;
 use gcode_part::job::control_file;
@@ -27,15 +28,19 @@ use crate::snapshot::Snapshot;
 /// Setting with the family of controls.
 const DIALECT: &str = "DIALECT";
 
+/// Claim of a proof without claims.
+const NO_ALARM: &str = "no-alarm";
+
 const RUN: &str = "gcode-sim.run";
 const VERIFY: &str = "gcode-sim.verify";
+const PROVE: &str = "gcode-sim.prove";
 const SHOW: &str = "gcode-sim.show";
 const PAGE: &str = "gcode-sim.page";
 const DEBUG: &str = "gcode-sim.debug";
 const RENUMBER: &str = "gcode-sim.renumber";
 
 /// All commands, as the server announces them.
-pub(crate) const ALL: [&str; 6] = [RUN, VERIFY, SHOW, PAGE, DEBUG, RENUMBER];
+pub(crate) const ALL: [&str; 7] = [RUN, VERIFY, PROVE, SHOW, PAGE, DEBUG, RENUMBER];
 
 /// Argument of each command: a program of a document.
 #[derive(Debug, Serialize, Deserialize)]
@@ -47,6 +52,18 @@ struct Target {
     /// Text to run instead of the document's: the arguments of a call are tried without an edit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     text: Option<String>,
+    /// Ranges of variables of a proof, `#1=0.1..9.9`; without them the program is proved as it starts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    ranges: Vec<String>,
+    /// Claims of a proof; without them that no alarm is raised.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    claims: Vec<String>,
+}
+
+impl Target {
+    fn new(uri: Uri, program: Option<String>) -> Self {
+        Self { uri, program, text: None, ranges: Vec::new(), claims: Vec::new() }
+    }
 }
 
 /// Result of a command, and what the client is told beside it.
@@ -77,9 +94,8 @@ pub(crate) fn code_lenses(
         let range = text.range(outline.name_range.start, outline.name_range.end);
         let is_named = !outline.name_range.is_empty();
         let label = snapshot.project.label(key);
-        let target =
-            Target { uri: params.text_document.uri.clone(), program: is_named.then_some(label), text: None };
-        let commands = [("Run", RUN), ("Verify", VERIFY), ("Show", SHOW), ("Debug", DEBUG)];
+        let target = Target::new(params.text_document.uri.clone(), is_named.then_some(label));
+        let commands = [("Run", RUN), ("Verify", VERIFY), ("Prove", PROVE), ("Show", SHOW), ("Debug", DEBUG)];
         for (title, command) in commands {
             let arguments = Some(vec![json!(target)]);
             let command = Command { title: title.to_owned(), command: command.to_owned(), arguments };
@@ -107,6 +123,7 @@ pub(crate) fn execute(
     match name {
         RUN => run(snapshot, &setup, &request),
         VERIFY => verify(snapshot, &setup, &request),
+        PROVE => prove(snapshot, &setup, &request, &target),
         SHOW => show(snapshot, &setup, &request),
         PAGE => page(snapshot, &setup, &request),
         DEBUG => Ok(CommandResult::new(launch(snapshot, &setup, &target))),
@@ -121,7 +138,7 @@ fn target(params: &ExecuteCommandParams) -> Result<Target, Failure> {
     let target = match argument {
         Value::String(_) => Uri::deserialize(argument).map(|uri| {
             let program = params.arguments.get(1).and_then(Value::as_str).map(str::to_owned);
-            Target { uri, program, text: None }
+            Target::new(uri, program)
         }),
         _ => Target::deserialize(argument),
     };
@@ -198,6 +215,28 @@ fn verify(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Resul
     let kind = if is_pass { MessageType::INFO } else { MessageType::ERROR };
     let worst = report.get("worst").and_then(Value::as_f64).map(|worst| format!(", worst Φ{worst:.4}"));
     let text = format!("{}{} of Φ{}", part("verdict"), worst.unwrap_or_default(), part("tolerance"));
+    Ok(CommandResult { message: Some((kind, text)), ..CommandResult::new(report) })
+}
+
+/// Proves the claims of the argument, for the ranges of the argument.
+fn prove(
+    snapshot: &Snapshot,
+    setup: &ProgramSetup,
+    request: &Request,
+    target: &Target,
+) -> Result<CommandResult, Failure> {
+    let claims = if target.claims.is_empty() { vec![NO_ALARM.to_owned()] } else { target.claims.clone() };
+    let libraries = || -> Box<dyn Library> { Box::new(setup.library(&snapshot.files)) };
+    let host = snapshot.files.host();
+    let report =
+        host.proof_report(request, &libraries, (&target.ranges, &claims)).map_err(Failure::refused)?;
+    let verdict = report.get("verdict").map(plain).unwrap_or_default();
+    let kind = if verdict == "proved" { MessageType::INFO } else { MessageType::WARNING };
+    let ranges = match target.ranges.is_empty() {
+        true => "from the start of the program".to_owned(),
+        false => format!("for {}", target.ranges.join(", ")),
+    };
+    let text = format!("{verdict} {ranges}: {}", claims.join(", "));
     Ok(CommandResult { message: Some((kind, text)), ..CommandResult::new(report) })
 }
 

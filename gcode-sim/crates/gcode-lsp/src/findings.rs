@@ -77,7 +77,7 @@ pub(crate) fn check(
     (document, checked)
 }
 
-/// Returns the exact place of a finding; the block for one that lies between two characters, where an editor marks nothing.
+/// Returns the exact place of a finding. One between two characters, where an editor marks nothing, has its block.
 fn place(finding: &Finding) -> Option<Span> {
     let block = finding.backtrace.as_ref().map(|backtrace| backtrace.block);
     finding.span.filter(|span| span.start < span.end).or(block).or(finding.span)

@@ -1,4 +1,4 @@
-//! Inlay hints of a run: values of variables that a block has once and for all, deviations of holes at their calls.
+//! Inlay hints of a run: single values of variables, and deviations of holes at their calls.
 use std::sync::Arc;
 
 use gcode_control::Progress;
@@ -64,7 +64,7 @@ fn value_hints(
     hints.collect()
 }
 
-/// Returns the hint of a block: each variable of the program that has one value in all its executions; an assigned one alone.
+/// Returns the hint of a block: the variables with one value in all its executions, an assigned one alone.
 fn values_of_block(text: &TextDocument, executed: &ExecutedBlock, settings: &Settings) -> Option<String> {
     let assigned: Vec<_> = of_role(executed, VariableRole::Assigned).collect();
     let block = &text.bytes()[executed.block.start as usize..executed.block.end as usize];

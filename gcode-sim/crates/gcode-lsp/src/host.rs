@@ -6,6 +6,9 @@ use gcode_session::Request;
 use gcode_session::files::FileAccess;
 use serde_json::Value;
 
+/// Function that returns the called programs for one thread of a proof.
+pub type LibrarySource<'a> = &'a (dyn Fn() -> Box<dyn Library> + Sync);
+
 /// What the server needs of its surroundings.
 pub trait Host: FileAccess + Send + Sync {
     /// Returns a stamp of a file that differs after a change; `None` for a file that does not exist.
@@ -40,6 +43,17 @@ pub trait Host: FileAccess + Send + Sync {
         request: &Request,
         library: &mut dyn Library,
         reference: &Path,
+    ) -> Result<Value, String>;
+
+    /// Proves claims on a program for ranges of its variables and returns the document of `gcode-sim prove --format json`.
+    ///
+    /// # Errors
+    /// A range or a claim cannot be read, or the run cannot begin.
+    fn proof_report(
+        &self,
+        request: &Request,
+        libraries: LibrarySource<'_>,
+        ranges_and_claims: (&[String], &[String]),
     ) -> Result<Value, String>;
 
     /// Writes the page of a program, with its verdict if there is a reference, and returns the page's file.

@@ -13,7 +13,7 @@
 //!
 //! use gcode_lang::program::Library;
 //! use gcode_lang::source::Bytes;
-//! use gcode_lsp::{Ending, Host, serve};
+//! use gcode_lsp::{Ending, Host, LibrarySource, serve};
 //! use gcode_session::Request;
 //! use gcode_session::files::FileAccess;
 //! use lsp_server::{Connection, Message, Notification};
@@ -54,6 +54,14 @@
 //!     }
 //!     fn verdict_report(&self, _: &Request, _: &mut dyn Library, _: &Path) -> Result<Value, String> {
 //!         Err("no reports".to_owned())
+//!     }
+//!     fn proof_report(
+//!         &self,
+//!         _: &Request,
+//!         _: LibrarySource<'_>,
+//!         _: (&[String], &[String]),
+//!     ) -> Result<Value, String> {
+//!         Err("no proofs".to_owned())
 //!     }
 //!     fn write_page(&self, _: &Request, _: &mut dyn Library, _: Option<&Path>) -> Result<PathBuf, String> {
 //!         Err("no pages".to_owned())
@@ -103,5 +111,5 @@ mod text_document;
 mod text_help;
 mod workspace_scan;
 
-pub use host::Host;
+pub use host::{Host, LibrarySource};
 pub use server::{Ending, serve};

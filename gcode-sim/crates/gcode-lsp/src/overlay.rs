@@ -1,4 +1,5 @@
-//! Files as the editor sees them: open documents cover those on the disk, and files that were read are kept until they change.
+//! Files as the editor sees them: open documents cover those on the disk. Files that were read are kept until they
+//! change.
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -67,12 +68,13 @@ impl Overlay {
     /// Returns the files of a folder of the host.
     fn listing(&self, folder: &Path) -> Result<Vec<PathBuf>, String> {
         let Some(stamp) = self.host.stamp(folder) else { return self.host.files(folder) };
-        let mut listings = self.listings.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(listing) = listings.get(folder).filter(|listing| listing.stamp == stamp) {
+        let listings = || self.listings.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(listing) = listings().get(folder).filter(|listing| listing.stamp == stamp) {
             return Ok(listing.files.clone());
         }
+        // A slow disk keeps no other thread waiting: no lock is held while it is read.
         let files = self.host.files(folder)?;
-        listings.insert(folder.to_owned(), FolderListing { stamp, files: files.clone() });
+        listings().insert(folder.to_owned(), FolderListing { stamp, files: files.clone() });
         Ok(files)
     }
 
@@ -83,13 +85,12 @@ impl Overlay {
     /// Returns what `value` takes of the current content of a file.
     fn cached<T>(&self, path: &Path, value: impl FnOnce(&mut CachedFile) -> T) -> T {
         let stamp = self.host.stamp(path).unwrap_or_default();
-        let mut cache = self.cache();
-        if let Some(file) = cache.get_mut(path).filter(|file| file.stamp == stamp) {
+        if let Some(file) = self.cache().get_mut(path).filter(|file| file.stamp == stamp) {
             return value(file);
         }
         let mut file = CachedFile { stamp, content: self.host.program(path), programs: None };
         let result = value(&mut file);
-        cache.insert(path.to_owned(), file);
+        self.cache().insert(path.to_owned(), file);
         result
     }
 }

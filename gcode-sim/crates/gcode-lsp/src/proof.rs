@@ -1,14 +1,16 @@
 //! Proof that an edit changes nothing: the programs run before and after, and everything that they do is compared.
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
-use gcode_control::{Limits, OperatorStop, Outcome, Progress};
-use gcode_ide::{FileEdit, FileId, TextEdit, apply_edits};
+use gcode_control::{Control, Limits, Observer, OperatorStop, Outcome, Progress};
+use gcode_ide::{FileEdit, FileId, ProgramKey, ProgramOutline, TextEdit, TextRange, apply_edits};
 use gcode_lang::alarm::AlarmCode;
 use gcode_lang::motion::{Event, EventKind, EventSink};
+use gcode_lang::program::{Memory, ProgramId};
 use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::ast::{ProgramName, ProgramPath};
 use gcode_session::{Request, Run};
@@ -44,25 +46,137 @@ pub(crate) fn prove(
         let path = edited.path(*file);
         edited.files.open(path, text.clone());
     }
+    let states = ProvedStates { old: snapshot, new: &edited, texts: &texts, renamed, progress };
+    // An edit that no run has executed proves nothing by equal runs.
+    let mut unreached = edited_programs(snapshot, edits);
     let mains: BTreeSet<FileId> = texts.keys().flat_map(|file| mains_of(&snapshot.project, *file)).collect();
     for main in mains {
-        let Some(old) = snapshot.project.file(main).map(|index| index.text().clone()) else { continue };
-        let new = texts.get(&main).unwrap_or(&old);
         for program in main_programs(snapshot, main) {
-            let request = |state: &Snapshot, text: &Bytes| {
-                let mut request = state.setup(main).request(text.clone());
-                request.main = program.clone();
-                request.limits = Limits { blocks: MAX_BLOCKS };
-                request.settings.main_program_cycles.get_or_insert(1);
-                request.progress = Some(Arc::clone(progress));
-                request
-            };
-            let old = Side { snapshot, file: main, request: request(snapshot, &old) };
-            let new = Side { snapshot: &edited, file: main, request: request(&edited, new) };
-            compare(&old, &new, renamed)?;
+            let reached = states.compare_runs(main, program)?;
+            unreached.retain(|program| !program.is_among(&reached));
+        }
+    }
+    // A subprogram that nothing calls, or whose callers end before, runs alone, with vacant arguments.
+    for program in unreached {
+        let compared = states.compare_runs(program.file, program.name.clone());
+        let reached = compared
+            .map_err(|why| format!("no run of a main program reaches {}; alone, {why}", program.label))?;
+        if !program.is_among(&reached) {
+            return Err(format!("no run reaches {}, so that nothing is proved of it", program.label));
         }
     }
     Ok(())
+}
+
+/// Program that an edit changes.
+struct EditedProgram {
+    file: FileId,
+    path: PathBuf,
+    range: TextRange,
+    /// `None` for a program without a name.
+    name: Option<ProgramPath>,
+    label: String,
+}
+
+/// Executed program: its file and its range there.
+type ReachedProgram = (PathBuf, TextRange);
+
+impl EditedProgram {
+    fn is_among(&self, reached: &[ReachedProgram]) -> bool {
+        reached.iter().any(|(path, range)| {
+            *path == self.path && range.start < self.range.end && self.range.start < range.end
+        })
+    }
+}
+
+/// Returns the programs whose texts edits change.
+fn edited_programs(snapshot: &Snapshot, edits: &[FileEdit]) -> Vec<EditedProgram> {
+    let project = &snapshot.project;
+    let is_edited = |file: FileId, range: TextRange| {
+        edits.iter().any(|edit| {
+            let place = edit.edit.range;
+            edit.file == file && place.start < range.end && range.start <= place.start.max(place.end)
+        })
+    };
+    let edited = project.programs().filter(|(key, outline)| is_edited(key.file, outline.range));
+    let program = |(key, outline): (ProgramKey, &ProgramOutline)| EditedProgram {
+        file: key.file,
+        path: snapshot.path(key.file),
+        range: outline.range,
+        name: program_path(outline),
+        label: project.label(key),
+    };
+    edited.map(program).collect()
+}
+
+fn program_path(outline: &ProgramOutline) -> Option<ProgramPath> {
+    let is_named = outline.name != ProgramName::Unnamed;
+    is_named.then(|| ProgramPath { folder: outline.folder.clone(), name: outline.name.clone() })
+}
+
+/// The texts before and after the edits.
+struct ProvedStates<'a> {
+    old: &'a Snapshot,
+    new: &'a Snapshot,
+    /// Texts of the edited files.
+    texts: &'a BTreeMap<FileId, Bytes>,
+    renamed: &'a RenamedVariables,
+    progress: &'a Arc<Progress>,
+}
+
+impl ProvedStates<'_> {
+    /// Runs a main program in both states, and returns the programs that the old one executes.
+    fn compare_runs(
+        &self,
+        main: FileId,
+        program: Option<ProgramPath>,
+    ) -> Result<Vec<ReachedProgram>, String> {
+        let Some(old) = self.old.project.file(main).map(|index| index.text().clone()) else {
+            return Ok(Vec::new());
+        };
+        let new = self.texts.get(&main).unwrap_or(&old);
+        let request = |state: &Snapshot, text: &Bytes| {
+            let mut request = state.setup(main).request(text.clone());
+            request.main = program.clone();
+            request.limits = Limits { blocks: MAX_BLOCKS };
+            request.settings.main_program_cycles.get_or_insert(1);
+            request.progress = Some(Arc::clone(self.progress));
+            request
+        };
+        let old = Side { snapshot: self.old, file: main, request: request(self.old, &old) };
+        let new = Side { snapshot: self.new, file: main, request: request(self.new, new) };
+        compare(&old, &new, self.renamed)
+    }
+}
+
+/// Records which programs a run executes.
+#[derive(Default)]
+struct ReachObserver {
+    programs: BTreeSet<ProgramId>,
+    last: Option<ProgramId>,
+}
+
+impl Observer for ReachObserver {
+    fn before_block(&mut self, control: &mut Control) {
+        let program = control.program_at_work();
+        if self.last.replace(program) != Some(program) {
+            self.programs.insert(program);
+        }
+    }
+
+    fn after_block(&mut self, _: &Control) {}
+}
+
+impl ReachObserver {
+    /// Returns the executed programs.
+    fn reached(&self, memory: &Memory) -> Vec<ReachedProgram> {
+        let place = |id: &ProgramId| {
+            let span = memory.get(*id).span;
+            let source = memory.sources().get(span.source);
+            (PathBuf::from(&source.name), TextRange::new(span.start, span.end))
+        };
+        self.programs.iter().map(place).collect()
+    }
 }
 
 /// Returns the texts of the edited files.
@@ -88,11 +202,7 @@ fn main_programs(snapshot: &Snapshot, file: FileId) -> Vec<Option<ProgramPath>> 
     if own.len() < 2 || mains.is_empty() {
         return vec![None];
     }
-    let path = |(_, outline): &&(_, &gcode_ide::ProgramOutline)| {
-        let is_named = outline.name != ProgramName::Unnamed;
-        is_named.then(|| ProgramPath { folder: outline.folder.clone(), name: outline.name.clone() })
-    };
-    mains.iter().map(path).collect()
+    mains.iter().map(|(_, outline)| program_path(outline)).collect()
 }
 
 /// One side of a comparison.
@@ -103,9 +213,10 @@ struct Side<'a> {
 }
 
 impl Side<'_> {
-    fn run(&self, sink: &mut impl EventSink) -> Result<Run, String> {
+    fn run(&self, sink: &mut impl EventSink, observer: &mut impl Observer) -> Result<Run, String> {
         let mut library = self.snapshot.setup(self.file).library(&self.snapshot.files);
-        let run = gcode_session::run(&self.request, &mut library, sink).map_err(|error| error.to_string())?;
+        let run = gcode_session::run_observed(&self.request, &mut library, sink, observer)
+            .map_err(|error| error.to_string())?;
         match (&run.outcome, run.control.is_cancelled()) {
             (Outcome::Limit, true) => Err("the run takes too long: it was ended before its end".to_owned()),
             (Outcome::Limit, false) => {
@@ -120,18 +231,23 @@ impl Side<'_> {
 /// Event without its place.
 type Action = (EventKind, u64);
 
-/// Compares two runs event by event, while both go on.
-fn compare(old: &Side<'_>, new: &Side<'_>, renamed: &RenamedVariables) -> Result<(), String> {
+/// Compares two runs event by event, while both go on, and returns the programs that the old one executes.
+fn compare(
+    old: &Side<'_>,
+    new: &Side<'_>,
+    renamed: &RenamedVariables,
+) -> Result<Vec<ReachedProgram>, String> {
     let (sender, receiver) = sync_channel(BATCHES);
     let (old_run, new_run, first) = std::thread::scope(|scope| {
         let old_run = scope.spawn(move || {
             let mut recorder = ActionSender { sender: Some(sender), batch: Vec::new() };
-            let run = old.run(&mut recorder);
+            let mut reach = ReachObserver::default();
+            let run = old.run(&mut recorder, &mut reach);
             recorder.flush();
-            run
+            run.map(|run| (reach.reached(run.control.memory()), run))
         });
         let comparer = RefCell::new(ActionComparer { receiver, batch: Vec::new().into_iter(), first: None });
-        let new_run = new.run(&mut SharedComparer(&comparer));
+        let new_run = new.run(&mut SharedComparer(&comparer), &mut ());
         let mut comparer = comparer.into_inner();
         let is_longer = comparer.first.is_none() && new_run.is_ok() && comparer.next().is_some();
         let first = comparer.first.take();
@@ -140,7 +256,7 @@ fn compare(old: &Side<'_>, new: &Side<'_>, renamed: &RenamedVariables) -> Result
         let old_run = old_run.join().unwrap_or_else(|_| Err("the run failed".to_owned()));
         (old_run, new_run, if is_longer { Some(None) } else { first.map(Some) })
     });
-    let (old_run, new_run) = (old_run?, new_run?);
+    let ((reached, old_run), new_run) = (old_run?, new_run?);
     let line = |span: Span| new_run.locate(span);
     match first {
         Some(Some(span)) => {
@@ -165,7 +281,7 @@ fn compare(old: &Side<'_>, new: &Side<'_>, renamed: &RenamedVariables) -> Result
         return Err(format!("#{number} would have another value at the end"));
     }
     let is_same = old.output == new.output && old.stops == new.stops;
-    if is_same { Ok(()) } else { Err("the output of the program would change".to_owned()) }
+    if is_same { Ok(reached) } else { Err("the output of the program would change".to_owned()) }
 }
 
 /// End of a run, as far as it does not name places.
@@ -257,7 +373,6 @@ pub(crate) fn cancel(progress: &Progress) {
 mod tests {
     use super::*;
     use crate::testing::opened;
-    use gcode_ide::TextRange;
 
     /// Proves the replacement of one part of O0001 by another, among documents.
     fn replaced(documents: &[(&str, &str)], old: &str, new: &str) -> Result<(), String> {
@@ -296,6 +411,17 @@ mod tests {
             let found = replaced(&documents, old, new).unwrap_err();
             assert!(found.starts_with(why), "{old}: {found}");
         }
+    }
+
+    #[test]
+    fn a_program_that_no_main_program_reaches_runs_alone() {
+        // The alarm of the main program ends its run before the call.
+        let text = "O0001\n#3000=1(STOP)\nM98P2\nM30\nO0002\n#100=3\nG00X1.\nM99\n";
+        assert_eq!(replaced(&[("O0001.nc", text)], "G00X1.", "G00 X1."), Ok(()));
+        let why = replaced(&[("O0001.nc", text)], "X1.", "X2.").unwrap_err();
+        let expected =
+            "no run of a main program reaches O0002; alone, the machine would do something else from line";
+        assert!(why.starts_with(expected), "{why}");
     }
 
     #[test]

@@ -176,7 +176,9 @@ impl Snapshot {
     ) {
         let Some(open) = self.documents.get(&file).cloned() else { return };
         let mut text = open.text;
-        for change in changes {
+        // A whole text makes the changes before it void.
+        let first = changes.iter().rposition(|change| change.range.is_none()).unwrap_or_default();
+        for change in changes.into_iter().skip(first) {
             let Some(range) = change.range else {
                 self.set_text(file, change.text.into_bytes().into());
                 let Some(index) = self.project.file(file) else { return };

@@ -1,4 +1,4 @@
-//! State of the server: the snapshot that requests work on, the work in the background, and what the client was told.
+//! State of the server: the snapshot of all texts, the work in the background, and the published diagnostics.
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -169,6 +169,11 @@ impl ServerState {
     pub(crate) fn read_within_budget(&mut self, path: &Path) {
         use gcode_session::files::FileAccess;
         let length = self.snapshot.files.program(path).map_or(0, |text| text.len());
+        // A program that was read before counts once.
+        let index = document_uri::of_path(path).and_then(|uri| self.snapshot.known(&uri));
+        let known =
+            index.and_then(|file| self.snapshot.project.file(file)).map_or(0, |file| file.text().len());
+        self.read_bytes = self.read_bytes.saturating_sub(known);
         if self.read_bytes + length <= MAX_NEIGHBOURS {
             self.read_bytes += length;
             self.snapshot.read(path);
@@ -368,6 +373,8 @@ impl ServerState {
         let (files, folders) = (self.snapshot.files.clone(), Arc::clone(&self.snapshot.folders));
         let answers = self.background.clone();
         std::thread::spawn(move || {
+            // Requests wait for the end of the scan, which a panic in it must not take away.
+            let _end = ScanEnd(answers.clone());
             let mut batch = Vec::new();
             workspace_scan::scan(&files, &folders, |path| {
                 batch.push(path);
@@ -378,7 +385,6 @@ impl ServerState {
             if !batch.is_empty() {
                 _ = answers.send(BackgroundAnswer::Scanned(batch));
             }
-            _ = answers.send(BackgroundAnswer::Scanned(Vec::new()));
         });
     }
 
@@ -389,6 +395,15 @@ impl ServerState {
             self.send(Failure::cancelled().response(id.clone()));
         }
         self.end_request(id, Failure::cancelled());
+    }
+}
+
+/// Announces the end of the scan of the workspace when it is dropped.
+struct ScanEnd(Sender<BackgroundAnswer>);
+
+impl Drop for ScanEnd {
+    fn drop(&mut self) {
+        _ = self.0.send(BackgroundAnswer::Scanned(Vec::new()));
     }
 }
 

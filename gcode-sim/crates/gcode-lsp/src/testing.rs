@@ -11,7 +11,7 @@ use gcode_session::files::FileAccess;
 use lsp_types::Uri;
 use serde_json::Value;
 
-use crate::host::Host;
+use crate::host::{Host, LibrarySource};
 use crate::overlay::Overlay;
 use crate::snapshot::Snapshot;
 
@@ -58,6 +58,15 @@ impl Host for NoFiles {
 
     fn verdict_report(&self, _: &Request, _: &mut dyn Library, _: &Path) -> Result<Value, String> {
         Err("no reports".to_owned())
+    }
+
+    fn proof_report(
+        &self,
+        _: &Request,
+        _: LibrarySource<'_>,
+        _: (&[String], &[String]),
+    ) -> Result<Value, String> {
+        Err("no proofs".to_owned())
     }
 
     fn write_page(&self, _: &Request, _: &mut dyn Library, _: Option<&Path>) -> Result<PathBuf, String> {

@@ -61,7 +61,7 @@ impl TextDocument {
         start + self.length(line, character) as u32
     }
 
-    /// Returns the number of bytes in the first `character` units of a line, at most those of the line, without half a character.
+    /// Returns the number of bytes in the first `character` units of a line, without half a character.
     fn length(&self, line: &[u8], character: usize) -> usize {
         if self.encoding == PositionEncoding::Utf8 {
             let mut length = character.min(line.len());

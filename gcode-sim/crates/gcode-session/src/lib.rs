@@ -25,6 +25,7 @@ mod assumptions;
 mod causes;
 mod completion;
 mod error;
+pub mod file_uri;
 pub mod files;
 mod marked_events;
 mod open_depths;

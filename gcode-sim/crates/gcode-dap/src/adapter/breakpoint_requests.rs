@@ -13,7 +13,7 @@ use crate::protocol::bodies::{self, BreakpointChange, Breakpoints, FilterAnswer,
 use gcode_control::static_eval::VariableTable;
 use gcode_lang::control::Settings;
 use gcode_lang::program::Expression;
-use gcode_lang::syntax::ast::ProgramPath;
+use gcode_lang::syntax::ast::{ProgramName, ProgramPath};
 
 /// Largest number of a local.
 const LAST_LOCAL: u32 = 33;
@@ -37,7 +37,7 @@ impl<H: Host> Adapter<H> {
         body(Breakpoints { breakpoints: answers })
     }
 
-    /// Finds the blocks of the breakpoints in a file, hands them to the run, and keeps the request for the next one.
+    /// Sets the breakpoints of a file at their blocks, and keeps the request for the next run.
     fn set_lines(&mut self, canonical: &str, mut requested: RequestedLines) -> Vec<bodies::Breakpoint> {
         let (mut answers, mut set) = (Vec::new(), Vec::new());
         for (id, one) in &requested.breakpoints {
@@ -73,7 +73,7 @@ impl<H: Host> Adapter<H> {
         answers
     }
 
-    /// Finds the blocks of all breakpoints on lines in the texts of a new run, and tells the client which have changed.
+    /// Finds the blocks of all breakpoints on lines in the texts of a new run, and reports the changed ones.
     pub(super) fn set_lines_again(&mut self) {
         for (canonical, requested) in std::mem::take(&mut self.breakpoints.lines) {
             let before = requested.answers.clone();
@@ -102,14 +102,18 @@ impl<H: Host> Adapter<H> {
 
     /// Returns why a breakpoint on a program can't be hit; `None` before the launch, when nothing is known of it.
     fn missing_program(&mut self, place: &ProgramPlace) -> Option<String> {
-        let (session, name) = (self.session.as_mut()?, place.name.as_ref()?);
-        let is_missing = !session.debuggee.has_program(name);
-        is_missing
-            .then(|| format!("{} is not in the program's file, its folder or the library", name.label()))
+        let debuggee = &mut self.session.as_mut()?.debuggee;
+        let name = place.name.as_ref();
+        if let Some(name) = name.filter(|name| !debuggee.has_program(name)) {
+            return Some(format!("{} is not in the program's file, its folder or the library", name.label()));
+        }
+        let number = place.number.filter(|number| !debuggee.has_number(name, *number))?;
+        let program = name.map_or_else(|| "the main program".to_owned(), ProgramName::label);
+        Some(format!("{program} has no block N{number}"))
     }
 
-    /// Tells the client which breakpoints on programs, set before the launch, can't be hit.
-    pub(super) fn tell_missing_programs(&mut self) {
+    /// Reports the breakpoints on programs, set before the launch, that can't be hit.
+    pub(super) fn report_missing_programs(&mut self) {
         for one in self.breakpoints.programs.clone() {
             if let Some(reason) = self.missing_program(&one.place) {
                 let breakpoint = answer(one.id, Some(&reason));
@@ -135,8 +139,7 @@ impl<H: Host> Adapter<H> {
             Some(number) => Ok(number),
             None => target(self.standing()?.debuggee.control(), &arguments.name, level),
         };
-        let settings =
-            self.session.as_ref().map(|session| session.request.settings.clone()).unwrap_or_default();
+        let settings = self.settings();
         body(match number {
             Ok(number @ (0 | 3000 | 3006)) => refused(format!("#{number} keeps no value")),
             Ok(number) => {
@@ -156,11 +159,22 @@ impl<H: Host> Adapter<H> {
         })
     }
 
+    /// Returns the settings of the launched control, before the launch those of a control without options.
+    fn settings(&self) -> Settings {
+        self.session.as_ref().map(|session| session.request.settings.clone()).unwrap_or_default()
+    }
+
     pub(super) fn set_data_breakpoints(&mut self, arguments: &SetDataBreakpoints) -> Answer {
+        let settings = self.settings();
         let (mut answers, mut set) = (Vec::new(), Vec::new());
         for one in &arguments.breakpoints {
             let id = self.breakpoints.next_id();
-            let found = variable_place(one).and_then(|place| Ok((place, conditions(&one.conditions)?)));
+            let found = variable_place(one).and_then(|place| {
+                let is_never_written = !place.on_read && !is_written(place.number, &settings);
+                let refused = || format!("#{} is written by no program: break on its read", place.number);
+                (!is_never_written).then_some(place).ok_or_else(refused)
+            });
+            let found = found.and_then(|place| Ok((place, conditions(&one.conditions)?)));
             answers.push(answer(id, found.as_ref().err()));
             set.extend(found.ok().map(|(place, conditions)| Breakpoint::new(id, place, conditions)));
         }

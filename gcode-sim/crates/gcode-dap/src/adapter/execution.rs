@@ -5,7 +5,7 @@ use super::stack::GotoTarget;
 use super::{Adapter, Answer, Host, THREAD, body, check_thread};
 use crate::debuggee::{Goal, OutputLine, Stop};
 use crate::protocol::arguments::{Goto, GotoTargets, Thread};
-use crate::protocol::bodies::{self, Continue, ExceptionDetails, ExceptionInfo, Output, Stopped};
+use crate::protocol::bodies::{self, Continue, ExceptionDetails, ExceptionInfo, Output, StopEvent};
 use crate::run::{Change, ChangeRefusal};
 use gcode_lang::source::Span;
 
@@ -127,7 +127,7 @@ impl<H: Host> Adapter<H> {
     pub(super) fn stop(&mut self, stop: Stop) {
         self.goal = None;
         self.exception = None;
-        let mut stopped = Stopped {
+        let mut stopped = StopEvent {
             reason: "step",
             description: None,
             thread_id: THREAD,
@@ -136,7 +136,7 @@ impl<H: Host> Adapter<H> {
             hit_breakpoint_ids: Vec::new(),
         };
         match stop {
-            Stop::End(end) => return self.tell_end(end),
+            Stop::End(end) => return self.report_end(end),
             Stop::Entry => stopped.reason = "entry",
             Stop::Step => {}
             Stop::Goto => stopped.reason = "goto",

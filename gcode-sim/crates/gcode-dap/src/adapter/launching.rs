@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::{Adapter, Answer, Client, Host, Session, body, read};
 use crate::debuggee::{Debuggee, End, FILTERS, Goal, Stop};
 use crate::protocol::arguments::{Initialize, Launch, Restart};
-use crate::protocol::bodies::{Capabilities, ExceptionFilter, Exited};
+use crate::protocol::bodies::{Capabilities, ExceptionFilter, ExitEvent};
 use crate::run::ReversibleRun;
 
 /// Exit codes of a run, as those of `gcode-sim run`.
@@ -80,14 +80,14 @@ impl<H: Host> Adapter<H> {
             reference: launched.reference,
             has_begun: false,
             has_ended: false,
-            told_sources: 0,
+            reported_sources: 0,
         });
         self.exception = None;
         self.goto_targets.clear();
         // The files may have changed since their breakpoints were set.
         self.files.forget_texts();
         self.set_lines_again();
-        self.tell_missing_programs();
+        self.report_missing_programs();
         Ok(())
     }
 
@@ -105,7 +105,7 @@ impl<H: Host> Adapter<H> {
             return;
         };
         session.has_begun = true;
-        self.tell_sources();
+        self.report_sources();
         if stops {
             if let Some(session) = &mut self.session {
                 session.debuggee.stand_here();
@@ -133,7 +133,7 @@ impl<H: Host> Adapter<H> {
         self.goal = None;
         if self.session.as_ref().is_some_and(|session| !session.has_ended) {
             // As an interrupted `gcode-sim run`.
-            self.tell_end(End::Stopped);
+            self.report_end(End::Stopped);
         }
         Ok(Value::Null)
     }
@@ -146,12 +146,12 @@ impl<H: Host> Adapter<H> {
     }
 
     /// Tells the client that the run has ended.
-    pub(super) fn tell_end(&mut self, end: End) {
+    pub(super) fn report_end(&mut self, end: End) {
         if let Some(session) = &mut self.session {
             session.has_ended = true;
         }
         let exit_code = if end == End::Program { PASSED } else { STOPPED };
-        self.outbox.event("exited", Exited { exit_code });
+        self.outbox.event("exited", ExitEvent { exit_code });
         self.outbox.event("terminated", Value::Null);
     }
 }

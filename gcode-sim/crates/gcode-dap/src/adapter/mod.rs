@@ -106,7 +106,7 @@ struct Session {
     has_begun: bool,
     has_ended: bool,
     /// Number of files that the client has been told of.
-    told_sources: usize,
+    reported_sources: usize,
 }
 
 impl<H: Host> Adapter<H> {
@@ -174,7 +174,7 @@ impl<H: Host> Adapter<H> {
         let mut output = Vec::new();
         let stop = session.debuggee.advance(&mut goal, SLICE, &mut output);
         self.goal = Some(goal);
-        self.tell_sources();
+        self.report_sources();
         output.iter().for_each(|line| self.write(line));
         if let Some(stop) = stop {
             self.stop(stop);

@@ -33,7 +33,7 @@ impl ProgramFile {
         String::from_utf8_lossy(&self.memory.sources().get(SourceId(0)).bytes).into_owned()
     }
 
-    /// Returns the block on a line at or before a column, or else the first block behind the line in the same program.
+    /// Returns the block on a line at or before a column, else the next block of the program.
     pub(super) fn block_from(&mut self, line: u32, column: Option<u32>) -> Result<BlockSite, String> {
         let source = std::sync::Arc::clone(self.memory.sources().get(SourceId(0)));
         let range = source.line_range(line).ok_or_else(|| format!("the file has no line {line}"))?;

@@ -1,12 +1,12 @@
 //! Sources: which file a client means, where a block is, and the texts of programs.
+use std::path::Path;
+
 use super::program_files::{BlockSite, ProgramFile};
 use super::{Adapter, Answer, Host, body};
 use crate::protocol::arguments::{self, BreakpointLocations, SourceText};
 use crate::protocol::bodies::{self, LoadedSource, LoadedSources, Location, Source};
 use gcode_lang::source::{SourceId, Span};
-
-/// Scheme of the paths of clients that use URIs.
-const FILE_SCHEME: &str = "file://";
+use gcode_session::file_uri;
 
 impl<H: Host> Adapter<H> {
     pub(super) fn client_line(&self, line: u32) -> i64 {
@@ -33,7 +33,7 @@ impl<H: Host> Adapter<H> {
             return Ok((name.clone(), (self.canonical)(&name)));
         }
         let path = source.path.as_deref().ok_or("the source has no path")?;
-        let path = path.strip_prefix(FILE_SCHEME).map_or_else(|| path.to_owned(), percent_decoded);
+        let path = file_uri::path(path).map_or_else(|| path.to_owned(), |path| path.display().to_string());
         Ok((path.clone(), (self.canonical)(&path)))
     }
 
@@ -80,8 +80,8 @@ impl<H: Host> Adapter<H> {
         let canonical = (self.canonical)(name);
         let path = self.files.client_path(&canonical).map_or_else(|| self.host.absolute(name), str::to_owned);
         let file = path.rsplit(['/', '\\']).next().unwrap_or(&path).to_owned();
-        let path =
-            if self.client.uses_uris { format!("{FILE_SCHEME}{}", percent_encoded(&path)) } else { path };
+        let uri = self.client.uses_uris.then(|| file_uri::of_path(Path::new(&path))).flatten();
+        let path = uri.unwrap_or(path);
         Source { name: file, path: Some(path), source_reference: None }
     }
 
@@ -117,16 +117,16 @@ impl<H: Host> Adapter<H> {
         body(LoadedSources { sources })
     }
 
-    /// Tells the client of files that have been loaded.
-    pub(super) fn tell_sources(&mut self) {
+    /// Reports files that have been loaded since the last report.
+    pub(super) fn report_sources(&mut self) {
         let Some(session) = &mut self.session else { return };
         let sources = session.debuggee.control().memory().sources();
-        if sources.count() == session.told_sources {
+        if sources.count() == session.reported_sources {
             return;
         }
         let new: Vec<String> =
-            sources.iter().skip(session.told_sources).map(|(_, source)| source.name.clone()).collect();
-        session.told_sources = sources.count();
+            sources.iter().skip(session.reported_sources).map(|(_, source)| source.name.clone()).collect();
+        session.reported_sources = sources.count();
         for name in new {
             let source = self.source_of(&name);
             self.outbox.event("loadedSource", LoadedSource { reason: "new", source });
@@ -143,52 +143,5 @@ impl<H: Host> Adapter<H> {
             column: self.client_column(site.column),
         };
         body(bodies::BreakpointLocations { breakpoints: sites.iter().map(location).collect() })
-    }
-}
-
-/// Characters of a path that a URI has as they are.
-fn is_plain(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte)
-}
-
-fn percent_encoded(path: &str) -> String {
-    let encode = |byte: u8| match is_plain(byte) {
-        true => char::from(byte).to_string(),
-        false => format!("%{byte:02X}"),
-    };
-    path.bytes().map(encode).collect()
-}
-
-fn percent_decoded(text: &str) -> String {
-    let mut bytes = Vec::new();
-    let mut rest = text.as_bytes();
-    while let Some((first, behind)) = rest.split_first() {
-        let code = behind.get(..2).and_then(|digits| {
-            let digits = std::str::from_utf8(digits).ok()?;
-            u8::from_str_radix(digits, 16).ok()
-        });
-        match code.filter(|_| *first == b'%') {
-            Some(byte) => {
-                bytes.push(byte);
-                rest = &behind[2..];
-            }
-            None => {
-                bytes.push(*first);
-                rest = behind;
-            }
-        }
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn paths_of_uris_are_decoded_and_encoded() {
-        assert_eq!(percent_decoded("/nc/my%20part/%C3%A4.nc"), "/nc/my part/ä.nc");
-        assert_eq!(percent_decoded("/100%"), "/100%");
-        assert_eq!(percent_encoded("/nc/my part/ä.nc"), "/nc/my%20part/%C3%A4.nc");
     }
 }

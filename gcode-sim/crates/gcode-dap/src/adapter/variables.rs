@@ -26,7 +26,7 @@ const SCOPES: [(ScopeKind, &str); 5] = [
     (ScopeKind::System, "System"),
 ];
 
-/// Number of scopes of a frame, with 0 unused: a reference is a frame's number times this, and the number of a scope.
+/// Number of scopes of a frame, with 0 unused. A reference is a frame's number times this, and the number of a scope.
 const REFERENCES: i64 = 8;
 
 /// Last local.

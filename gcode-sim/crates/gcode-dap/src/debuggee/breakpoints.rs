@@ -253,7 +253,7 @@ impl Breakpoints {
         hits
     }
 
-    /// Returns the breakpoints at which a run that goes back stops in front of the next block: on its line, on its program.
+    /// Returns the breakpoints on the next block's line and program at which a run that goes back stops.
     pub(crate) fn stops_before(
         &self,
         arrival: &Arrival<'_>,

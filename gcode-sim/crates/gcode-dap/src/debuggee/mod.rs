@@ -144,7 +144,7 @@ impl Debuggee {
         Ok(())
     }
 
-    /// Runs a number of blocks towards a goal, or one stretch of a way back; returns the stop if it comes to one.
+    /// Runs a number of blocks towards a goal, or one stretch of a way back. Returns the stop, if there is one.
     pub(crate) fn advance(
         &mut self,
         goal: &mut Goal,
@@ -200,12 +200,16 @@ impl Debuggee {
             if !self.breakpoints.is_empty() {
                 let site = (site.source, site.start);
                 let hits = self.breakpoints.reach_block(control, site, position);
-                if let Some(ids) = tell(hits, self.run.next_block(), output).filter(|_| goal.is_some()) {
+                if let Some(ids) =
+                    write_messages(hits, self.run.next_block(), output).filter(|_| goal.is_some())
+                {
                     return Some(Stop::Breakpoint(ids));
                 }
                 let arrival = Arrival { control, has_entered: self.has_entered };
                 let hits = self.breakpoints.reach_programs(&arrival, position);
-                if let Some(ids) = tell(hits, self.run.next_block(), output).filter(|_| goal.is_some()) {
+                if let Some(ids) =
+                    write_messages(hits, self.run.next_block(), output).filter(|_| goal.is_some())
+                {
                     return Some(Stop::ProgramBreakpoint(ids));
                 }
             }
@@ -266,7 +270,7 @@ impl Debuggee {
                 format!("{name}: {text}")
             }));
         }
-        tell(hits, block, output).map(Stop::VariableBreakpoint)
+        write_messages(hits, block, output).map(Stop::VariableBreakpoint)
     }
 
     /// Returns the stop at the end of a run. An alarm with its filter puts the run back in front of its block, once.
@@ -305,6 +309,11 @@ impl Debuggee {
     /// Returns true if a program is loaded or in the library.
     pub(crate) fn has_program(&mut self, name: &ProgramName) -> bool {
         self.run.has_program(name)
+    }
+
+    /// Returns true if a program, loaded or in the library, has a sequence number. Without a name it is the main program.
+    pub(crate) fn has_number(&mut self, name: Option<&ProgramName>, number: u32) -> bool {
+        self.run.has_number(name, number)
     }
 
     /// Interrupts the run.
@@ -400,7 +409,7 @@ impl Debuggee {
 }
 
 /// Adds the messages of breakpoints to the output, and returns those that stop the run.
-fn tell(hits: Hits, block: Option<Span>, output: &mut Vec<OutputLine>) -> Option<Vec<i64>> {
+fn write_messages(hits: Hits, block: Option<Span>, output: &mut Vec<OutputLine>) -> Option<Vec<i64>> {
     output.extend(hits.messages.into_iter().map(|text| OutputLine { text, block }));
     if let Some(alarm) = hits.refusal {
         let text = format!("the condition of the breakpoint can't be evaluated: {}", values::alarm(&alarm));

@@ -232,7 +232,7 @@ pub(crate) struct GotoTarget {
 
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(crate) struct Stopped {
+pub(crate) struct StopEvent {
     pub(crate) reason: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) description: Option<String>,
@@ -258,7 +258,7 @@ pub(crate) struct Output {
 
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(crate) struct Exited {
+pub(crate) struct ExitEvent {
     pub(crate) exit_code: i64,
 }
 

@@ -3,5 +3,4 @@
 //! Names and optional fields are those of the protocol.
 pub(crate) mod arguments;
 pub(crate) mod bodies;
-pub(crate) mod framing;
 pub(crate) mod message;

@@ -7,7 +7,7 @@ use super::checkpoints::{Checkpoints, PlacedCheckpoint, SHORTEST_GAP};
 use gcode_control::{Control, Outcome, Value};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::EventSink;
-use gcode_lang::program::Library;
+use gcode_lang::program::{Library, Memory, Program};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::ProgramName;
 
@@ -83,6 +83,27 @@ impl ReversibleRun {
                 ProgramName::Name(name) => self.library.named(name).is_some(),
                 ProgramName::Unnamed => false,
             }
+    }
+
+    /// Returns true if a program, loaded or in the library, has a sequence number. Without a name it is the main program.
+    pub(crate) fn has_number(&mut self, name: Option<&ProgramName>, number: u32) -> bool {
+        let has = |program: &Program| program.find_number(number, 0).is_some();
+        let memory = self.control.memory();
+        let Some(name) = name else { return has(memory.get(memory.main())) };
+        let mut loaded = memory.programs().iter().filter(|program| program.name == *name).peekable();
+        if loaded.peek().is_some() {
+            return loaded.any(has);
+        }
+        let text = match name {
+            ProgramName::Number(number) => self.library.program(*number),
+            ProgramName::Name(name) => self.library.named(name),
+            ProgramName::Unnamed => None,
+        };
+        text.is_some_and(|(file, bytes)| {
+            let mut memory = Memory::default();
+            memory.load(file, bytes);
+            memory.programs().iter().any(has)
+        })
     }
 
     /// Returns the number of executed blocks.
@@ -165,7 +186,7 @@ impl ReversibleRun {
         self.checkpoints.position_before(position)
     }
 
-    /// Runs another control from the start with the changes of this run, up to its end or a number of blocks.
+    /// Runs another control from the start with the changes of this run, up to a number of blocks.
     pub(crate) fn run_again(&mut self, mut control: Control, blocks: u64, sink: &mut impl PositionedSink) {
         let mut changes = self.changes.iter().peekable();
         for position in 0..blocks {

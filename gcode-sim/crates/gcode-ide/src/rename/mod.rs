@@ -34,15 +34,15 @@ impl Project {
     pub fn prepare_rename(&self, file: FileId, offset: u32) -> Result<RenameTarget, Refusal> {
         let (renamed, range) = self.renamed_symbol(file, offset)?;
         let placeholder = match renamed {
-            Renamed::Variable { number, program } => {
+            RenameSymbol::Variable { number, program } => {
                 self.check_variable(number, program)?;
                 format!("#{number}")
             }
-            Renamed::Number { number, program } => {
+            RenameSymbol::Number { number, program } => {
                 self.check_number(number, program)?;
                 format!("N{number}")
             }
-            Renamed::Program { number } => {
+            RenameSymbol::Program { number } => {
                 self.check_program(number, file)?;
                 ProgramName::Number(number).label()
             }
@@ -60,15 +60,15 @@ impl Project {
     pub fn rename(&self, file: FileId, offset: u32, new_name: &str) -> Result<Vec<FileEdit>, Refusal> {
         let (renamed, _) = self.renamed_symbol(file, offset)?;
         let mut edits = match renamed {
-            Renamed::Variable { number, program } => {
+            RenameSymbol::Variable { number, program } => {
                 self.rename_variable(number, program, new_number(new_name, &['#'], "a variable as #101")?)?
             }
-            Renamed::Number { number, program } => self.rename_number(
+            RenameSymbol::Number { number, program } => self.rename_number(
                 number,
                 program,
                 new_number(new_name, &['N'], "a sequence number as N10")?,
             )?,
-            Renamed::Program { number } => self.rename_program(
+            RenameSymbol::Program { number } => self.rename_program(
                 number,
                 file,
                 new_number(new_name, &['O', ':'], "a program number as O8101")?,
@@ -79,7 +79,7 @@ impl Project {
         Ok(edits)
     }
 
-    fn renamed_symbol(&self, file: FileId, offset: u32) -> Result<(Renamed, TextRange), Refusal> {
+    fn renamed_symbol(&self, file: FileId, offset: u32) -> Result<(RenameSymbol, TextRange), Refusal> {
         let nothing = || Refusal::new("no variable, sequence number or program is here");
         let (symbol, range) = self.symbol_at(file, offset).ok_or_else(nothing)?;
         let refused = |reason: &str| Err(Refusal::new(reason).at(file, range));
@@ -92,13 +92,13 @@ impl Project {
             return refused("this place is behind the end of the program");
         }
         let renamed = match symbol {
-            Symbol::Variable { number, program, .. } => Renamed::Variable { number, program },
+            Symbol::Variable { number, program, .. } => RenameSymbol::Variable { number, program },
             Symbol::SequenceNumber { number, programs } => match programs[..] {
-                [program] => Renamed::Number { number, program },
+                [program] => RenameSymbol::Number { number, program },
                 [] => return refused("the called program is not in the project"),
                 _ => return refused("several programs call this one: its M99 P continues in each of them"),
             },
-            Symbol::Program { name: ProgramName::Number(number) } => Renamed::Program { number },
+            Symbol::Program { name: ProgramName::Number(number) } => RenameSymbol::Program { number },
             Symbol::Program { .. } => return refused("only programs with an O number are renamed"),
             Symbol::Argument { letter, local, .. } => {
                 let reason =
@@ -197,7 +197,7 @@ fn is_comparable(entry: &crate::file_index::PlacedEntry<'_>) -> bool {
 }
 
 /// Symbol to rename.
-enum Renamed {
+enum RenameSymbol {
     Variable { number: u32, program: ProgramKey },
     Number { number: u32, program: ProgramKey },
     Program { number: u32 },

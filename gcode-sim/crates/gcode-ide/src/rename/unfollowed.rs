@@ -49,7 +49,7 @@ impl Project {
         Ok(())
     }
 
-    /// Refuses the sequence numbers in P or Q of a G code whose meaning is not known, as a turning cycle has them.
+    /// Refuses sequence numbers in P or Q of an unknown G code, as a turning cycle has them.
     fn refuse_unknown_references(
         &self,
         key: ProgramKey,

@@ -372,11 +372,6 @@ impl Program {
         self.numbers.get_or_init(|| self.blocks.sequence_numbers())
     }
 
-    /// Returns true if two blocks have the same sequence number, other than 0.
-    pub fn has_duplicate_numbers(&self) -> bool {
-        self.numbers().windows(2).any(|pair| pair[0].0 != 0 && pair[0].0 == pair[1].0)
-    }
-
     /// Iterates over the sequence numbers to which a jump can lead, in ascending order, each once.
     pub fn sequence_numbers(&self) -> impl Iterator<Item = u32> + '_ {
         let numbers = self.numbers();

@@ -3,6 +3,7 @@
 //! The target of a jump then depends on the control's parameters and on the blocks read so far.
 use std::collections::BTreeMap;
 
+use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
 
 use crate::parameters;
@@ -15,11 +16,22 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
     let parameters = parameters::parameter_blocks(unit.program);
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| !parameters[*block]) {
-        let Some(number) = op.number.filter(|number| *number > 0) else { continue };
+    let ops = unit.program.ops().iter().zip(&parameters);
+    let mut left_out = unit.left_out_numbers.iter().peekable();
+    let mut numbers: Vec<(u32, Span)> = Vec::new();
+    // A block that is left out stands behind one of its run: either both are parameter input or neither.
+    let mut is_input = false;
+    for (op, is_parameter) in ops {
+        while let Some(before) = left_out.next_if(|one| one.block.start < op.span.start) {
+            numbers.extend((!is_input).then_some((before.number, before.block)));
+        }
+        is_input = *is_parameter;
+        numbers.extend(op.number.filter(|_| !is_input).map(|number| (number, op.span)));
+    }
+    for (number, block) in numbers.into_iter().filter(|(number, _)| *number > 0) {
         match first.get_mut(&number) {
             None => {
-                first.insert(number, (op.span, false));
+                first.insert(number, (block, false));
             }
             Some((_, is_reported @ false)) => {
                 *is_reported = true;
@@ -31,7 +43,10 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
                     ": a search finds one of the two"
                 };
                 let message = format!("N{number} is already defined in line {line}{consequence}");
-                found.push(unit.finding(&RULE.kind, block, message).help("give one of them another number"));
+                let finding = Diagnostic::new(&RULE.kind, message)
+                    .with_backtrace(Backtrace { block, calls: None })
+                    .help("give one of them another number");
+                found.push(finding);
             }
             Some(_) => {}
         }
@@ -49,6 +64,10 @@ mod tests {
         assert_eq!(lines(&RULE, "O1\nN10 G0\nN010 G0\nN10 G0\nN20 M30\n"), [3]);
         let parameters = "O1\nN1241 G10 L52\nN1241 P1 R1.\nN1241 P2 R1.\nG11\nN1241 M30\n";
         assert_eq!(lines(&RULE, parameters), [6], "after G10 L52 N is no sequence number");
+        // Moves of one form, all but two of which are left out; the second N1 is among them, the third is told once.
+        let moves =
+            "O1\nG90\nN1X1.\nN2X2.\nN3X3.\nN1X4.\nN2X5.\nN1X6.\nN4X7.\nM30\n(THE END OF THE WHOLE PROGRAM)\n";
+        assert_eq!(lines(&RULE, moves), [6, 7]);
         assert_eq!(lines(&RULE, "O1\nN10 M30\nO2\nN10 M99\n(N10)\n"), NOWHERE, "each program has its own");
     }
 }

@@ -69,6 +69,9 @@ pub static ALL: &[&Rule] = &[
 /// Kind of finding about a number without a decimal point.
 pub static MISSING_POINT: &FindingKind = &missing_point::RULE.kind;
 
+/// Kind of finding about a sequence number that is defined twice.
+pub(super) static DOUBLED_N: &FindingKind = &doubled_n::RULE.kind;
+
 /// Kind of finding about a macro call without a required argument.
 pub static MISSING_ARGUMENT: &FindingKind = &missing_argument::RULE.kind;
 
