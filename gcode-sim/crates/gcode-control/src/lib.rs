@@ -45,6 +45,7 @@ mod kinematics;
 pub mod notes;
 mod outcome;
 mod plane;
+mod plane_arc;
 mod state;
 mod transform;
 mod variables;

@@ -406,12 +406,12 @@ impl Registers {
     /// Returns the tool centre in machine coordinates; a move that waits for the next one counts as executed, as if nothing
     /// followed.
     pub(super) fn tool_centre(&self, axis: AxisIndex) -> f64 {
+        let offset = self.lookahead.machine_offset();
         if self.state.virtual_plane.is_some() {
-            let offset = &self.lookahead.offset;
             let at = Position(std::array::from_fn(|axis| self.state.machine_position[axis] + offset[axis]));
             return self.data.real_position(&self.state, &at)[axis];
         }
-        self.state.machine_position[axis] + self.lookahead.offset[axis]
+        self.state.machine_position[axis] + offset[axis]
     }
 }
 
