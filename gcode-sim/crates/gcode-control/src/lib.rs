@@ -84,6 +84,7 @@ mod cycles;
 mod data_input;
 mod engraving;
 mod lookahead_request;
+mod measuring;
 mod move_repeats;
 mod moves;
 mod one_shot_codes;

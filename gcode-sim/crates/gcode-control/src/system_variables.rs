@@ -324,7 +324,11 @@ impl Registers {
             14 if self.data.settings.codes == Dialect::HaasNgc
                 && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
             {
-                return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
+                if !self.data.settings.undocumented.shows_g154 {
+                    let what = "#4014 in G154 and G110 to G129 (with SHOWN-G154=1 it is 154)".into();
+                    return Err(Alarm::NotSimulated { what });
+                }
+                154.0
             }
             // Group 23 is that of a Haas.
             23 if self.data.settings.codes != Dialect::HaasNgc => {
