@@ -368,9 +368,7 @@ impl Planner<'_> {
                 MCodeEffect::JumpByInput => self.plan_jump_by_input(plan)?,
                 MCodeEffect::OperatorInput => self.plan_operator_input(plan)?,
                 MCodeEffect::SkipReference
-                    if self
-                        .words
-                        .has_non_motion_code(|effect| effect == Effect::OneShot(OneShot::Skip)) => {}
+                    if self.words.has_non_motion_code(|effect| effect == Effect::OneShot(OneShot::Skip)) => {}
                 MCodeEffect::SkipAlarm(_) if self.words.has_non_motion_code(is_skip) => {}
                 MCodeEffect::InterruptOn => {
                     self.words.mark_read(Letters::of(b"P"));

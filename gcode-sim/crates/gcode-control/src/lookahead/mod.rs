@@ -153,7 +153,9 @@ impl Lookahead {
         seconds: f64,
         backtrace: &Backtrace,
     ) {
-        let Some(plane) = self.askew_plane else { return self.ready.push((kind, seconds, backtrace.clone())) };
+        let Some(plane) = self.askew_plane else {
+            return self.ready.push((kind, seconds, backtrace.clone()));
+        };
         plane.emit(from, kind, seconds, data.settings.chord_tolerance, |kind, seconds| {
             self.ready.push((kind, seconds, backtrace.clone()));
         });
