@@ -26,6 +26,7 @@ impl AxisWordUse {
             Self::OneShot(one) => matches!(
                 one,
                 OneShot::Skip
+                    | OneShot::Measure(_)
                     | OneShot::MachineCoordinateSystem
                     | OneShot::Reference
                     | OneShot::CheckReference

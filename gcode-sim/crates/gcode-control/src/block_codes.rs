@@ -30,7 +30,7 @@ const OLDER_OUTPUTS: std::ops::RangeInclusive<u32> = 1100..=1155;
 const FIRST_INPUT: u32 = 11_000;
 
 fn is_skip(effect: Effect) -> bool {
-    effect == Effect::OneShot(OneShot::Skip)
+    matches!(effect, Effect::OneShot(one) if one.is_skip())
 }
 
 impl Planner<'_> {
@@ -367,13 +367,18 @@ impl Planner<'_> {
                 }
                 MCodeEffect::JumpByInput => self.plan_jump_by_input(plan)?,
                 MCodeEffect::OperatorInput => self.plan_operator_input(plan)?,
+                MCodeEffect::SkipReference
+                    if self.words.has_non_motion_code(|effect| effect == Effect::OneShot(OneShot::Skip)) => {}
                 MCodeEffect::SkipAlarm(_) if self.words.has_non_motion_code(is_skip) => {}
                 MCodeEffect::InterruptOn => {
                     self.words.mark_read(Letters::of(b"P"));
                     plan.notes.push(Note::InterruptNotSimulated);
                 }
                 MCodeEffect::InterruptOff => {}
-                MCodeEffect::Call | MCodeEffect::NotSimulated | MCodeEffect::SkipAlarm(_) => {
+                MCodeEffect::Call
+                | MCodeEffect::NotSimulated
+                | MCodeEffect::SkipAlarm(_)
+                | MCodeEffect::SkipReference => {
                     return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.located_at(span));
                 }
             }

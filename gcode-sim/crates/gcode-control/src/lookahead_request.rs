@@ -1,7 +1,7 @@
 //! Compensation and corner words that a planned block commands, and its way through the lookahead.
 use super::axis_word_use::AxisWordUse;
 use super::functions::ExecResult;
-use super::lookahead::{CornerArc, LookaheadRequest};
+use super::lookahead::{AskewPlane, CornerArc, LookaheadRequest};
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
 use super::planner::Planner;
@@ -45,7 +45,7 @@ impl Planner<'_> {
             self.words.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
         let wall_direction = if cancels_compensation { self.plane_vector(&plan.state)? } else { None };
         let distance = self.locate(self.cutter_distance(&plan.state))?;
-        if self.registers.lookahead.is_idle() && distance.is_none() && plan.corner.is_none() {
+        if !self.leads_through_lookahead(plan)? {
             return Ok(());
         }
         let motion = plan.state.modal.motion;
@@ -60,7 +60,7 @@ impl Planner<'_> {
             return Err(self.not_simulated(format!("{code} in cutter compensation")));
         }
         let programmed_plane = self.locate(self.data.active_plane(&plan.state))?;
-        let (plane, side) = self.compensation_plane(&plan.state)?;
+        let (plane, side, askew_plane) = self.compensation_plane(&plan.state)?;
         let distance = distance.map(|distance| distance * side);
         let is_restated = self.words.g_codes().any(|row| {
             matches!(row.effect, Effect::Cutter(side) if side != CutterSide::Off)
@@ -71,6 +71,7 @@ impl Planner<'_> {
             None => None,
         };
         let request = LookaheadRequest {
+            askew_plane,
             plane,
             distance,
             wall_direction,
@@ -93,7 +94,7 @@ impl Planner<'_> {
             backtrace: self.flow.backtrace(),
         };
         plan.lookahead.clone_from(&self.registers.lookahead);
-        plan.lookahead.start_at(self.registers.state.machine_position);
+        plan.lookahead.start_at(self.registers.state.machine_position, &request)?;
         if plan.cycle_plan.is_none() {
             plan.events.append(&mut plan.events_after_motion);
         }
@@ -106,12 +107,28 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the machine axes of the active plane, and −1 if it is seen there from behind.
-    fn compensation_plane(&self, state: &State) -> ExecResult<((AxisIndex, AxisIndex), f64)> {
+    /// Returns true if the moves of a block wait for the next one, or follow one that does.
+    pub(super) fn leads_through_lookahead(&self, plan: &BlockPlan) -> ExecResult<bool> {
+        Ok(plan.corner.is_some()
+            || !self.registers.lookahead.is_idle()
+            || self.locate(self.cutter_distance(&plan.state))?.is_some())
+    }
+
+    /// Returns the machine axes of the active plane, and −1 if it is seen there from behind; an askew plane with its own axes.
+    fn compensation_plane(
+        &self,
+        state: &State,
+    ) -> ExecResult<((AxisIndex, AxisIndex), f64, Option<AskewPlane>)> {
         let plane = self.locate(self.data.active_plane(state))?;
-        state.machine_plane(plane).ok_or_else(|| {
-            self.not_simulated("cutter compensation or a corner word in a plane askew to the machine's axes")
-        })
+        if let Some((axes, side)) = state.machine_plane(plane) {
+            return Ok((axes, side, None));
+        }
+        if self.data.settings.undocumented.plane_turns_with_axes {
+            return Err(self.not_simulated(
+                "cutter compensation or a corner word in an askew plane that turns with the axes (PLANE-TURNS)",
+            ));
+        }
+        Ok((plane, 1.0, state.askew_plane(plane)))
     }
 
     /// Returns the distance of the tool centre to the left of the path; `None` without compensation.
@@ -146,7 +163,8 @@ impl Planner<'_> {
         tip[plane.1] += second;
         let from = self.data.to_machine_unrounded(state, &state.programmed_position);
         let to = self.data.to_machine_unrounded(state, &tip);
-        let (plane, _) = self.compensation_plane(state)?;
+        let (plane, _, askew_plane) = self.compensation_plane(state)?;
+        let [from, to] = [from, to].map(|at| askew_plane.map_or(at, |askew| askew.in_plane(&at)));
         Ok(Some(Point::new(to[plane.0] - from[plane.0], to[plane.1] - from[plane.1])))
     }
 

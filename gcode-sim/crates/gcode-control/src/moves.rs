@@ -1,5 +1,6 @@
 //! Moves by the modal codes: end points of axis words, the tool length, straight moves, threads and arcs.
 use super::functions::{ExecResult, locate};
+use super::kinematics::remove_noise;
 use super::linear_motion::Endpoint;
 use super::notes::Note;
 use super::plan::BlockPlan;
@@ -187,13 +188,36 @@ impl Planner<'_> {
             }
             endpoint.machine[axis] = rolled_machine[axis];
         }
-        if !state.transform.is_identity() {
-            self.check_plane(state)?;
+        match state.transform.is_identity() {
+            true => self.keep_fine_positions(state, &mut endpoint.machine),
+            false => self.check_plane(state)?,
         }
         if endpoint.machine.0.iter().any(|at| at.abs() > basis.max_coordinate) {
             self.check_coordinate_range(&endpoint.machine, basis.max_coordinate)?;
         }
         Ok(endpoint)
+    }
+
+    /// Leaves axes where kinematics has put them, finer than the increment: one that the block doesn't name stays, and one in G91
+    /// moves by its word.
+    #[inline]
+    fn keep_fine_positions(&self, state: &State, end: &mut Position) {
+        let is_fine = |axis: &usize| {
+            let at = state.machine_position[*axis];
+            self.data.remove_residue(at) != at
+        };
+        if state.is_turned() || !(0..self.data.settings.axes.len()).any(|axis| is_fine(&axis)) {
+            return;
+        }
+        let start = self.data.to_machine(state, &state.programmed_position);
+        let is_incremental = state.modal.distance == Distance::Incremental;
+        for axis in (0..self.data.settings.axes.len()).filter(is_fine) {
+            let residue = state.machine_position[axis] - start[axis];
+            let is_kept = is_incremental || !self.names(axis);
+            if is_kept && self.data.remove_residue(residue) == 0.0 {
+                end[axis] = remove_noise(end[axis] + residue);
+            }
+        }
     }
 
     /// Raises the alarm of a move while a plane is incomplete.

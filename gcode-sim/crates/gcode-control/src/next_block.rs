@@ -243,7 +243,9 @@ impl Registers {
                     Some(MCodeEffect::Output { .. }) => unsimulated.m_codes.push(text(Letters::of(b"P"))),
                     Some(MCodeEffect::JumpByInput) => unsimulated.m_codes.push(text(Letters::of(b"PQ"))),
                     Some(MCodeEffect::OperatorInput) => unsimulated.m_codes.push(text(Letters::of(b"P"))),
-                    Some(MCodeEffect::SkipAlarm(_)) => unsimulated.m_codes.push(text(Letters::NONE)),
+                    Some(MCodeEffect::SkipAlarm(_) | MCodeEffect::SkipReference) => {
+                        unsimulated.m_codes.push(text(Letters::NONE))
+                    }
                     Some(MCodeEffect::End) => unsimulated.end_code = Some(code),
                     Some(
                         MCodeEffect::Stop

@@ -71,6 +71,7 @@ impl Planner<'_> {
         let is_on_path = matches!(
             one,
             OneShot::Skip
+                | OneShot::Measure(_)
                 | OneShot::SingleDirection
                 | OneShot::CirclePocket(_)
                 | OneShot::BoltHoles(_)
@@ -108,6 +109,7 @@ impl Planner<'_> {
             },
             OneShot::FromReference => self.plan_return_from_reference(plan),
             OneShot::Skip => self.plan_skip(plan),
+            OneShot::Measure(code) => self.plan_measuring(code, plan),
             OneShot::SetLocalCoordinateSystem => {
                 self.shift_coordinate_system(plan, |state, axis, value| state.g52_shift[axis] = value)
             }

@@ -3,6 +3,7 @@ use super::cycle_expansion::CyclePlan;
 use super::data::Register;
 use super::flow::CallOrigins;
 use super::lookahead::Lookahead;
+use super::measuring::OffsetMeasurement;
 use super::notes::Note;
 use super::state::State;
 use super::variables::{Locals, Value};
@@ -98,6 +99,10 @@ pub(super) struct SkipPlan {
     pub(super) seconds: f64,
     /// Alarm that the block commands after the motion.
     pub(super) alarm: Option<SkipAlarm>,
+    /// M75: the signal's position is the first point of G35 and G136.
+    pub(super) sets_reference: bool,
+    /// Offset that the signal sets.
+    pub(super) measurement: Option<OffsetMeasurement>,
     pub(super) span: Span,
 }
 

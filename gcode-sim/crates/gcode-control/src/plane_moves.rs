@@ -2,7 +2,9 @@
 use super::functions::ExecResult;
 use super::kinematics::{cross, dot, remove_noise};
 use super::linear_motion::Endpoint;
+use super::lookahead::AskewPlane;
 use super::plan::BlockPlan;
+use super::plane_arc::{chord_count, point_of_arc};
 use super::planner::Planner;
 use super::state::State;
 use gcode_lang::alarm::Alarm;
@@ -26,6 +28,16 @@ impl State {
         let axes = (tilt.axes[(normal + 1) % 3], tilt.axes[(normal + 2) % 3]);
         Some((axes, cross(first, second)[normal].signum()))
     }
+
+    /// Returns the directions of a tilted plane; `None` if the plane of two programmed axes is that of two machine axes.
+    pub(super) fn askew_plane(&self, plane: (AxisIndex, AxisIndex)) -> Option<AskewPlane> {
+        let tilt = self.transform.tilt.as_ref().filter(|_| self.machine_plane(plane).is_none())?;
+        let rotation = match &tilt.alignment {
+            Some(alignment) => alignment.frame.rotation.after(&tilt.plane.matrix),
+            None => tilt.plane.matrix,
+        };
+        Some(AskewPlane::new(tilt.axes, rotation))
+    }
 }
 
 impl State {
@@ -45,7 +57,8 @@ impl State {
 }
 
 impl Planner<'_> {
-    /// Emits an arc of a tilted plane: an arc in a plane of two machine axes, otherwise chords.
+    /// Emits an arc of a tilted plane: an arc in a plane of two machine axes, otherwise chords; for the lookahead an arc in the
+    /// plane's coordinates.
     pub(super) fn push_arc_in_plane(
         &self,
         plan: &mut BlockPlan,
@@ -73,39 +86,22 @@ impl Planner<'_> {
         let length = radius * sweep.0.abs().to_radians();
         let timed = self.data.path_time(state, length, self.words.has(b'F'));
         let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.located_at(self.block))?;
+        if let (Some(askew), true) = (state.askew_plane(plane), self.leads_through_lookahead(plan)?) {
+            let mut middle = start;
+            (middle[plane.0], middle[plane.1]) = centre;
+            let middle = askew.in_plane(&self.data.to_machine_unrounded(state, &middle));
+            let arc = PlanarArc { plane, centre: (middle[plane.0], middle[plane.1]), sweep };
+            plan.push_move(EventKind::Arc { to: endpoint.machine, arc, rate }, seconds);
+            return Ok(());
+        }
         let chords = chord_count(radius, sweep, self.data.settings.chord_tolerance);
-        let (x, y) = (start[plane.0] - centre.0, start[plane.1] - centre.1);
         for chord in 1..chords {
             let fraction = f64::from(chord) / f64::from(chords);
-            let mut point = start;
-            for axis in 0..self.data.settings.axes.len() {
-                point[axis] += (endpoint.programmed[axis] - start[axis]) * fraction;
-            }
-            let turned = Deg(sweep.0 * fraction);
-            point[plane.0] = centre.0 + x * turned.cos() - y * turned.sin();
-            point[plane.1] = centre.1 + x * turned.sin() + y * turned.cos();
+            let point = point_of_arc(&start, &endpoint.programmed, &arc, fraction);
             let to = self.data.to_machine_unrounded(&plan.state, &point);
             plan.push_move(EventKind::Feed { to, rate }, seconds / f64::from(chords));
         }
         plan.push_move(EventKind::Feed { to: endpoint.machine, rate }, seconds / f64::from(chords));
         Ok(())
-    }
-}
-
-/// Returns the number of chords from which an arc deviates by at most `tolerance`: r·(1 − cos(half a chord's angle)).
-fn chord_count(radius: f64, sweep: Deg, tolerance: f64) -> u32 {
-    let half = libm::acos((1.0 - tolerance / radius.max(tolerance)).clamp(0.0, 1.0));
-    (sweep.0.abs().to_radians() / (2.0 * half)).ceil().clamp(1.0, 1e6) as u32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_quarter_of_radius_50_has_125_chords_of_a_micron() {
-        // Half a chord's angle is acos(1 − 0.001/50) = 0.006324566, so that 1.570796/0.012649 = 124.18 chords would do.
-        assert_eq!(chord_count(50.0, Deg(90.0), 0.001), 125);
-        assert_eq!(chord_count(0.0005, Deg(90.0), 0.001), 1);
     }
 }

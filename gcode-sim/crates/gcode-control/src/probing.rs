@@ -1,5 +1,6 @@
 //! G31: the planned move, the machine's skip signal, and the position of the axes then.
 use super::functions::ExecResult;
+use super::measuring::OffsetMeasurement;
 use super::notes::Note;
 use super::plan::{BlockPlan, SkipPlan};
 use super::planner::Planner;
@@ -16,9 +17,6 @@ impl Planner<'_> {
     /// G31: plans a straight cut to its end point. [`Registers::resolve_skip_signal`] shortens it when the rest of the block
     /// is known to be in order.
     pub(super) fn plan_skip(&self, plan: &mut BlockPlan) -> ExecResult<()> {
-        if plan.state.modal.cutter != CutterSide::Off || self.registers.lookahead.is_offset() {
-            return Err(Alarm::SkipInCompensation.located_at(self.block));
-        }
         // P selects the skip signals, but beside G54.1 or G154 the work coordinate system.
         if !self.words.has_non_motion_code(|effect| effect == Effect::AdditionalWork) {
             self.check_skip_signal_set(b'P')?;
@@ -33,26 +31,52 @@ impl Planner<'_> {
             return Err(self.not_simulated("G31 (torque limit skip)"));
         }
         let endpoint = self.resolve_endpoint(plan)?;
-        let (from, to) = (plan.state.machine_position, endpoint.machine);
+        self.push_skip(plan, endpoint.machine, None)?;
+        plan.state.programmed_position = endpoint.programmed;
+        Ok(())
+    }
+
+    /// Adds a straight cut to `to` that the skip signal ends, and the offset that it sets.
+    pub(super) fn push_skip(
+        &self,
+        plan: &mut BlockPlan,
+        to: Position,
+        measurement: Option<OffsetMeasurement>,
+    ) -> ExecResult<()> {
+        if plan.state.modal.cutter != CutterSide::Off || self.registers.lookahead.is_offset() {
+            return Err(Alarm::SkipInCompensation.located_at(self.block));
+        }
+        let from = plan.state.machine_position;
         let (rate, seconds) =
             self.locate(self.data.feed_seconds(&plan.state, &from, &to, self.words.has(b'F')))?;
-        let alarm = self.commanded_skip_alarm();
-        plan.skip_plan =
-            Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, alarm, span: self.block });
+        plan.skip_plan = Some(SkipPlan {
+            event: plan.events.len(),
+            from,
+            to,
+            rate,
+            seconds,
+            alarm: self.commanded_skip_alarm(),
+            sets_reference: self.m_code_effects().any(|effect| effect == MCodeEffect::SkipReference),
+            measurement,
+            span: self.block,
+        });
         plan.push_move(EventKind::Skip { to, rate, has_signal: false }, seconds);
         plan.state.skip_position = to;
-        plan.state.programmed_position = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
     }
 
     /// Returns the alarm that M78 or M79 of the block commands.
     fn commanded_skip_alarm(&self) -> Option<SkipAlarm> {
-        let effect = |(code, _): &(u32, _)| m_codes::find(*code, self.data.settings.codes);
-        self.words.m_codes.iter().filter_map(effect).find_map(|effect| match effect {
+        self.m_code_effects().find_map(|effect| match effect {
             MCodeEffect::SkipAlarm(alarm) => Some(alarm),
             _ => None,
         })
+    }
+
+    fn m_code_effects(&self) -> impl Iterator<Item = MCodeEffect> + '_ {
+        let codes = self.data.settings.codes;
+        self.words.m_codes.iter().filter_map(move |(code, _)| m_codes::find(*code, codes))
     }
 
     /// Checks the set of skip signals that G31 P or G04 Q names.
@@ -73,7 +97,8 @@ impl Registers {
         plan: &mut BlockPlan,
         sink: &mut S,
     ) -> Option<LocatedAlarm> {
-        let SkipPlan { event, from, to, rate, seconds, alarm, span } = plan.skip_plan.take()?;
+        let SkipPlan { event, from, to, rate, seconds, alarm, sets_reference, measurement, span } =
+            plan.skip_plan.take()?;
         let signal = match self.data.settings.skip_signal {
             Some(fraction) => SkipSignal::Received { latched: fraction, stop_fraction: fraction },
             None => {
@@ -119,6 +144,12 @@ impl Registers {
         plan.state.machine_position = end;
         if !self.data.settings.undocumented.skip_keeps_end {
             self.data.recompute_position(&mut plan.state);
+        }
+        if sets_reference {
+            plan.state.skip_reference = Some(plan.state.skip_position);
+        }
+        if let Some(measurement) = measurement.filter(|_| alarm.is_none()) {
+            plan.writes.extend(measurement.writes(&self.data, &plan.state));
         }
         alarm
     }

@@ -46,6 +46,8 @@ pub struct State {
     pub(super) unknown_g92_shift: u8,
     /// End of the last G31 in machine coordinates, #5061….
     pub(super) skip_position: Position,
+    /// Position of the skip signal of a G31 with M75.
+    pub(super) skip_reference: Option<Position>,
     /// Radius of cutter compensation, read by D or G41, G42; negative if it swaps sides.
     pub(super) cutter_radius: f64,
     pub(super) transform: Transform,

@@ -324,7 +324,11 @@ impl Registers {
             14 if self.data.settings.codes == Dialect::HaasNgc
                 && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
             {
-                return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
+                if !self.data.settings.undocumented.shows_g154 {
+                    let what = "#4014 in G154 and G110 to G129 (with SHOWN-G154=1 it is 154)".into();
+                    return Err(Alarm::NotSimulated { what });
+                }
+                154.0
             }
             // Group 23 is that of a Haas.
             23 if self.data.settings.codes != Dialect::HaasNgc => {
@@ -406,12 +410,12 @@ impl Registers {
     /// Returns the tool centre in machine coordinates; a move that waits for the next one counts as executed, as if nothing
     /// followed.
     pub(super) fn tool_centre(&self, axis: AxisIndex) -> f64 {
+        let offset = self.lookahead.machine_offset();
         if self.state.virtual_plane.is_some() {
-            let offset = &self.lookahead.offset;
             let at = Position(std::array::from_fn(|axis| self.state.machine_position[axis] + offset[axis]));
             return self.data.real_position(&self.state, &at)[axis];
         }
-        self.state.machine_position[axis] + self.lookahead.offset[axis]
+        self.state.machine_position[axis] + offset[axis]
     }
 }
 

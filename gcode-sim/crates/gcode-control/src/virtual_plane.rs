@@ -1,6 +1,7 @@
 //! Virtual planes of polar and cylindrical interpolation: the control computes in lengths, and a rotary axis turns on the machine.
 use super::kinematics::remove_noise;
-use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
+use super::plane_arc::point_of_arc;
+use gcode_lang::motion::{AxisIndex, EventKind, Position};
 use gcode_lang::program::modes::Plane;
 use gcode_lang::units::Deg;
 
@@ -208,22 +209,10 @@ impl VirtualPlane {
     }
 }
 
-/// Returns a point of an arc, as a fraction of its path; the axes outside its plane move evenly.
-fn point_of_arc(from: &Position, to: &Position, arc: &PlanarArc, fraction: f64) -> Position {
-    if fraction == 1.0 {
-        return *to;
-    }
-    let PlanarArc { plane, centre, sweep } = *arc;
-    let mut point = Position(std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * fraction));
-    let (x, y, turned) = (from[plane.0] - centre.0, from[plane.1] - centre.1, sweep * fraction);
-    point[plane.0] = centre.0 + x * turned.cos() - y * turned.sin();
-    point[plane.1] = centre.1 + x * turned.sin() + y * turned.cos();
-    point
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gcode_lang::motion::PlanarArc;
     use gcode_lang::units::MmPerMin;
 
     /// X and C with the centre at X 0, at X 10 and C 0.

@@ -342,7 +342,7 @@ fn motion_kind(motion: MotionKind) -> TokenKind {
 /// Returns the colour of axis words beside a code of group 00 that makes something else of them.
 fn one_shot_kind(effect: Effect) -> Option<TokenKind> {
     match effect {
-        Effect::OneShot(OneShot::Skip) => Some(TokenKind::FeedMotion),
+        Effect::OneShot(one) if one.is_skip() => Some(TokenKind::FeedMotion),
         Effect::OneShot(
             OneShot::Reference | OneShot::FromReference | OneShot::SecondReference | OneShot::SingleDirection,
         ) => Some(TokenKind::RapidMotion),

@@ -5,9 +5,11 @@
 //! words shape the path ([`path_move`]), compensation puts the centre beside it ([`cutter_compensation`]). Each stage holds
 //! back one move, and the items after a move that waits wait as well. Every event keeps the backtrace of its own block.
 
+mod askew_plane;
 mod cutter_compensation;
 mod path_move;
 
+pub(super) use self::askew_plane::AskewPlane;
 use self::path_move::{PathMove, PendingCorner, PendingCornerArc, PendingItem, PendingMove};
 use crate::contour::{Blend, Point};
 use crate::data::ControlData;
@@ -21,12 +23,14 @@ use gcode_lang::units::MmPerMin;
 /// State of lookahead; `Default` if neither function is in use.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Lookahead {
-    /// End of the programmed path so far, in machine coordinates.
+    /// Plane whose coordinates all positions here have; `None` for those of the machine.
+    askew_plane: Option<AskewPlane>,
+    /// End of the programmed path so far.
     programmed_position: Position,
     /// Tool centre after the emitted events.
     tool_centre: Position,
     /// Offset of the centre from the path after all blocks read, as if nothing followed.
-    pub(super) offset: Position,
+    offset: Position,
     plane: (AxisIndex, AxisIndex),
     /// Offset mode, in which corners are computed: a start-up move was read.
     pub(super) is_compensating: bool,
@@ -48,6 +52,8 @@ pub(super) type ReadyEvent = (EventKind, f64, Backtrace);
 /// Compensation and corner words that one block commands.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LookaheadRequest {
+    /// The plane where it is askew to the machine's axes.
+    pub(super) askew_plane: Option<AskewPlane>,
     pub(super) plane: (AxisIndex, AxisIndex),
     /// Distance of the centre to the left of the path; `None` without compensation, by G40 or by D0.
     pub(super) distance: Option<f64>,
@@ -112,11 +118,47 @@ impl Lookahead {
         }
     }
 
-    /// Begins at the tool if nothing waits.
-    pub(super) fn start_at(&mut self, at: Position) {
+    /// Begins at the tool if nothing waits; returns an alarm if what waits is in another plane than that of a request.
+    pub(super) fn start_at(&mut self, at: Position, request: &LookaheadRequest) -> ExecResult<()> {
         if self.is_idle() {
+            self.askew_plane = request.askew_plane;
+            let at = self.in_plane(&at);
             (self.programmed_position, self.tool_centre) = (at, at);
+        } else if self.askew_plane != request.askew_plane {
+            let what = "a change of the tilted plane in cutter compensation (command G40 before it)".into();
+            return Err(Alarm::NotSimulated { what }.located_at(request.backtrace.block));
         }
+        Ok(())
+    }
+
+    fn in_plane(&self, machine: &Position) -> Position {
+        self.askew_plane.map_or(*machine, |plane| plane.in_plane(machine))
+    }
+
+    fn on_machine(&self, position: &Position) -> Position {
+        self.askew_plane.map_or(*position, |plane| plane.on_machine(position))
+    }
+
+    /// Returns the offset of the centre from the path in machine coordinates.
+    pub(super) fn machine_offset(&self) -> Position {
+        self.on_machine(&self.offset)
+    }
+
+    /// Adds a move that no longer waits, from a position on.
+    fn push_ready(
+        &mut self,
+        data: &ControlData,
+        from: &Position,
+        kind: EventKind,
+        seconds: f64,
+        backtrace: &Backtrace,
+    ) {
+        let Some(plane) = self.askew_plane else {
+            return self.ready.push((kind, seconds, backtrace.clone()));
+        };
+        plane.emit(from, kind, seconds, data.settings.chord_tolerance, |kind, seconds| {
+            self.ready.push((kind, seconds, backtrace.clone()));
+        });
     }
 
     /// Takes the events of a block on the programmed path, and holds back those that wait for the next move.
@@ -138,6 +180,8 @@ impl Lookahead {
         }
         let mut has_moved = false;
         for (kind, seconds) in events {
+            let in_plane = self.askew_plane.map(|plane| plane.move_in_plane(kind));
+            let kind = in_plane.as_ref().unwrap_or(kind);
             let Some(path_move) = PathMove::new(kind, self.programmed_position, request) else {
                 self.defer(data, PendingItem::Other(kind.clone(), *seconds, request.backtrace.clone()));
                 continue;
@@ -241,8 +285,8 @@ impl Lookahead {
         }
         if let Some(beyond) = self.ready.iter().position(|(kind, ..)| data.check_move(kind).is_err()) {
             self.ready.truncate(beyond);
-            let last = self.ready.iter().rev().find_map(|(kind, ..)| kind.end().copied());
-            self.tool_centre = last.unwrap_or(initial_centre);
+            let last = self.ready.iter().rev().find_map(|(kind, ..)| kind.end());
+            self.tool_centre = last.map_or(initial_centre, |last| self.in_plane(last));
         }
         for axis in 0..data.settings.axes.len() {
             self.offset[axis] = self.tool_centre[axis] - self.programmed_position[axis];
@@ -262,7 +306,7 @@ impl Lookahead {
 
     /// Ends the path for a canned cycle and returns the tool centre; events that are ready stay.
     pub(super) fn end_path(&mut self) -> Position {
-        let (centre, ready) = (self.tool_centre, self.take_ready());
+        let (centre, ready) = (self.on_machine(&self.tool_centre), self.take_ready());
         *self = Self { ready, ..Self::default() };
         centre
     }

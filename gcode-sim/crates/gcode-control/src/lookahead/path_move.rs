@@ -209,9 +209,11 @@ impl Lookahead {
             EventKind::Skip { rate, has_signal, .. } => {
                 (EventKind::Skip { to, rate, has_signal }, length / rate.0 * 60.0)
             }
-            _ => (EventKind::Rapid { to }, data.rapid_seconds(&from, &to)),
+            _ => {
+                (EventKind::Rapid { to }, data.rapid_seconds(&self.on_machine(&from), &self.on_machine(&to)))
+            }
         };
-        self.ready.push((kind, seconds, path_move.backtrace.clone()));
+        self.push_ready(data, &from, kind, seconds, &path_move.backtrace);
     }
 
     /// Emits a move to a point in the plane; an arc at `distance` to its left.
@@ -229,8 +231,8 @@ impl Lookahead {
             return self.emit_straight(data, path_move, to);
         }
         let arc = PlanarArc { sweep, ..*arc };
-        self.tool_centre = to;
+        let from = std::mem::replace(&mut self.tool_centre, to);
         let kind = EventKind::Arc { to, arc, rate: *rate };
-        self.ready.push((kind, length / rate.0 * 60.0, path_move.backtrace.clone()));
+        self.push_ready(data, &from, kind, length / rate.0 * 60.0, &path_move.backtrace);
     }
 }

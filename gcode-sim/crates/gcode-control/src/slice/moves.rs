@@ -5,7 +5,7 @@ use super::words::{BlockModes, MarkedWord};
 use super::{Block, Marks, OutsideValue, Slice};
 use gcode_lang::control::Settings;
 use gcode_lang::motion::AxisIndex;
-use gcode_lang::program::g_codes::OneShot;
+use gcode_lang::program::g_codes::{MeasuringCode, OneShot};
 use gcode_lang::program::modes::{Distance, ModalGroup, Motion, Plane, Polar, WorkSystem};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 
@@ -43,7 +43,7 @@ impl Slice {
             self.machine.rest |= others | control;
         }
         match modes.one_shot {
-            None | Some(OneShot::SingleDirection | OneShot::Skip) => {
+            None | Some(OneShot::SingleDirection | OneShot::Skip | OneShot::Measure(_)) => {
                 let repeats = list.iter().find(|word| word.letter == b'L').filter(|_| settings.repeats_moves);
                 if let Some(repeats) = repeats {
                     named().for_each(|(axis, _)| self.machine.axes[axis] |= repeats.marks);
@@ -181,7 +181,7 @@ impl Slice {
         let drilling = settings.axes.iter().filter(|(axis, _)| modes.is_in_cycle && drills(*axis));
         let drilling = drilling.fold(0, |bits, (axis, _)| bits | 1 << axis);
         let is_cut = modes.is_in_cycle
-            || modes.one_shot == Some(OneShot::Skip)
+            || modes.one_shot.is_some_and(OneShot::is_skip)
             || modes.one_shot.is_none() && modes.motion != Motion::Rapid;
         if is_cut {
             self.further |= words.cut;
@@ -214,13 +214,20 @@ impl Slice {
             self.machine.axes[axis] = marks;
             moved |= marks;
         }
-        if modes.one_shot == Some(OneShot::Skip) {
+        if modes.one_shot.is_some_and(OneShot::is_skip) {
             let signal = match self.stated.has_part {
                 true => Marks::NONE,
                 false => self.outside(OutsideValue::SkipSignal, None, block.flow, block.op),
             };
             self.machine.skip_position = moved | signal;
             self.machine.axes.iter_mut().for_each(|axis| *axis |= signal);
+            match modes.one_shot {
+                Some(OneShot::Measure(MeasuringCode::WorkZero | MeasuringCode::WorkCentre)) => {
+                    self.machine.work_table |= moved | signal | words.cut;
+                }
+                Some(OneShot::Measure(_)) => self.machine.tool_table |= moved | signal | words.cut,
+                _ => {}
+            }
         }
         if modes.is_in_cycle {
             let drilling = || settings.axes.iter().map(|(axis, _)| axis).filter(|axis| drills(*axis));

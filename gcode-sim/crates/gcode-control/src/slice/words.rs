@@ -75,8 +75,9 @@ impl Slice {
         }
         let modes = self.follow_g_codes(block, words, &list);
         self.is_in_cycle = modes.is_in_cycle;
-        self.is_rapid =
-            !modes.is_in_cycle && modes.motion == Motion::Rapid && modes.one_shot != Some(OneShot::Skip);
+        self.is_rapid = !modes.is_in_cycle
+            && modes.motion == Motion::Rapid
+            && !modes.one_shot.is_some_and(OneShot::is_skip);
         self.follow_power_on_modes(block, &list, &modes);
         self.follow_codes(&list, guard);
         self.follow_m_codes(block, words, &list);

@@ -307,6 +307,7 @@ undocumented_choices! {
     "MISSING-N-78" missing_target_is_78 = false, "GOTO without its target is PS0078, not PS0128";
     "BITS-ALARM" negative_bits_alarm = false, "AND, OR, XOR of a negative number raise PS0119 instead of working on two's complements";
     "SHOWN-TRANSFORMED" shows_transformed = false, "#5001.. under G51, G51.1, G68, G68.2 are the transformed coordinates, not the programmed ones";
+    "SHOWN-G154" shows_g154 = false, "#4014 of a Haas is 154 in G154 and G110 to G129; otherwise SIM0001, because manuals don't say";
     "NEW-FUNCTIONS" has_new_functions = true, "POW, MOD and ATAN[a,b] are available";
     "ATAN-0-ALARM" atan_of_zeros_alarms = false, "ATAN[0]/[0] raises PS0119 instead of returning 0";
     "TAN-90-ALARM" tan_90_alarms = false, "TAN[90] raises PS0119 instead of returning a large number";

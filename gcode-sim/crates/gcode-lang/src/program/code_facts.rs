@@ -300,6 +300,13 @@ pub(super) const SKIP: CodeFacts = CodeFacts {
     timing: Waits,
     ..ONE_SHOT
 };
+/// G35, G36, G37 and G136 of a Haas.
+pub(super) const MEASURE: CodeFacts = CodeFacts {
+    words: CodeWords::NONE,
+    coordinates: NotTransformed,
+    unsimulated: Unsimulated::Writes,
+    ..SKIP
+};
 pub(super) const MACHINE_COORDINATE_SYSTEM: CodeFacts =
     CodeFacts { without_axes: WithoutAxes::Waits, coordinates: NotTransformed, ..SKIP };
 /// G53.1.

@@ -158,6 +158,8 @@ pub enum OneShot {
     SecondReference,
     /// G31: skip.
     Skip,
+    /// G35, G36, G37 and G136 of a Haas: a skip whose signal sets an offset.
+    Measure(MeasuringCode),
     /// G52: set the local coordinate system.
     SetLocalCoordinateSystem,
     /// G53: machine coordinate system.
@@ -194,6 +196,38 @@ pub enum OneShot {
         /// G174: the spindle turns counterclockwise on its way in.
         is_left_handed: bool,
     },
+}
+
+impl OneShot {
+    /// Returns true for a cut that a skip signal ends.
+    pub fn is_skip(self) -> bool {
+        matches!(self, Self::Skip | Self::Measure(_))
+    }
+}
+
+/// Code of a Haas that sets an offset where a skip signal comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeasuringCode {
+    /// G35: tool diameter.
+    ToolDiameter,
+    /// G36: work zero.
+    WorkZero,
+    /// G136: work zero half-way between two points.
+    WorkCentre,
+    /// G37: tool length.
+    ToolLength,
+}
+
+impl MeasuringCode {
+    /// Returns the name of the code.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ToolDiameter => "G35",
+            Self::WorkZero => "G36",
+            Self::WorkCentre => "G136",
+            Self::ToolLength => "G37",
+        }
+    }
 }
 
 /// Arrangement of a pattern's holes.

@@ -1,7 +1,7 @@
 //! Table of G codes, one row per code and meaning.
 use super::code_facts as facts;
 use super::cycles::{self, Cycle};
-use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot};
+use super::g_code_row::{Effect, GCodeRow, HolePattern, MeasuringCode, OneShot};
 use super::modes::{
     CutterSide, CuttingMode, Distance, DynamicOffset, FeedMode, Length, Mirror, Motion, Plane, Polar,
     PolarInterpolation, ReturnTo, Rotation, Scaling, SpindleMode, StrokeCheck, Unit,
@@ -97,9 +97,10 @@ pub(super) const CODES: &[GCodeRow] = &[
     row(310, Effect::OneShot(OneShot::Skip), "skip function").with(facts::SKIP),
     fanuc(318, Effect::NotSimulated, "EGB-axis skip"),
     fanuc(330, Effect::Motion(Motion::Thread), "threading"),
-    haas(350, Effect::NotSimulated, "automatic tool diameter measurement"),
-    haas(360, Effect::NotSimulated, "automatic work offset measurement"),
-    row(370, Effect::NotSimulated, "automatic tool length measurement"),
+    haas(350, Effect::OneShot(OneShot::Measure(MeasuringCode::ToolDiameter)), "automatic tool diameter measurement").with(facts::MEASURE),
+    haas(360, Effect::OneShot(OneShot::Measure(MeasuringCode::WorkZero)), "automatic work offset measurement").with(facts::MEASURE),
+    fanuc(370, Effect::NotSimulated, "automatic tool length measurement"),
+    haas(370, Effect::OneShot(OneShot::Measure(MeasuringCode::ToolLength)), "automatic tool length measurement").with(facts::MEASURE),
     fanuc(390, Effect::OneShot(OneShot::CornerArc), "cutter compensation: corner circular interpolation").with(facts::CORNER_ARC),
     row(400, Effect::Cutter(CutterSide::Off), "cutter compensation cancel"),
     fanuc(401, Effect::NoEffect, "normal direction control cancel mode").with(facts::WITHOUT_EFFECT),
@@ -223,7 +224,7 @@ pub(super) const CODES: &[GCodeRow] = &[
     haas(1270, Effect::NumberedWork(18), "additional work coordinate system 18").with(facts::WORK),
     haas(1280, Effect::NumberedWork(19), "additional work coordinate system 19").with(facts::WORK),
     haas(1290, Effect::NumberedWork(20), "additional work coordinate system 20").with(facts::WORK),
-    haas(1360, Effect::NotSimulated, "automatic work offset centre measurement"),
+    haas(1360, Effect::OneShot(OneShot::Measure(MeasuringCode::WorkCentre)), "automatic work offset centre measurement").with(facts::MEASURE),
     haas(1410, Effect::NotSimulated, "3D+ cutter compensation"),
     haas(1430, Effect::NotSimulated, "5-axis tool length compensation +"),
     fanuc(1500, Effect::NoEffect, "normal direction control cancel mode").with(facts::WITHOUT_EFFECT),

@@ -1,6 +1,6 @@
 //! Lookup of G codes. A code without a row raises an alarm and is never skipped.
 use super::code_facts::{AxisWords, Unsimulated};
-pub use super::g_code_row::{Effect, GCodeRow, HolePattern, OneShot, name, spelled};
+pub use super::g_code_row::{Effect, GCodeRow, HolePattern, MeasuringCode, OneShot, name, spelled};
 use super::g_code_table::{CODES, DECLARED, DECLARED_WAIT};
 use crate::control::{DeclaredEffect, Dialect, Settings};
 

@@ -35,6 +35,8 @@ pub enum MCodeEffect {
     },
     /// M78 and M79 of a Haas beside G31: an alarm after the motion.
     SkipAlarm(SkipAlarm),
+    /// M75 of a Haas beside G31: the point that G35 and G136 need.
+    SkipReference,
     /// M96 of a Haas: jumps to the sequence number P if the input Q is 0.
     JumpByInput,
     /// M109 of a Haas: the operator's key into the variable P.
@@ -104,6 +106,7 @@ pub const M_CODES: &[MCodeRow] = &[
     row(49, MCodeEffect::NoEffect, "overrides off"),
     haas(59, MCodeEffect::Output { is_on: true }, "output on"),
     haas(69, MCodeEffect::Output { is_on: false }, "output off"),
+    haas(75, MCodeEffect::SkipReference, "reference point of G35 and G136"),
     haas(78, MCodeEffect::SkipAlarm(SkipAlarm::OnSignal), "alarm where the skip signal came"),
     haas(79, MCodeEffect::SkipAlarm(SkipAlarm::OnMiss), "alarm where no skip signal came"),
     fanuc(96, MCodeEffect::InterruptOn, "macro interrupt"),

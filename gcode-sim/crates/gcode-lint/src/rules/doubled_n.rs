@@ -1,6 +1,6 @@
 //! Rule: a sequence number that is defined twice.
 //!
-//! The target of a jump then depends on the control's parameters and on the blocks read so far.
+//! The target of a jump then depends on the control's parameters and on the blocks read so far; without a jump it is a note.
 use std::collections::BTreeMap;
 
 use gcode_lang::motion::Backtrace;
@@ -37,13 +37,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
                 *is_reported = true;
                 let line = context.memory.sources().line_column(first[&number].0).line;
                 let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.is_return);
-                let consequence = if jump {
-                    ": the control decides which of the two GOTO takes"
-                } else {
-                    ": a search finds one of the two"
+                let (severity, consequence) = match jump {
+                    true => (Severity::Warning, ": the control decides which of the two GOTO takes"),
+                    false => (Severity::Note, ": a search finds one of the two"),
                 };
                 let message = format!("N{number} is already defined in line {line}{consequence}");
                 let finding = Diagnostic::new(&RULE.kind, message)
+                    .with_severity(severity)
                     .with_backtrace(Backtrace { block, calls: None })
                     .help("give one of them another number");
                 found.push(finding);
