@@ -11,6 +11,7 @@ use super::conditions::ProgramArguments;
 use super::format::TextFormat;
 use super::library::Folders;
 use super::{ExitStatus, UsageError, options, output, progress};
+use super::rerun::Rerun;
 use crate::report::proof::ProofReport;
 use gcode_control::Control;
 use gcode_prove::{Ask, Setup, Verdict, Watch, prove};
@@ -42,6 +43,10 @@ pub(super) struct Arguments {
     /// Largest time, seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, display_order = 0)]
     time: f64,
+
+    /// Part of each result by which the control's arithmetic may be off from that of doubles, such as 1e-9
+    #[arg(long = "widen", value_name = "PART", default_value_t = 0.0, display_order = 0)]
+    widening: f64,
 
     /// Number of threads [default: the number of processors]
     #[arg(long, value_name = "N", display_order = 0)]
@@ -98,6 +103,13 @@ impl Setup for Controls<'_> {
     }
 }
 
+/// Returns true if a setting sets a variable that has a range.
+fn names_range(set: &str, ranges: &[String]) -> bool {
+    let variable = |text: &str| text.split_once('=').map(|(variable, _)| variable.trim().to_owned());
+    let set = variable(set);
+    set.is_some() && ranges.iter().any(|range| variable(range) == set)
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (program, _) = arguments.program.completed()?;
     let (request, _) = options::checked_request(&program, None, None, None)?;
@@ -112,6 +124,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     {
         return Err(UsageError::new("--call: write one block, 'G65 P8101 A#101'"));
     }
+    let conditions = &arguments.program.conditions;
+    if let Some(set) = conditions.set.iter().find(|set| names_range(set, &arguments.ranges)) {
+        return Err(UsageError::new(format!("--set '{set}': this variable has a --range: omit one of them")));
+    }
     let one = NonZeroUsize::MIN;
     let ask = Ask {
         ranges: arguments.ranges.clone(),
@@ -120,6 +136,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         bounds: arguments.bounds.clone(),
         max_blocks: request.limits.blocks,
         threads: arguments.threads.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
+        widening: arguments.widening,
     };
     let controls = Controls {
         request: &request,
@@ -132,8 +149,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let watch = Watch::new(&clock, Duration::from_secs_f64(arguments.time));
     let answer = progress::of_proof(&watch, || prove(&controls, &ask, &watch));
     let answer = answer.map_err(|error| UsageError::new(error.to_string()))?;
-    let name = program.program.display().to_string();
-    let report = ProofReport::new(&answer, start.elapsed().as_secs_f64(), name, arguments.call.clone());
+    let rerun = Rerun::new(&program.program, &arguments.program.conditions, arguments.call.clone());
+    let report = ProofReport::new(&answer, start.elapsed().as_secs_f64(), rerun);
     output::report(&report, ProofReport::text, arguments.format)?;
     Ok(if answer.verdict == Verdict::Proved { ExitStatus::Passed } else { ExitStatus::Failed })
 }

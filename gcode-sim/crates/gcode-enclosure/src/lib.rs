@@ -74,6 +74,7 @@ mod elementary;
 mod enclosures;
 mod factors;
 mod form;
+mod grain;
 mod hull;
 mod interval;
 mod model;

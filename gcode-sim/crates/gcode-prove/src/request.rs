@@ -44,6 +44,9 @@ pub enum RequestError {
     /// The conditions exclude every value.
     #[error("--where: no value of the ranges satisfies the conditions: widen a range or correct a condition")]
     NothingLeft,
+    /// The arithmetic is off by too much.
+    #[error("--widen {0}: a part of each result from 0 to 0.001, such as 1e-9")]
+    Widening(String),
     /// Nothing is asked.
     #[error("nothing to prove: give --claim or --bounds")]
     NoQuestion,
