@@ -2,6 +2,7 @@
 use std::collections::HashMap;
 
 use crate::factors::Factors;
+use crate::identities::Identities;
 use crate::interval::{Interval, add_up, mul_up, sub_down};
 use crate::node::{AlarmKind, Binary, Condition, Node, NodeId, Relation, Semantics, Unary};
 use crate::values;
@@ -17,6 +18,7 @@ pub struct Arena {
     factors: Vec<Factors>,
     semantics: Semantics,
     widening: f64,
+    identities: Identities,
 }
 
 /// A node as a key: a number by its bits.
@@ -38,7 +40,14 @@ impl Arena {
 
     /// Returns an arena for a control with these settings.
     pub fn new(semantics: Semantics) -> Self {
-        let mut arena = Self { nodes: Vec::new(), index: HashMap::new(), factors: Vec::new(), semantics, widening: 0.0 };
+        let mut arena = Self {
+            nodes: Vec::new(),
+            index: HashMap::new(),
+            factors: Vec::new(),
+            semantics,
+            widening: 0.0,
+            identities: Identities::default(),
+        };
         arena.constant(0.0);
         arena.constant(1.0);
         arena.constant(-1.0);
@@ -224,6 +233,19 @@ impl Arena {
     /// Returns the node of an operator if the arena has it.
     pub(crate) fn find_binary(&self, operator: Binary, a: NodeId, b: NodeId) -> Option<NodeId> {
         self.index.get(&Key::Binary(operator, a, b)).copied()
+    }
+
+    /// Returns the sums that have been examined for identities.
+    pub(crate) fn identities(&self) -> &Identities {
+        &self.identities
+    }
+
+    /// Returns the node of the half of a node, if the arena has it.
+    pub(crate) fn find_half(&self, x: NodeId) -> Option<NodeId> {
+        let constant = |value: f64| self.index.get(&Key::Constant(value.to_bits())).copied();
+        let quotient = constant(2.0).and_then(|two| self.find_binary(Binary::Div, x, two));
+        let product = || constant(0.5).and_then(|half| self.find_binary(Binary::Mul, x.min(half), x.max(half)));
+        quotient.or_else(product)
     }
 
     /// Returns z of [z + ABS[z]]/2, which is the larger of z and 0 without a rounding.

@@ -2,6 +2,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use crate::algebra;
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_VARIABLES};
 use crate::domain::Domain;
@@ -171,7 +172,7 @@ impl Enclosures {
                 (range, [Some(a), Some(b)])
             }
         };
-        let natural = arena.widened(node, natural);
+        let natural = self.with_identity(arena, node, arena.widened(node, natural));
         if natural.lo() >= natural.hi() || self.basis.degree() == 0 {
             return Form { hull: natural, model: None };
         }
@@ -217,6 +218,29 @@ impl Enclosures {
         // A polynomial within its own rest says nothing.
         let is_useful = model.rest < hull.width() * 0.4999 && !model.is_constant();
         if is_useful { Form { hull, model: Some(model) } } else { self.free_form(node, hull) }
+    }
+
+    /// Returns the range of a node that is a constant but for roundings, as far as a range allows.
+    fn with_identity(&self, arena: &Arena, node: NodeId, range: Interval) -> Interval {
+        let is_sum = matches!(arena.node(node), Node::Binary(Binary::Add | Binary::Sub, ..));
+        if !is_sum
+            || !range.contains(0.0)
+            || range.as_point().is_some()
+            || !arena.identities().contains(node, || algebra::is_identity(arena, node))
+        {
+            return range;
+        }
+        let mut range = range;
+        // The last rounding is a part of the result: the second pass knows it better.
+        for _ in 0..2 {
+            let hull = |other: NodeId| match self.forms.get(other.index()) {
+                _ if other == node => range,
+                Some(Some(form)) => form.hull,
+                _ => Interval::ALL,
+            };
+            range = algebra::range_of(arena, node, &hull).map_or(range, |identity| range.intersect(identity));
+        }
+        range
     }
 
     /// Returns the range of a quotient whose divisor's range has 0.

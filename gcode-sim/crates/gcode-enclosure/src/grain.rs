@@ -58,8 +58,9 @@ fn lowest_bit(value: f64) -> f64 {
     if exponent == 0 {
         return f64::from_bits(1 << fraction.trailing_zeros());
     }
-    let unit = unit_in_last_place(value.abs());
-    unit * f64::from(1_u32 << fraction.trailing_zeros().min(26)).min(2.0_f64.powi(26))
+    // The zeros at the end of the 53 binary digits.
+    let zeros = if fraction == 0 { 52 } else { fraction.trailing_zeros() };
+    unit_in_last_place(value.abs()) * (1_u64 << zeros) as f64
 }
 
 impl Enclosures {

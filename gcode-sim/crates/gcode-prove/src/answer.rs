@@ -170,6 +170,7 @@ fn read<S: Setup>(setup: &S, ask: &Ask) -> Result<(Question, Vec<Claim>), ProveE
         return Err(RequestError::NoQuestion.into());
     }
     check_ranges(setup, &ranges)?;
+    check_bounds(setup, &bounds)?;
     if !(0.0..=MAX_WIDENING).contains(&ask.widening) {
         return Err(RequestError::Widening(ask.widening.to_string()).into());
     }
@@ -199,6 +200,16 @@ fn check_ranges<S: Setup>(setup: &S, ranges: &[Range]) -> Result<(), ProveError>
     for range in ranges {
         let set = run.set_term(range.variable, Term::Number(range.low));
         set.map_err(|alarm| RequestError::Variable(range.variable, alarm.code().to_string()))?;
+    }
+    Ok(())
+}
+
+/// Refuses bounds of variables that no control has, or that aren't stored.
+fn check_bounds<S: Setup>(setup: &S, bounds: &[u32]) -> Result<(), ProveError> {
+    let mut run = SymbolicRun::new(setup.control(&[]).map_err(ProveError::Setup)?);
+    for variable in bounds {
+        let set = run.set_term(*variable, Term::Number(0.0));
+        set.map_err(|alarm| RequestError::BoundsVariable(*variable, alarm.code().to_string()))?;
     }
     Ok(())
 }

@@ -41,6 +41,9 @@ pub enum RequestError {
     /// A variable whose bounds are wanted is unreadable.
     #[error("--bounds {0}: write a variable, '#100'")]
     Bounds(String),
+    /// A variable can't have bounds.
+    #[error("--bounds #{0}: only local and common variables have bounds: {1}")]
+    BoundsVariable(u32, String),
     /// The conditions exclude every value.
     #[error("--where: no value of the ranges satisfies the conditions: widen a range or correct a condition")]
     NothingLeft,
