@@ -11,8 +11,8 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
 use super::library::Folders;
-use super::{ExitStatus, UsageError, options, output, progress};
 use super::rerun::Rerun;
+use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::proof::ProofReport;
 use gcode_control::Control;
 use gcode_prove::{Ask, Setup, Verdict, Watch, prove};
@@ -42,11 +42,23 @@ pub(super) struct Arguments {
     call: Option<String>,
 
     /// Largest time, seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true, display_order = 0)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 10.0,
+        allow_negative_numbers = true,
+        display_order = 0
+    )]
     time: f64,
 
     /// Part of each result by which the control's arithmetic may be off from that of doubles, such as 1e-9
-    #[arg(long = "widen", value_name = "PART", default_value_t = 0.0, allow_negative_numbers = true, display_order = 0)]
+    #[arg(
+        long = "widen",
+        value_name = "PART",
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        display_order = 0
+    )]
     widening: f64,
 
     /// Number of threads [default: the number of processors]
@@ -159,11 +171,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     // The folders have been checked with the request.
     let folders = Folders::new(&program.program, &program.conditions.libraries).ok();
     let found = Mutex::new(Found { folders, ..Found::default() });
-    let controls = Controls {
-        request: &request,
-        found: &found,
-        call: arguments.call.as_deref(),
-    };
+    let controls = Controls { request: &request, found: &found, call: arguments.call.as_deref() };
     let start = Instant::now();
     let clock = || start.elapsed();
     let watch = Watch::new(&clock, Duration::from_secs_f64(arguments.time));

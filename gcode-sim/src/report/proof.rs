@@ -196,7 +196,10 @@ mod tests {
     fn a_share_is_never_rounded_to_nothing() {
         assert_eq!(percent(0.25), "25.00 %");
         assert_eq!(percent(1e-9), "less than 0.01 %");
-        assert_eq!((short(1e300), short(5e-324), short(-0.5)), ("1e300".into(), "5e-324".into(), "-0.5".into()));
+        assert_eq!(
+            (short(1e300), short(5e-324), short(-0.5)),
+            ("1e300".into(), "5e-324".into(), "-0.5".into())
+        );
         assert_eq!(settings_of("travel 1320=X50. 1321=X-5."), ["1320=X50.", "1321=X-5."]);
         assert!(settings_of("#100 LE 5").is_empty());
         assert_eq!(number(3.0), "3.");

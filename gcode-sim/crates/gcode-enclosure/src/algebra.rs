@@ -221,18 +221,23 @@ impl<'a> Algebra<'a> {
         let unit = FUNCTION_ERROR * MARGIN + self.arena.widening();
         match function {
             // Both functions and both conversions, of 90° and 180° at most.
-            Unary::Acos if returns_signed_angles || (self.hull)(x).lo() >= 0.0 => match find(Unary::Asin, x) {
-                Some(sine) => terms(&[(&[(sine, 1)], -1.0), (&[], 90.0)], 600.0 * unit),
-                None => atom,
-            },
+            Unary::Acos if returns_signed_angles || (self.hull)(x).lo() >= 0.0 => {
+                match find(Unary::Asin, x) {
+                    Some(sine) => terms(&[(&[(sine, 1)], -1.0), (&[], 90.0)], 600.0 * unit),
+                    None => atom,
+                }
+            }
             Unary::Sin | Unary::Cos if self.arena.widening() == 0.0 => {
                 let Some(half) = self.half_of(x) else { return atom };
                 let (sine, cosine) = (find(Unary::Sin, half), find(Unary::Cos, half));
                 match (function, sine, cosine) {
                     (Unary::Cos, Some(sine), _) => terms(&[(&[], 1.0), (&[(sine, 2)], -2.0)], 8.0 * unit),
-                    (Unary::Cos, None, Some(cosine)) => terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], 8.0 * unit),
+                    (Unary::Cos, None, Some(cosine)) => {
+                        terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], 8.0 * unit)
+                    }
                     (Unary::Sin, Some(sine), Some(cosine)) => {
-                        let both = if sine < cosine { [(sine, 1), (cosine, 1)] } else { [(cosine, 1), (sine, 1)] };
+                        let both =
+                            if sine < cosine { [(sine, 1), (cosine, 1)] } else { [(cosine, 1), (sine, 1)] };
                         terms(&[(&both, 2.0)], 8.0 * unit)
                     }
                     _ => atom,
@@ -255,7 +260,8 @@ impl<'a> Algebra<'a> {
 
     /// Returns a polynomial × a number.
     fn scaled(&self, polynomial: &Polynomial, factor: f64) -> Polynomial {
-        let mut scaled = Polynomial { error: polynomial.error * factor.abs() * MARGIN, ..Polynomial::default() };
+        let mut scaled =
+            Polynomial { error: polynomial.error * factor.abs() * MARGIN, ..Polynomial::default() };
         for (monomial, value) in &polynomial.terms {
             self.add_term(&mut scaled, monomial.clone(), *value, factor);
         }

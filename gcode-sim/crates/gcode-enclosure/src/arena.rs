@@ -244,7 +244,8 @@ impl Arena {
     pub(crate) fn find_half(&self, x: NodeId) -> Option<NodeId> {
         let constant = |value: f64| self.index.get(&Key::Constant(value.to_bits())).copied();
         let quotient = constant(2.0).and_then(|two| self.find_binary(Binary::Div, x, two));
-        let product = || constant(0.5).and_then(|half| self.find_binary(Binary::Mul, x.min(half), x.max(half)));
+        let product =
+            || constant(0.5).and_then(|half| self.find_binary(Binary::Mul, x.min(half), x.max(half)));
         quotient.or_else(product)
     }
 

@@ -79,7 +79,9 @@ impl Enclosures {
             let range = match arena.node(id) {
                 Node::Constant(_) | Node::Input(_) => continue,
                 Node::Unary(function, x) => hull::unary(function, self.hull(x), semantics),
-                Node::Binary(Binary::Div, a, b) if self.hull(b).contains(0.0) => self.quotient_hull(arena, a, b),
+                Node::Binary(Binary::Div, a, b) if self.hull(b).contains(0.0) => {
+                    self.quotient_hull(arena, a, b)
+                }
                 Node::Binary(operator, a, b) => hull::binary(operator, self.hull(a), self.hull(b), semantics),
             };
             let narrower = form.hull.intersect(arena.widened(id, range));

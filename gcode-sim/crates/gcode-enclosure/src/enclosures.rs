@@ -173,6 +173,7 @@ impl Enclosures {
             }
         };
         let natural = self.with_identity(arena, node, arena.widened(node, natural));
+        let natural = self.with_ratio(arena, node, natural);
         if natural.lo() >= natural.hi() || self.basis.degree() == 0 {
             return Form { hull: natural, model: None };
         }

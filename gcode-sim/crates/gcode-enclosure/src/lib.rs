@@ -86,6 +86,7 @@ mod model;
 mod node;
 mod polynomial_range;
 mod proof;
+mod ratio;
 mod rounding;
 #[cfg(test)]
 mod tests;

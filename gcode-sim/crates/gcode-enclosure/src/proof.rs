@@ -126,7 +126,12 @@ impl<'a> Prover<'a> {
     }
 
     /// Returns true if x is a − b, y is 0 and `relation` holds of a and b, or the same of y.
-    fn has_sign_of_difference(&self, x: NodeId, y: NodeId, relation: impl Fn(NodeId, NodeId) -> bool) -> bool {
+    fn has_sign_of_difference(
+        &self,
+        x: NodeId,
+        y: NodeId,
+        relation: impl Fn(NodeId, NodeId) -> bool,
+    ) -> bool {
         match (self.arena.node(x), self.arena.node(y)) {
             (Node::Binary(Binary::Sub, a, b), _) if y == Arena::ZERO => relation(a, b),
             (_, Node::Binary(Binary::Sub, a, b)) if x == Arena::ZERO => relation(b, a),
@@ -457,7 +462,8 @@ impl<'a> Prover<'a> {
         let (x, y) = if x == Arena::ZERO { (y, x) } else { (x, y) };
         if y != Arena::ZERO {
             // Of a difference that isn't 0 the sides differ.
-            let differ = |a, b| self.arena.find_binary(Binary::Sub, a, b).is_some_and(|d| self.is_not_zero(d));
+            let differ =
+                |a, b| self.arena.find_binary(Binary::Sub, a, b).is_some_and(|d| self.is_not_zero(d));
             return differ(x, y) || differ(y, x);
         }
         match self.arena.node(x) {
@@ -485,7 +491,8 @@ impl<'a> Prover<'a> {
                 parts(b, c) || parts(c, b)
             }
             (2 | 3, Node::Binary(Binary::Mul, b, c)) => {
-                let of = |factor, b| self.arena.as_constant(factor) == Some(f64::from(k)) && self.ge(b, a, depth);
+                let of =
+                    |factor, b| self.arena.as_constant(factor) == Some(f64::from(k)) && self.ge(b, a, depth);
                 of(b, c) || of(c, b)
             }
             _ => false,

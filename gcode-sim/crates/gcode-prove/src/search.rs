@@ -49,7 +49,16 @@ impl<'s, L: Library> Prober<'s, L> {
         shared: &'s Shared,
         watch: &'s Watch<'s>,
     ) -> Self {
-        Self { tree, points: Points::default(), witness, question, shared, watch, compared: 0, undecided_boxes: 0 }
+        Self {
+            tree,
+            points: Points::default(),
+            witness,
+            question,
+            shared,
+            watch,
+            compared: 0,
+            undecided_boxes: 0,
+        }
     }
 
     /// Tries a point; claims that fail there are refuted once the control has confirmed it.

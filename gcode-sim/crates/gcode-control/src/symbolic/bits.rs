@@ -39,7 +39,9 @@ impl<T: Terms> Evaluation<'_, '_, T> {
             let function = "AND, OR, XOR".into();
             return Err(Alarm::OutOfRange { function, value: low.min(high) }.located_at(span).into());
         }
-        if self.oracle.ask(is(Relation::Lt, f64::from(i32::MIN)))? || self.oracle.ask(is(Relation::Gt, MAX_BITS))? {
+        if self.oracle.ask(is(Relation::Lt, f64::from(i32::MIN)))?
+            || self.oracle.ask(is(Relation::Gt, MAX_BITS))?
+        {
             return Err(Alarm::IntegerOverflow.located_at(span).into());
         }
         Ok(())
