@@ -21,7 +21,12 @@ impl Rerun {
     pub(super) fn new(program: &Path, conditions: &RunConditions, call: Option<String>) -> Self {
         let folder = program.parent().map(|folder| folder.display().to_string());
         let folder = folder.filter(|folder| !folder.is_empty()).unwrap_or_else(|| ".".to_owned());
-        Self { program: quoted(&program.display().to_string()), folder, flags: flags(conditions), call }
+        Self {
+            program: quoted(&program.display().to_string()),
+            folder,
+            flags: flags(conditions, call.is_some()),
+            call,
+        }
     }
 }
 
@@ -52,11 +57,12 @@ impl Counterexample for Rerun {
 const CALLER: u32 = 9999;
 
 /// Returns the flags of conditions as they are typed.
-fn flags(conditions: &RunConditions) -> Vec<String> {
+fn flags(conditions: &RunConditions, is_called: bool) -> Vec<String> {
     let path = |path: &std::path::PathBuf| path.display().to_string();
     let mut flags = Vec::new();
     let mut add = |name: &str, value: String| flags.push(format!("--{name} {}", quoted(&value)));
-    if let Some(main) = &conditions.main_program {
+    // Behind a call the calling program is the main one.
+    if let Some(main) = conditions.main_program.as_ref().filter(|_| !is_called) {
         add("program", main.clone());
     }
     conditions.libraries.iter().for_each(|folder| add("lib", path(folder)));

@@ -12,52 +12,16 @@ use crate::hull::FUNCTION_ERROR;
 use crate::interval::{Interval, add_up};
 use crate::model::{HALF_ULP, is_power_of_two};
 use crate::node::{Binary, Node, NodeId, Semantics, Unary};
-
-/// Product of powers of atoms, in their order.
-type Monomial = Vec<(NodeId, u32)>;
+use crate::polynomial::{Monomial, Polynomial, constant_of, merged};
 
 /// Largest number of monomials.
 const MAX_TERMS: usize = 48;
-/// Largest total degree.
-const MAX_DEGREE: u32 = 16;
 /// Largest number of nodes that are looked at.
 const MAX_NODES: usize = 120;
 /// Bound of what an operation loses to underflow.
 const LOST: f64 = 1e-300;
 /// Margin for the arithmetic of a bound.
 const MARGIN: f64 = 1.0 + 1e-9;
-/// Part of the largest coefficient below which one is a rounding.
-const NEGLIGIBLE: f64 = 1e-12;
-
-/// Polynomial of atoms; the value is within `error` of it.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Polynomial {
-    terms: BTreeMap<Monomial, f64>,
-    error: f64,
-}
-
-impl Polynomial {
-    fn constant(value: f64) -> Self {
-        let mut polynomial = Self::default();
-        if value != 0.0 {
-            polynomial.terms.insert(Vec::new(), value);
-        }
-        polynomial
-    }
-
-    fn atom(node: NodeId) -> Self {
-        Self { terms: BTreeMap::from([(vec![(node, 1)], 1.0)]), error: 0.0 }
-    }
-
-    /// Returns true for a polynomial without atoms but for roundings of its coefficients.
-    fn is_constant(&self, size: f64) -> bool {
-        self.terms.iter().all(|(monomial, value)| monomial.is_empty() || value.abs() <= size * NEGLIGIBLE)
-    }
-
-    fn largest(&self) -> f64 {
-        self.terms.values().fold(0.0, |most, value| f64::max(most, value.abs()))
-    }
-}
 
 /// Algebra over the ranges of nodes.
 pub(crate) struct Algebra<'a> {
@@ -203,10 +167,50 @@ impl<'a> Algebra<'a> {
                 square.error = add_up(square.error, self.rounding(node, FUNCTION_ERROR));
                 square
             }
+            (Binary::Atan, _) => return self.direction(a, b).or_else(|| Some(Polynomial::atom(node))),
             _ => return Some(Polynomial::atom(node)),
         };
         result.error = add_up(result.error, self.rounding(node, HALF_ULP));
         (result.terms.len() <= MAX_TERMS).then_some(result)
+    }
+
+    /// Returns ATAN of r·SIN[t] and r·COS[t]: t, where t has one turn and r is positive.
+    fn direction(&mut self, y: NodeId, x: NodeId) -> Option<Polynomial> {
+        let ((radius, angle), of_x) = (self.polar(y, Unary::Sin)?, self.polar(x, Unary::Cos)?);
+        let turn = match self.arena.semantics().returns_signed_angles {
+            true => Interval::new(-180.0, 180.0),
+            false => Interval::new(0.0, 360.0),
+        };
+        let range = (self.hull)(angle);
+        // Neither coordinate underflows or overflows, but that of an angle below any rounding.
+        let is_moderate =
+            |radius: NodeId| (self.hull)(radius).lo() >= 1e-10 && (self.hull)(radius).hi() <= 1e100;
+        if (radius, angle) != of_x
+            || range.intersect(turn) != range
+            || !radius.is_none_or(is_moderate)
+            || self.arena.widening() > 0.0
+        {
+            return None;
+        }
+        let mut direction = (*self.node(angle)?).clone();
+        // Together: the conversion of at most 360°, two functions and two products as parts of a radian, the arc tangent
+        // and its conversion of at most 180°, the sum with a turn.
+        direction.error = add_up(direction.error, 6000.0 * f64::EPSILON);
+        Some(direction)
+    }
+
+    /// Returns r and t of r·f[t]; no r where it is 1.
+    fn polar(&self, node: NodeId, function: Unary) -> Option<(Option<NodeId>, NodeId)> {
+        let angle_of = |node: NodeId| match self.arena.node(node) {
+            Node::Unary(own, angle) if own == function => Some(angle),
+            _ => None,
+        };
+        if let Some(angle) = angle_of(node) {
+            return Some((None, angle));
+        }
+        let Node::Binary(Binary::Mul, a, b) = self.arena.node(node) else { return None };
+        let of_left = angle_of(a).map(|angle| (Some(b), angle));
+        of_left.or_else(|| angle_of(b).map(|angle| (Some(a), angle)))
     }
 
     /// Returns a function of one value: an atom, or what an identity says with another atom of the arena.
@@ -303,8 +307,8 @@ impl<'a> Algebra<'a> {
             return None;
         }
         let (of_a, of_b) = (self.norm(a), self.norm(b));
-        let mut product = Polynomial::default();
-        product.error = (of_a * b.error + of_b * a.error + a.error * b.error) * MARGIN;
+        let error = (of_a * b.error + of_b * a.error + a.error * b.error) * MARGIN;
+        let mut product = Polynomial { error, ..Polynomial::default() };
         for (left, x) in &a.terms {
             for (right, y) in &b.terms {
                 self.add_term(&mut product, merged(left, right)?, *x, *y);
@@ -451,22 +455,4 @@ impl<'a> Algebra<'a> {
         let bound = add_up(bound, self.rounding(node, HALF_ULP));
         bound.is_finite().then(|| (Interval::new(-bound, bound), rest))
     }
-}
-
-fn constant_of(polynomial: &Polynomial) -> f64 {
-    polynomial.terms.get(&Vec::new()).copied().unwrap_or(0.0)
-}
-
-/// Returns the product of two monomials; `None` beyond the largest degree.
-fn merged(a: &Monomial, b: &Monomial) -> Option<Monomial> {
-    let mut product = a.clone();
-    for &(atom, power) in b {
-        match product.iter_mut().find(|(known, _)| *known == atom) {
-            Some((_, known)) => *known += power,
-            None => product.push((atom, power)),
-        }
-    }
-    product.sort_unstable();
-    let degree: u32 = product.iter().map(|(_, power)| power).sum();
-    (degree <= MAX_DEGREE).then_some(product)
 }

@@ -22,7 +22,7 @@ const STEPS: u32 = 4000;
 
 /// Proves relations between nodes from their ranges, their structure and the conditions of a path.
 pub(crate) struct Prover<'a> {
-    arena: &'a Arena,
+    pub(crate) arena: &'a Arena,
     hull: &'a dyn Fn(NodeId) -> Interval,
     conditions: &'a [Condition],
     steps: Cell<u32>,
@@ -55,7 +55,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Returns the depth below, unless the proof has become too long.
-    fn deeper(&self, depth: u32) -> Option<u32> {
+    pub(crate) fn deeper(&self, depth: u32) -> Option<u32> {
         self.steps.set(self.steps.get() + 1);
         depth.checked_sub(1).filter(|_| self.steps.get() < STEPS)
     }
@@ -105,7 +105,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Proves x ≥ y.
-    fn ge(&self, x: NodeId, y: NodeId, depth: u32) -> bool {
+    pub(crate) fn ge(&self, x: NodeId, y: NodeId, depth: u32) -> bool {
         if x == y || self.range(x).lo() >= self.range(y).hi() {
             return true;
         }
@@ -477,49 +477,5 @@ impl<'a> Prover<'a> {
             }
             _ => false,
         }
-    }
-
-    /// Proves x ≥ k·a as the control computes the product, for k of 1, 2 and 3.
-    ///
-    /// a + a is 2·a without a rounding, and 2·a + a rounds as 3·a does: from b ≥ 2·a and c ≥ a follows b + c ≥ 3·a.
-    fn ge_multiple(&self, x: NodeId, k: u32, a: NodeId, depth: u32) -> bool {
-        let Some(depth) = self.deeper(depth) else { return false };
-        match (k, self.arena.node(x)) {
-            (1, _) => self.ge(x, a, depth),
-            (2 | 3, Node::Binary(Binary::Add, b, c)) => {
-                let parts = |b, c| self.ge_multiple(b, k - 1, a, depth) && self.ge(c, a, depth);
-                parts(b, c) || parts(c, b)
-            }
-            (2 | 3, Node::Binary(Binary::Mul, b, c)) => {
-                let of =
-                    |factor, b| self.arena.as_constant(factor) == Some(f64::from(k)) && self.ge(b, a, depth);
-                of(b, c) || of(c, b)
-            }
-            _ => false,
-        }
-    }
-
-    /// Proves x ≤ k·a, as [`Prover::ge_multiple`].
-    fn le_multiple(&self, x: NodeId, k: u32, a: NodeId, depth: u32) -> bool {
-        let Some(depth) = self.deeper(depth) else { return false };
-        match (k, self.arena.node(x)) {
-            (1, _) => self.ge(a, x, depth),
-            (2 | 3, Node::Binary(Binary::Add, b, c)) => {
-                let parts = |b, c| self.le_multiple(b, k - 1, a, depth) && self.ge(a, c, depth);
-                parts(b, c) || parts(c, b)
-            }
-            _ => false,
-        }
-    }
-
-    /// Returns the number and the node of a product by 2 or 3.
-    fn multiple(&self, x: NodeId) -> Option<(u32, NodeId)> {
-        let Node::Binary(Binary::Mul, a, b) = self.arena.node(x) else { return None };
-        let of = |factor: NodeId, x| match self.arena.as_constant(factor) {
-            Some(2.0) => Some((2, x)),
-            Some(3.0) => Some((3, x)),
-            _ => None,
-        };
-        of(a, b).or_else(|| of(b, a))
     }
 }

@@ -124,6 +124,26 @@ fn a_double_angle_and_complements() {
 }
 
 #[test]
+fn the_direction_of_polar_coordinates() {
+    for is_signed in [false, true] {
+        let semantics = crate::Semantics { returns_signed_angles: is_signed, ..Default::default() };
+        let mut f = Formulas(Arena::new(semantics));
+        let (r, t) = (f.0.input(0), f.0.input(1));
+        let (sine, cosine) = (f.0.unary(Unary::Sin, t), f.0.unary(Unary::Cos, t));
+        let (y, x) = (f.of(Binary::Mul, r, sine), f.of(Binary::Mul, r, cosine));
+        let angle = f.of(Binary::Atan, y, x);
+        let rest = f.of(Binary::Sub, angle, t);
+        let turn = if is_signed { (-180.0, 180.0) } else { (0.0, 360.0) };
+        assert!(enclosed(&f, rest, &[(0.5, 10.0), turn]).magnitude() < 1e-11);
+        // Beyond the turn, and for a negative radius, the direction is another one.
+        let beyond = enclosed(&f, rest, &[(0.5, 10.0), (turn.0, turn.1 + 1.0)]);
+        assert!(beyond.lo() <= -359.0, "{beyond:?}");
+        let opposite = enclosed(&f, rest, &[(-10.0, 10.0), turn]);
+        assert!(opposite.hi() >= 179.0, "{opposite:?}");
+    }
+}
+
+#[test]
 fn roots_by_two_formulas() {
     let mut f = Formulas(Arena::default());
     let [a, b, r] = [0, 1, 2].map(|input| f.0.input(input));
