@@ -169,7 +169,8 @@ fn roots_by_two_formulas() {
     let (difference, sum) = (f.of(Binary::Sub, high, low), f.of(Binary::Add, high, low));
     let quotient = f.of(Binary::Div, Arena::ONE, sum);
     let rest = f.of(Binary::Sub, difference, quotient);
-    assert!(enclosed(&f, rest, &[(0.0, 1000.0)]).magnitude() < 1e-12);
+    // The squares are off by some units of 1001, 1.1e-13 each; the least sum is 1.
+    assert!(enclosed(&f, rest, &[(0.0, 1000.0)]).magnitude() < 1e-11);
 }
 
 #[test]
