@@ -12,7 +12,7 @@
 //! -- bounds #100: 0 2.236
 //! ```
 //!
-//! A program that doesn't begin with O is O0001. `where`, `call`, `max-blocks N` and `control KEY=VALUE` may be left out. `bounds` has the least and the largest value
+//! Lines that begin with `# ` are remarks. A program that doesn't begin with O is O0001. `where`, `call`, `max-blocks N`, `control KEY=VALUE` and `widen PART` may be left out. `bounds` has the least and the largest value
 //! that a run gives: the bounds must hold both, and be wider by 5 % at most. The counterexample of a refuted claim must lie in the
 //! ranges, and the control must refute the claim when it runs that point alone.
 use std::time::{Duration, Instant};
@@ -27,6 +27,9 @@ use crate::Case;
 
 /// Time that a case may take; each is decided far sooner.
 const LIMIT: Duration = Duration::from_secs(60);
+
+/// Time for a case with a claim that isn't decided.
+const SHORT: Duration = Duration::from_secs(3);
 
 /// Controls of a case.
 struct Controls {
@@ -92,7 +95,8 @@ impl<'t> Rows<'t> {
                 ("call", call) => self.call = Some(call.to_owned()),
                 ("max-blocks", blocks) => self.ask.max_blocks = blocks.parse().unwrap(),
                 ("control", setting) => self.setting = setting.split_once('='),
-                _ => panic!("{part}: neither where, call, max-blocks nor control"),
+                ("widen", widening) => self.ask.widening = widening.parse().unwrap(),
+                _ => panic!("{part}: neither where, call, max-blocks, control nor widen"),
             }
         }
     }
@@ -156,8 +160,10 @@ pub(crate) fn run(case: &Case) {
     for entry in text.split("\n== ").skip(1) {
         let (name, rest) = entry.split_once('\n').unwrap();
         let rows = Rows::of(rest.lines().filter_map(|line| line.strip_prefix("-- ")));
-        let blocks: Vec<_> =
-            rest.lines().filter(|line| !line.is_empty() && !line.starts_with("-- ")).collect();
+        let blocks = rest
+            .lines()
+            .filter(|line| !line.is_empty() && !line.starts_with("-- ") && !line.starts_with("# "));
+        let blocks: Vec<_> = blocks.collect();
         let head = if blocks[0].starts_with('O') { "" } else { "O0001\n" };
         let program = format!("{head}{}\n", blocks.join("\n"));
         let mut request = Request::new("case.nc", program.into_bytes(), Machine::default());
@@ -168,7 +174,9 @@ pub(crate) fn run(case: &Case) {
         let start = Instant::now();
         let clock = || start.elapsed();
         count += 1;
-        match prove(&controls, &rows.ask, &Watch::new(&clock, LIMIT)) {
+        // What can't be decided takes all the time.
+        let limit = if rows.verdicts.contains(&"undecided") { SHORT } else { LIMIT };
+        match prove(&controls, &rows.ask, &Watch::new(&clock, limit)) {
             Ok(answer) => {
                 for difference in rows.differences(&answer, &controls) {
                     wrong.push_str(&format!("{name}: {difference}\n"));

@@ -30,6 +30,7 @@ mod prove;
 mod readings;
 mod reference;
 mod render;
+mod rerun;
 mod run;
 pub mod schema;
 mod settings;

@@ -1,8 +1,9 @@
 //! `gcode-sim prove`: claims on a program for all values of its variables at once.
 #![expect(clippy::disallowed_methods, reason = "the command line reads the clock")]
 
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -10,6 +11,7 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
 use super::library::Folders;
+use super::rerun::Rerun;
 use super::{ExitStatus, UsageError, options, output, progress};
 use crate::report::proof::ProofReport;
 use gcode_control::Control;
@@ -40,8 +42,24 @@ pub(super) struct Arguments {
     call: Option<String>,
 
     /// Largest time, seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, display_order = 0)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 10.0,
+        allow_negative_numbers = true,
+        display_order = 0
+    )]
     time: f64,
+
+    /// Part of each result by which the control's arithmetic may be off from that of doubles, such as 1e-9
+    #[arg(
+        long = "widen",
+        value_name = "PART",
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        display_order = 0
+    )]
+    widening: f64,
 
     /// Number of threads [default: the number of processors]
     #[arg(long, value_name = "N", display_order = 0)]
@@ -58,30 +76,48 @@ pub(super) struct Arguments {
 /// Source of the controls of a request.
 struct Controls<'a> {
     request: &'a Request,
-    program: &'a Path,
-    libraries: &'a [PathBuf],
+    found: &'a Mutex<Found>,
     call: Option<&'a str>,
 }
 
-/// Folders of called programs, if they can be read.
-struct OptionalFolders(Option<Folders>);
+/// Called programs that have been searched, by number and by name; a folder is read once, not by every thread.
+#[derive(Default)]
+struct Found {
+    folders: Option<Folders>,
+    by_number: BTreeMap<u32, FoundProgram>,
+    by_name: BTreeMap<String, FoundProgram>,
+}
 
-impl gcode_lang::program::Library for OptionalFolders {
-    fn program(&mut self, number: u32) -> Option<(String, gcode_lang::source::Bytes)> {
-        self.0.as_mut()?.program(number)
-    }
+/// Name and text of a program, if there is one.
+type FoundProgram = Option<(String, gcode_lang::source::Bytes)>;
 
-    fn named(&mut self, name: &str) -> Option<(String, gcode_lang::source::Bytes)> {
-        self.0.as_mut()?.named(name)
-    }
+/// Library of one thread.
+struct SharedFolders<'a>(&'a Mutex<Found>);
 
-    fn read_error(&self) -> Option<String> {
-        self.0.as_ref()?.read_error()
+impl SharedFolders<'_> {
+    fn found(&self) -> std::sync::MutexGuard<'_, Found> {
+        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
 
-impl Setup for Controls<'_> {
-    type Library = OptionalFolders;
+impl gcode_lang::program::Library for SharedFolders<'_> {
+    fn program(&mut self, number: u32) -> FoundProgram {
+        let Found { folders, by_number, .. } = &mut *self.found();
+        by_number.entry(number).or_insert_with(|| folders.as_mut()?.program(number)).clone()
+    }
+
+    fn named(&mut self, name: &str) -> FoundProgram {
+        let Found { folders, by_name, .. } = &mut *self.found();
+        by_name.entry(name.to_owned()).or_insert_with(|| folders.as_mut()?.named(name)).clone()
+    }
+
+    fn read_error(&self) -> Option<String> {
+        self.found().folders.as_ref()?.read_error()
+    }
+}
+
+impl<'a> Setup for Controls<'a> {
+    type Library = SharedFolders<'a>;
 
     fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
         let mut request = self.request.clone();
@@ -92,10 +128,16 @@ impl Setup for Controls<'_> {
         gcode_session::set_up(&request, self.call).map_err(|error| error.to_string())
     }
 
-    fn library(&self) -> OptionalFolders {
-        // The folders have been checked with the request.
-        OptionalFolders(Folders::new(self.program, self.libraries).ok())
+    fn library(&self) -> SharedFolders<'a> {
+        SharedFolders(self.found)
     }
+}
+
+/// Returns true if a setting sets a variable that has a range.
+fn names_range(set: &str, ranges: &[String]) -> bool {
+    let variable = |text: &str| text.split_once('=').map(|(variable, _)| variable.trim().to_owned());
+    let set = variable(set);
+    set.is_some() && ranges.iter().any(|range| variable(range) == set)
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
@@ -112,6 +154,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     {
         return Err(UsageError::new("--call: write one block, 'G65 P8101 A#101'"));
     }
+    let conditions = &arguments.program.conditions;
+    if let Some(set) = conditions.set.iter().find(|set| names_range(set, &arguments.ranges)) {
+        return Err(UsageError::new(format!("--set '{set}': this variable has a --range: omit one of them")));
+    }
     let one = NonZeroUsize::MIN;
     let ask = Ask {
         ranges: arguments.ranges.clone(),
@@ -120,20 +166,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         bounds: arguments.bounds.clone(),
         max_blocks: request.limits.blocks,
         threads: arguments.threads.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
+        widening: arguments.widening,
     };
-    let controls = Controls {
-        request: &request,
-        program: &program.program,
-        libraries: &program.conditions.libraries,
-        call: arguments.call.as_deref(),
-    };
+    // The folders have been checked with the request.
+    let folders = Folders::new(&program.program, &program.conditions.libraries).ok();
+    let found = Mutex::new(Found { folders, ..Found::default() });
+    let controls = Controls { request: &request, found: &found, call: arguments.call.as_deref() };
     let start = Instant::now();
     let clock = || start.elapsed();
     let watch = Watch::new(&clock, Duration::from_secs_f64(arguments.time));
     let answer = progress::of_proof(&watch, || prove(&controls, &ask, &watch));
     let answer = answer.map_err(|error| UsageError::new(error.to_string()))?;
-    let name = program.program.display().to_string();
-    let report = ProofReport::new(&answer, start.elapsed().as_secs_f64(), name, arguments.call.clone());
+    let rerun = Rerun::new(&program.program, &arguments.program.conditions, arguments.call.clone());
+    let report = ProofReport::new(&answer, start.elapsed().as_secs_f64(), rerun);
     output::report(&report, ProofReport::text, arguments.format)?;
     Ok(if answer.verdict == Verdict::Proved { ExitStatus::Passed } else { ExitStatus::Failed })
 }

@@ -28,10 +28,18 @@ pub(crate) struct ProofReport {
     unfollowed: Vec<String>,
     /// No run is known to end without an alarm: a condition at the end says nothing then.
     never_ends: bool,
+    /// Text of the counterexamples, in the order of the claims.
     #[serde(skip)]
-    call: Option<String>,
-    #[serde(skip)]
-    program: String,
+    counterexamples: Vec<String>,
+}
+
+/// How a counterexample is run.
+pub(crate) trait Counterexample {
+    /// Returns the block that is run instead of the program.
+    fn call(&self) -> Option<&str>;
+
+    /// Returns the command that runs the program with these variables, `#1=2`, and these settings of the control.
+    fn command(&self, sets: &[String], settings: &[String]) -> String;
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -69,8 +77,8 @@ fn row(answer: &ClaimAnswer) -> ClaimRow {
 }
 
 impl ProofReport {
-    /// Returns the report; `call` is the block that was run instead of the program.
-    pub(crate) fn new(answer: &Answer, seconds: f64, program: String, call: Option<String>) -> Self {
+    /// Returns the report.
+    pub(crate) fn new(answer: &Answer, seconds: f64, rerun: impl Counterexample) -> Self {
         let bounds = answer
             .bounds
             .iter()
@@ -85,29 +93,29 @@ impl ProofReport {
             seconds,
             unfollowed: answer.unfollowed.clone(),
             never_ends: answer.never_ends,
-            call,
-            program,
+            counterexamples: answer.claims.iter().map(|claim| counterexample(claim, &rerun)).collect(),
         }
     }
 
     /// Returns the report as text.
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
-        for row in &self.claims {
+        for (row, counterexample) in self.claims.iter().zip(&self.counterexamples) {
             let verdict = match row.verdict {
                 VerdictName::Proved => "proved   ",
                 VerdictName::Refuted => "REFUTED  ",
                 VerdictName::Undecided => "undecided",
             };
             _ = writeln!(text, "{verdict}  {}", row.claim);
-            if let Some(values) = &row.counterexample {
-                text.push_str(&self.counterexample(values));
-            }
+            text.push_str(counterexample);
         }
         for (variable, range) in &self.bounds {
             _ = match range {
-                Some([low, high]) => writeln!(text, "{variable} from {low} to {high}"),
-                None => writeln!(text, "{variable} has no bounds: no run gives it a value that is followed"),
+                Some([low, high]) => writeln!(text, "{variable} from {} to {}", short(*low), short(*high)),
+                None if self.unfollowed.is_empty() => {
+                    writeln!(text, "{variable} has no bounds: no run gives it a value")
+                }
+                None => writeln!(text, "{variable} has no bounds that are found"),
             };
         }
         if self.undecided_share > 0.0 {
@@ -126,34 +134,38 @@ impl ProofReport {
         _ = writeln!(text, "{} {boxes} and {runs}, {:.2} s", self.boxes, self.seconds);
         text
     }
+}
 
-    /// Returns a counterexample as a program to run, and as the command that runs it.
-    fn counterexample(&self, values: &BTreeMap<String, f64>) -> String {
-        let mut text = String::new();
-        let are_written = values.values().all(|value| digits(*value) <= MAX_DIGITS);
-        if are_written {
-            for (variable, value) in values {
-                _ = writeln!(text, "             {variable}={}", number(*value));
-            }
+/// Returns the settings of a claim on stroke limits.
+fn settings_of(claim: &str) -> Vec<String> {
+    let mut words = claim.split_whitespace();
+    let is_travel = words.next().is_some_and(|word| word.eq_ignore_ascii_case("travel"));
+    words.filter(|_| is_travel).map(str::to_owned).collect()
+}
+
+/// Returns a counterexample as a program to run, and as the command that runs it.
+fn counterexample(claim: &ClaimAnswer, rerun: &impl Counterexample) -> String {
+    let Some(values) = &claim.counterexample else { return String::new() };
+    let mut text = String::new();
+    if let Some(call) = rerun.call()
+        && values.iter().all(|(_, value)| digits(*value) <= MAX_DIGITS)
+    {
+        for (variable, value) in values {
+            _ = writeln!(text, "             #{variable}={}", number(*value));
         }
-        let sets: Vec<_> =
-            values.iter().map(|(variable, value)| format!("--set '{variable}={value}'")).collect();
-        let sets = sets.join(" ");
-        match &self.call {
-            Some(call) => {
-                _ = writeln!(text, "             {call}\n             M30");
-                if !are_written {
-                    // Numbers that a program can't write are set before it runs.
-                    _ = writeln!(
-                        text,
-                        "           gcode-sim run CALL.nc {sets}, where CALL.nc is this program"
-                    );
-                }
-            }
-            None => _ = writeln!(text, "           gcode-sim run {} {sets}", self.program),
-        }
-        text
+        _ = writeln!(text, "             {call}\n             M30");
     }
+    let sets: Vec<_> =
+        values.iter().map(|(variable, value)| format!("#{variable}={}", short(*value))).collect();
+    _ = writeln!(text, "           {}", rerun.command(&sets, &settings_of(&claim.claim)));
+    text
+}
+
+/// Returns a number with an exponent where its digits would fill a line.
+fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    let is_long = magnitude != 0.0 && !(1e-6..1e15).contains(&magnitude);
+    if is_long { format!("{value:e}") } else { value.to_string() }
 }
 
 /// Largest number of digits of a number in an expression (PS0003).
@@ -184,6 +196,12 @@ mod tests {
     fn a_share_is_never_rounded_to_nothing() {
         assert_eq!(percent(0.25), "25.00 %");
         assert_eq!(percent(1e-9), "less than 0.01 %");
+        assert_eq!(
+            (short(1e300), short(5e-324), short(-0.5)),
+            ("1e300".into(), "5e-324".into(), "-0.5".into())
+        );
+        assert_eq!(settings_of("travel 1320=X50. 1321=X-5."), ["1320=X50.", "1321=X-5."]);
+        assert!(settings_of("#100 LE 5").is_empty());
         assert_eq!(number(3.0), "3.");
         assert_eq!(number(-0.25), "-0.25");
         assert_eq!((digits(-12345678901.5), digits(1e-12)), (12, 13));

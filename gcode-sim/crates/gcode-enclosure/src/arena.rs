@@ -2,6 +2,8 @@
 use std::collections::HashMap;
 
 use crate::factors::Factors;
+use crate::identities::Identities;
+use crate::interval::{Interval, add_up, mul_up, sub_down};
 use crate::node::{AlarmKind, Binary, Condition, Node, NodeId, Relation, Semantics, Unary};
 use crate::values;
 
@@ -15,6 +17,8 @@ pub struct Arena {
     index: HashMap<Key, NodeId>,
     factors: Vec<Factors>,
     semantics: Semantics,
+    widening: f64,
+    identities: Identities,
 }
 
 /// A node as a key: a number by its bits.
@@ -36,11 +40,64 @@ impl Arena {
 
     /// Returns an arena for a control with these settings.
     pub fn new(semantics: Semantics) -> Self {
-        let mut arena = Self { nodes: Vec::new(), index: HashMap::new(), factors: Vec::new(), semantics };
+        let mut arena = Self {
+            nodes: Vec::new(),
+            index: HashMap::new(),
+            factors: Vec::new(),
+            semantics,
+            widening: 0.0,
+            identities: Identities::default(),
+        };
         arena.constant(0.0);
         arena.constant(1.0);
         arena.constant(-1.0);
         arena
+    }
+
+    /// Returns the arena of a control whose operations have results that may be off by this part of them, 0 to 0.001.
+    ///
+    /// Then no proof rests on how a double rounds. ABS, FIX, FUP, ROUND, comparisons and operators of whole numbers are
+    /// exact, a difference has its sign, and the same operation on the same numbers has the same result.
+    #[must_use]
+    pub fn with_widening(self, widening: f64) -> Self {
+        Self { widening: widening.clamp(0.0, 1e-3), ..self }
+    }
+
+    /// Returns the part of a result by which it may be off.
+    pub fn widening(&self) -> f64 {
+        self.widening
+    }
+
+    /// Returns the range of results of a node's operation that are off by no more than the widening.
+    pub(crate) fn widened(&self, node: NodeId, range: Interval) -> Interval {
+        if self.widening == 0.0 || range.is_empty() || !self.is_widened(node) {
+            return range;
+        }
+        let by = |end: f64| mul_up(end.abs(), self.widening);
+        Interval::new(sub_down(range.lo(), by(range.lo())), add_up(range.hi(), by(range.hi())))
+    }
+
+    /// Returns true for an operation whose result may be off by the widening.
+    pub(crate) fn is_widened(&self, node: NodeId) -> bool {
+        match self.node(node) {
+            Node::Constant(_) | Node::Input(_) => false,
+            Node::Unary(function, _) => matches!(
+                function,
+                Unary::Sqrt
+                    | Unary::Sin
+                    | Unary::Cos
+                    | Unary::Tan
+                    | Unary::Asin
+                    | Unary::Acos
+                    | Unary::Atan
+                    | Unary::Exp
+                    | Unary::Ln
+            ),
+            Node::Binary(operator, ..) => matches!(
+                operator,
+                Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Pow | Binary::Atan
+            ),
+        }
     }
 
     /// Returns the settings.
@@ -171,6 +228,25 @@ impl Arena {
     /// Returns the node of a function if the arena has it.
     pub(crate) fn find_unary(&self, function: Unary, x: NodeId) -> Option<NodeId> {
         self.index.get(&Key::Unary(function, x)).copied()
+    }
+
+    /// Returns the node of an operator if the arena has it.
+    pub(crate) fn find_binary(&self, operator: Binary, a: NodeId, b: NodeId) -> Option<NodeId> {
+        self.index.get(&Key::Binary(operator, a, b)).copied()
+    }
+
+    /// Returns the sums that have been examined for identities.
+    pub(crate) fn identities(&self) -> &Identities {
+        &self.identities
+    }
+
+    /// Returns the node of the half of a node, if the arena has it.
+    pub(crate) fn find_half(&self, x: NodeId) -> Option<NodeId> {
+        let constant = |value: f64| self.index.get(&Key::Constant(value.to_bits())).copied();
+        let quotient = constant(2.0).and_then(|two| self.find_binary(Binary::Div, x, two));
+        let product =
+            || constant(0.5).and_then(|half| self.find_binary(Binary::Mul, x.min(half), x.max(half)));
+        quotient.or_else(product)
     }
 
     /// Returns z of [z + ABS[z]]/2, which is the larger of z and 0 without a rounding.

@@ -52,6 +52,8 @@ impl Enclosures {
             if narrower.is_empty() {
                 continue;
             }
+            // The result without what it may be off, twice as far as the widening: 1/(1 − w) < 1 + 2·w.
+            let narrower = arena.widened(node, arena.widened(node, narrower));
             match arena.node(node) {
                 Node::Constant(_) | Node::Input(_) => {}
                 Node::Unary(function, x) => {
@@ -77,9 +79,12 @@ impl Enclosures {
             let range = match arena.node(id) {
                 Node::Constant(_) | Node::Input(_) => continue,
                 Node::Unary(function, x) => hull::unary(function, self.hull(x), semantics),
+                Node::Binary(Binary::Div, a, b) if self.hull(b).contains(0.0) => {
+                    self.quotient_hull(arena, a, b)
+                }
                 Node::Binary(operator, a, b) => hull::binary(operator, self.hull(a), self.hull(b), semantics),
             };
-            let narrower = form.hull.intersect(range);
+            let narrower = form.hull.intersect(arena.widened(id, range));
             if narrower != form.hull {
                 self.set_hull(id, narrower);
                 changed[index] = true;

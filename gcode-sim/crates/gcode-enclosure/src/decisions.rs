@@ -5,7 +5,7 @@ use crate::enclosures::Enclosures;
 use crate::hull;
 use crate::interval::Interval;
 use crate::model::Model;
-use crate::node::{Condition, Node, NodeId, Relation};
+use crate::node::{AlarmKind, Binary, Condition, Node, NodeId, Relation};
 use crate::proof::Prover;
 
 impl Enclosures {
@@ -23,8 +23,19 @@ impl Enclosures {
                 return Vec::new();
             }
             Node::Unary(function, x) => alarms::unary(function, self.hull(x), semantics),
-            Node::Binary(operator, a, b) => alarms::binary(operator, self.hull(a), self.hull(b), semantics),
+            Node::Binary(operator, a, b) => {
+                let mut possible = alarms::binary(operator, self.hull(a), self.hull(b), semantics);
+                if operator == Binary::Div && self.hull(b).contains(0.0) {
+                    let least = self.least_magnitude(arena, b);
+                    let overflows = !(self.hull(a).magnitude() / least.max(f64::from_bits(1))).is_finite();
+                    possible.retain(|alarm| alarm.kind != AlarmKind::Overflow || overflows);
+                }
+                possible
+            }
         };
+        if arena.widening() > 0.0 && arena.is_widened(node) {
+            self.add_overflow(arena, node, &mut possible);
+        }
         possible.retain_mut(|alarm| {
             let conditions = arena.alarm_conditions(node, alarm.kind);
             let decided: Vec<_> = conditions.iter().map(|condition| self.decide(arena, *condition)).collect();
@@ -32,6 +43,18 @@ impl Enclosures {
             decided.is_empty() || decided.iter().any(|decision| *decision != Some(false))
         });
         possible
+    }
+
+    /// Adds the overflow that a result off by the widening can have; none is certain.
+    fn add_overflow(&self, arena: &Arena, node: NodeId, possible: &mut Vec<PossibleAlarm>) {
+        let kind = match arena.node(node) {
+            Node::Binary(..) => AlarmKind::Overflow,
+            _ => AlarmKind::OutOfRange,
+        };
+        if self.hull(node).magnitude() > 1e300 {
+            possible.retain(|alarm| alarm.kind != kind);
+            possible.push(PossibleAlarm { kind, is_certain: false });
+        }
     }
 
     /// Decides a condition for every point of the box on this path; `None` if it isn't decided.

@@ -2,12 +2,13 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use crate::algebra;
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_VARIABLES};
 use crate::domain::Domain;
 use crate::form::{Form, Modeller};
 use crate::hull;
-use crate::interval::Interval;
+use crate::interval::{Interval, mul_up};
 use crate::model::Model;
 use crate::node::{Binary, Condition, Node, NodeId, Unary};
 
@@ -165,11 +166,14 @@ impl Enclosures {
                         };
                         Interval::new(2.0 * z.lo().max(0.0), 2.0 * z.hi().max(0.0))
                     }
+                    Binary::Div if b.hull.contains(0.0) => self.quotient_hull(arena, left, right),
                     _ => hull::binary(operator, a.hull, b.hull, semantics),
                 };
                 (range, [Some(a), Some(b)])
             }
         };
+        let natural = self.with_identity(arena, node, arena.widened(node, natural));
+        let natural = self.with_ratio(arena, node, natural);
         if natural.lo() >= natural.hi() || self.basis.degree() == 0 {
             return Form { hull: natural, model: None };
         }
@@ -198,7 +202,13 @@ impl Enclosures {
             (Node::Binary(operator, ..), [Some(a), Some(b)]) => modeller.binary(operator, a, b, natural),
             _ => None,
         };
-        let model = self.best_model(arena, node, natural, model);
+        let mut model = self.best_model(arena, node, natural, model);
+        if let Some(model) = &mut model
+            && arena.widening() > 0.0
+            && arena.is_widened(node)
+        {
+            model.widen(mul_up(natural.magnitude(), arena.widening()));
+        }
         let Some(model) = model.filter(Model::is_finite) else {
             return self.free_form(node, natural);
         };
@@ -211,6 +221,35 @@ impl Enclosures {
         if is_useful { Form { hull, model: Some(model) } } else { self.free_form(node, hull) }
     }
 
+    /// Returns the range of a node that is a constant but for roundings, as far as a range allows.
+    fn with_identity(&self, arena: &Arena, node: NodeId, range: Interval) -> Interval {
+        let is_sum = matches!(arena.node(node), Node::Binary(Binary::Add | Binary::Sub, ..));
+        if !is_sum
+            || !range.contains(0.0)
+            || range.as_point().is_some()
+            || !arena.identities().contains(node, || algebra::is_identity(arena, node))
+        {
+            return range;
+        }
+        let mut range = range;
+        // The last rounding is a part of the result: the second pass knows it better.
+        for _ in 0..2 {
+            let hull = |other: NodeId| match self.forms.get(other.index()) {
+                _ if other == node => range,
+                Some(Some(form)) => form.hull,
+                _ => Interval::ALL,
+            };
+            range = algebra::range_of(arena, node, &hull).map_or(range, |identity| range.intersect(identity));
+        }
+        range
+    }
+
+    /// Returns the range of a quotient whose divisor's range has 0.
+    pub(crate) fn quotient_hull(&self, arena: &Arena, a: NodeId, b: NodeId) -> Interval {
+        let least = self.least_magnitude(arena, b).max(f64::from_bits(1));
+        hull::quotient(self.hull(a), self.hull(b), least)
+    }
+
     /// Returns the better of a model and that of the node's factors, if these are simpler.
     fn best_model(
         &mut self,
@@ -220,7 +259,7 @@ impl Enclosures {
         model: Option<Model>,
     ) -> Option<Model> {
         let factors = arena.factors(node);
-        if !factors.is_simpler || !matches!(arena.node(node), Node::Binary(..)) {
+        if !factors.is_simpler || arena.widening() > 0.0 || !matches!(arena.node(node), Node::Binary(..)) {
             return model;
         }
         // Within these magnitudes no operation on the factors overflows, and what underflows stays below 1e-60: a dozen

@@ -166,12 +166,7 @@ pub(crate) fn binary(operator: Binary, a: Interval, b: Interval, semantics: Sema
         Binary::Add => Interval::new(a.lo() + b.lo(), a.hi() + b.hi()),
         Binary::Sub => Interval::new(a.lo() - b.hi(), a.hi() - b.lo()),
         Binary::Mul => corners(a, b, |a, b| a * b),
-        Binary::Div => {
-            let least = f64::from_bits(1);
-            let positive = b.intersect(Interval::new(least, f64::MAX));
-            let negative = b.intersect(Interval::new(-f64::MAX, -least));
-            corners(a, positive, |a, b| a / b).hull(corners(a, negative, |a, b| a / b))
-        }
+        Binary::Div => quotient(a, b, f64::from_bits(1)),
         Binary::Mod => modulo(a, b),
         Binary::And | Binary::Or | Binary::Xor => bitwise(operator, a, b),
         Binary::Pow => {
@@ -184,6 +179,16 @@ pub(crate) fn binary(operator: Binary, a: Interval, b: Interval, semantics: Sema
             None => Interval::new(0.0, 1.0),
         },
     }
+}
+
+/// Returns the quotients by divisors whose magnitude is at least `least`, above 0.
+pub(crate) fn quotient(a: Interval, b: Interval, least: f64) -> Interval {
+    if let (Some(_), Some(_)) = (a.as_point(), b.as_point()) {
+        return binary(Binary::Div, a, b, Semantics::default());
+    }
+    let positive = b.intersect(Interval::new(least, f64::MAX));
+    let negative = b.intersect(Interval::new(-f64::MAX, -least));
+    corners(a, positive, |a, b| a / b).hull(corners(a, negative, |a, b| a / b))
 }
 
 /// Returns the range of a function between its values at the corners: it is monotone in either value.
@@ -221,13 +226,18 @@ fn modulo(a: Interval, b: Interval) -> Interval {
 fn bitwise(operator: Binary, a: Interval, b: Interval) -> Interval {
     let (a, b) = (a.map(gcode_lang::units::round), b.map(gcode_lang::units::round));
     let largest = f64::from(i32::MAX);
+    let positive = |x: &Interval| x.lo() >= 0.0 && x.hi() <= largest;
+    if operator == Binary::And && (positive(&a) || positive(&b)) {
+        // The bits of a positive number leave no others.
+        let most = [a, b].into_iter().filter(positive).map(Interval::hi).fold(largest, f64::min);
+        return Interval::new(0.0, most);
+    }
     if a.lo() < 0.0 || b.lo() < 0.0 || a.hi() > largest || b.hi() > largest {
         return Interval::new(f64::from(i32::MIN), largest);
     }
     let bits = 32 - (a.hi().max(b.hi()) as u32).leading_zeros();
     let all_bits = ((1_u64 << bits) - 1) as f64;
     match operator {
-        Binary::And => Interval::new(0.0, a.hi().min(b.hi())),
         Binary::Or => Interval::new(a.lo().max(b.lo()), all_bits),
         _ => Interval::new(0.0, all_bits),
     }

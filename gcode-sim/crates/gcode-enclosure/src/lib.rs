@@ -34,7 +34,7 @@
 //!
 //! # Method
 //!
-//! Four layers hold at once, and each may narrow what the others say.
+//! Five layers hold at once, and each may narrow what the others say.
 //!
 //! - **Ranges** (`hull`). An operation that rounds correctly, + − × ÷ SQRT FIX FUP ROUND, is monotone in doubles: the range
 //!   of its computed values lies between its values at the ends, without a margin (IEEE 754; IEEE 1788, Standard for
@@ -48,6 +48,9 @@
 //!   Polynomials are bounded by Bernstein coefficients.
 //! - **Factors** (`factors`). Products, quotients and roots are powers of what isn't one. Equal factors cancel, and a
 //!   squared root is its argument, for a rounding each (Higham, Accuracy and Stability of Numerical Algorithms).
+//! - **Algebra** (`algebra`). Computed values satisfy identities up to a rounding each: a root's square is its argument,
+//!   SIN² + COS² is 1, a quotient times its divisor is its dividend. Of two formulas of one quantity all monomials cancel;
+//!   the roundings are left.
 //! - **Structure** (`proof`). From a ≥ r ≥ 0 follows a·a ≥ r·r in doubles, a difference of doubles has the sign of the real
 //!   one, a root isn't shorter than a leg (Boldo, Stupid is as stupid does: taking the square root of the square of a
 //!   floating-point number). Conditions of the path chain, shrink ranges, and are subtracted from polynomials in multiples.
@@ -62,6 +65,7 @@
 #![warn(missing_docs)]
 
 mod alarms;
+mod algebra;
 mod apply;
 mod approximation;
 mod arena;
@@ -74,12 +78,17 @@ mod elementary;
 mod enclosures;
 mod factors;
 mod form;
+mod grain;
 mod hull;
+mod identities;
 mod interval;
 mod model;
+mod multiples;
 mod node;
+mod polynomial;
 mod polynomial_range;
 mod proof;
+mod ratio;
 mod rounding;
 #[cfg(test)]
 mod tests;

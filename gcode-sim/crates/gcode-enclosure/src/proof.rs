@@ -22,10 +22,12 @@ const STEPS: u32 = 4000;
 
 /// Proves relations between nodes from their ranges, their structure and the conditions of a path.
 pub(crate) struct Prover<'a> {
-    arena: &'a Arena,
+    pub(crate) arena: &'a Arena,
     hull: &'a dyn Fn(NodeId) -> Interval,
     conditions: &'a [Condition],
     steps: Cell<u32>,
+    /// Operations round as doubles do; otherwise their results are off, and only the order of the conditions holds.
+    is_exact: bool,
 }
 
 impl<'a> Prover<'a> {
@@ -34,7 +36,7 @@ impl<'a> Prover<'a> {
         hull: &'a dyn Fn(NodeId) -> Interval,
         conditions: &'a [Condition],
     ) -> Self {
-        Self { arena, hull, conditions, steps: Cell::new(0) }
+        Self { arena, hull, conditions, steps: Cell::new(0), is_exact: arena.widening() == 0.0 }
     }
 
     /// Decides a relation; `None` without a proof.
@@ -53,7 +55,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Returns the depth below, unless the proof has become too long.
-    fn deeper(&self, depth: u32) -> Option<u32> {
+    pub(crate) fn deeper(&self, depth: u32) -> Option<u32> {
         self.steps.set(self.steps.get() + 1);
         depth.checked_sub(1).filter(|_| self.steps.get() < STEPS)
     }
@@ -103,7 +105,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Proves x ≥ y.
-    fn ge(&self, x: NodeId, y: NodeId, depth: u32) -> bool {
+    pub(crate) fn ge(&self, x: NodeId, y: NodeId, depth: u32) -> bool {
         if x == y || self.range(x).lo() >= self.range(y).hi() {
             return true;
         }
@@ -111,7 +113,30 @@ impl<'a> Prover<'a> {
         let by_fact = |(greater, less, _): (NodeId, NodeId, bool)| {
             greater == x && (less == y || self.ge(less, y, depth)) || less == y && self.ge(x, greater, depth)
         };
-        self.facts().any(by_fact) || self.ge_by_left(x, y, depth) || self.ge_by_right(x, y, depth)
+        if self.facts().any(by_fact) {
+            return true;
+        }
+        if !self.is_exact {
+            return self.has_sign_of_difference(x, y, |a, b| self.ge(a, b, depth));
+        }
+        self.multiple(y).is_some_and(|(k, a)| self.ge_multiple(x, k, a, depth))
+            || self.multiple(x).is_some_and(|(k, a)| self.le_multiple(y, k, a, depth))
+            || self.ge_by_left(x, y, depth)
+            || self.ge_by_right(x, y, depth)
+    }
+
+    /// Returns true if x is a − b, y is 0 and `relation` holds of a and b, or the same of y.
+    fn has_sign_of_difference(
+        &self,
+        x: NodeId,
+        y: NodeId,
+        relation: impl Fn(NodeId, NodeId) -> bool,
+    ) -> bool {
+        match (self.arena.node(x), self.arena.node(y)) {
+            (Node::Binary(Binary::Sub, a, b), _) if y == Arena::ZERO => relation(a, b),
+            (_, Node::Binary(Binary::Sub, a, b)) if x == Arena::ZERO => relation(b, a),
+            _ => false,
+        }
     }
 
     /// Proves x ≥ y by the operation of x.
@@ -381,6 +406,9 @@ impl<'a> Prover<'a> {
         if self.facts().any(by_fact) || self.is_unequal(x, y) && self.ge(x, y, depth) {
             return true;
         }
+        if !self.is_exact {
+            return self.has_sign_of_difference(x, y, |a, b| self.gt(a, b, depth));
+        }
         match (self.arena.node(x), self.arena.node(y)) {
             (Node::Binary(Binary::Sub, a, b), _) if y == Arena::ZERO => self.gt(a, b, depth),
             (_, Node::Binary(Binary::Sub, c, d)) if x == Arena::ZERO => self.gt(d, c, depth),
@@ -405,6 +433,26 @@ impl<'a> Prover<'a> {
         })
     }
 
+    /// Proves that x isn't 0.
+    pub(crate) fn is_nonzero(&self, x: NodeId) -> bool {
+        self.ne(x, Arena::ZERO, DEPTH)
+    }
+
+    /// Returns true if a condition or the range of its magnitude says that x isn't 0.
+    fn is_not_zero(&self, x: NodeId) -> bool {
+        let has_magnitude = |x: NodeId| {
+            let magnitude = self.arena.find_unary(Unary::Abs, x);
+            magnitude.is_some_and(|magnitude| self.range(magnitude).lo() > 0.0)
+        };
+        let reversed = match self.arena.node(x) {
+            Node::Binary(Binary::Sub, a, b) => self.arena.find_binary(Binary::Sub, b, a),
+            _ => None,
+        };
+        self.is_unequal(x, Arena::ZERO)
+            || has_magnitude(x)
+            || reversed.is_some_and(|x| self.is_unequal(x, Arena::ZERO) || has_magnitude(x))
+    }
+
     /// Proves that x and y differ.
     fn ne(&self, x: NodeId, y: NodeId, depth: u32) -> bool {
         if self.is_unequal(x, y) || self.gt(x, y, depth) || self.gt(y, x, depth) {
@@ -412,10 +460,21 @@ impl<'a> Prover<'a> {
         }
         let Some(depth) = self.deeper(depth) else { return false };
         let (x, y) = if x == Arena::ZERO { (y, x) } else { (x, y) };
+        if y != Arena::ZERO {
+            // Of a difference that isn't 0 the sides differ.
+            let differ =
+                |a, b| self.arena.find_binary(Binary::Sub, a, b).is_some_and(|d| self.is_not_zero(d));
+            return differ(x, y) || differ(y, x);
+        }
         match self.arena.node(x) {
-            _ if y != Arena::ZERO => false,
+            _ if self.is_not_zero(x) => true,
             Node::Binary(Binary::Sub, a, b) => self.ne(a, b, depth),
             Node::Unary(Unary::Neg | Unary::Abs | Unary::Sqrt, a) => self.ne(a, y, depth),
+            Node::Binary(Binary::Mul, a, b) if self.is_exact => {
+                // A product underflows to 0 only of small factors.
+                let least = |x: NodeId| self.range(x).mignitude().max(self.arena.grain(x, self.hull));
+                least(a) * least(b) > 0.0 && self.ne(a, y, depth) && self.ne(b, y, depth)
+            }
             _ => false,
         }
     }

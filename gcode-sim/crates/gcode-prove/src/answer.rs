@@ -11,13 +11,13 @@ use crate::points::Points;
 use crate::region::ClaimSet;
 use crate::request::{Claim, Range, RequestError, condition, parse_variable};
 use crate::search::{Prober, spread_point};
-use crate::shared::{Rest, Shared};
+use crate::shared::{Pending, Rest, Shared};
 use crate::simplify::simplified;
 use crate::tree::{Question, Tree};
 use crate::variable_bounds::{Bound, Side, bound};
 use crate::watch::Watch;
 use crate::witness::Witness;
-use crate::worker::pending_box;
+use crate::worker::{pending_box, starting_boxes};
 
 /// Source of controls, one for every thread.
 pub trait Setup: Sync {
@@ -49,6 +49,8 @@ pub struct Ask {
     pub max_blocks: u64,
     /// Number of threads.
     pub threads: NonZeroUsize,
+    /// Part of each result by which the arithmetic of a control may be off from that of doubles, 0 to 0.001.
+    pub widening: f64,
 }
 
 impl Default for Ask {
@@ -60,6 +62,7 @@ impl Default for Ask {
             bounds: Vec::new(),
             max_blocks: 10_000_000,
             threads: NonZeroUsize::MIN,
+            widening: 0.0,
         }
     }
 }
@@ -133,6 +136,9 @@ const FAULT: &str = "the proof has stopped with a fault of the program: report i
 /// Largest number of claims that are proved together.
 const MAX_CLAIMS: usize = 60;
 
+/// Largest part of a result by which it may be off.
+const MAX_WIDENING: f64 = 1e-3;
+
 /// Proves or refutes what is asked.
 ///
 /// # Errors
@@ -164,7 +170,12 @@ fn read<S: Setup>(setup: &S, ask: &Ask) -> Result<(Question, Vec<Claim>), ProveE
         return Err(RequestError::NoQuestion.into());
     }
     check_ranges(setup, &ranges)?;
-    let question = Question { ranges, conditions, claims: Vec::new(), bounds, max_blocks: ask.max_blocks };
+    check_bounds(setup, &bounds)?;
+    if !(0.0..=MAX_WIDENING).contains(&ask.widening) {
+        return Err(RequestError::Widening(ask.widening.to_string()).into());
+    }
+    let (max_blocks, widening) = (ask.max_blocks, ask.widening);
+    let question = Question { ranges, conditions, claims: Vec::new(), bounds, max_blocks, widening };
     Ok((question, claims))
 }
 
@@ -189,6 +200,16 @@ fn check_ranges<S: Setup>(setup: &S, ranges: &[Range]) -> Result<(), ProveError>
     for range in ranges {
         let set = run.set_term(range.variable, Term::Number(range.low));
         set.map_err(|alarm| RequestError::Variable(range.variable, alarm.code().to_string()))?;
+    }
+    Ok(())
+}
+
+/// Refuses bounds of variables that no control has, or that aren't stored.
+fn check_bounds<S: Setup>(setup: &S, bounds: &[u32]) -> Result<(), ProveError> {
+    let mut run = SymbolicRun::new(setup.control(&[]).map_err(ProveError::Setup)?);
+    for variable in bounds {
+        let set = run.set_term(*variable, Term::Number(0.0));
+        set.map_err(|alarm| RequestError::BoundsVariable(*variable, alarm.code().to_string()))?;
     }
     Ok(())
 }
@@ -258,7 +279,10 @@ impl<S: Setup> Prover<'_, S> {
         let all: ClaimSet = (1 << group.len()) - 1;
         let shared = Shared::new(all);
         let whole = question.domain();
-        shared.push([pending_box(whole.clone(), &whole, all)]);
+        let starts = starting_boxes(&mut self.tree(&question, settings)?, &whole);
+        let share = 1.0 / starts.len() as f64;
+        let start = |domain| Pending { volume: share, ..pending_box(domain, &whole, all) };
+        shared.push(starts.into_iter().map(start));
         let shares = self.threads as u32;
         let results = std::thread::scope(|scope| {
             let work = |share: u32| {
@@ -360,7 +384,8 @@ impl<S: Setup> Prover<'_, S> {
         let (this, asked, whole) = (&*self, &question, &domain);
         let of_side = |side| -> Result<Vec<Bound>, ProveError> {
             let mut tree = this.tree(asked, &[])?;
-            Ok((0..asked.bounds.len()).map(|index| bound(&mut tree, whole, index, side, watch)).collect())
+            let starts = starting_boxes(&mut tree, whole);
+            Ok((0..asked.bounds.len()).map(|index| bound(&mut tree, &starts, index, side, watch)).collect())
         };
         let (lower, upper) = std::thread::scope(|scope| {
             let lower = scope.spawn(|| of_side(Side::Lower));

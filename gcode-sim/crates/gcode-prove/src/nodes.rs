@@ -64,9 +64,9 @@ pub(crate) fn semantics(settings: &Settings) -> Semantics {
 }
 
 impl Nodes {
-    pub(crate) fn new(semantics: Semantics, domain: Domain) -> Self {
+    pub(crate) fn new(semantics: Semantics, domain: Domain, widening: f64) -> Self {
         Self {
-            arena: Arena::new(semantics),
+            arena: Arena::new(semantics).with_widening(widening),
             ids: HashMap::new(),
             constants: BTreeSet::new(),
             root: Enclosures::with_degree(domain, 0),
@@ -180,7 +180,35 @@ impl Nodes {
             }
             _ => return None,
         };
-        (self.root.enclose(&self.arena, whole).magnitude() < LARGEST_MULTIPLE).then_some(whole)
+        (self.root.enclose(&self.arena, whole).magnitude() < self.largest_multiple()).then_some(whole)
+    }
+
+    /// Returns the magnitude below which the errors of some operations are far less than a half.
+    fn largest_multiple(&self) -> f64 {
+        LARGEST_MULTIPLE.min(0.01 / self.arena.widening().max(1e-300))
+    }
+
+    /// Returns the node of a quotient: a whole number × k by n × k is that number by n, the same double.
+    fn quotient(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if let (Node::Binary(Binary::Mul, left, right), Some(divisor)) =
+            (self.arena.node(a), self.arena.as_constant(b))
+        {
+            for (whole, factor) in [(left, right), (right, left)] {
+                if let Some(factor) = self.arena.as_constant(factor)
+                    && self.arena.widening() == 0.0
+                    && factor >= 1.0
+                    && factor.fract() == 0.0
+                    && (divisor / factor).fract() == 0.0
+                    && divisor / factor * factor == divisor
+                    && self.arena.is_whole(whole)
+                    && self.root.enclose(&self.arena, a).magnitude() < LARGEST_MULTIPLE
+                {
+                    let divisor = self.arena.constant(divisor / factor);
+                    return self.arena.binary(Binary::Div, whole, divisor);
+                }
+            }
+        }
+        self.arena.binary(Binary::Div, a, b)
     }
 
     /// Returns the node of ROUND.
@@ -217,6 +245,14 @@ fn relation_of(relation: ast::Relation) -> Relation {
         ast::Relation::Ge => Relation::Ge,
         ast::Relation::Lt => Relation::Lt,
         ast::Relation::Le => Relation::Le,
+    }
+}
+
+fn bits_of(op: ast::BinaryOp) -> Binary {
+    match op {
+        ast::BinaryOp::And => Binary::And,
+        ast::BinaryOp::Or => Binary::Or,
+        _ => Binary::Xor,
     }
 }
 
@@ -264,7 +300,8 @@ impl Terms for Nodes {
             TermOperation::Add => self.arena.binary(Binary::Add, a, b),
             TermOperation::Subtract => self.arena.binary(Binary::Sub, a, b),
             TermOperation::Multiply => self.arena.binary(Binary::Mul, a, b),
-            TermOperation::Divide => self.arena.binary(Binary::Div, a, b),
+            TermOperation::Divide => self.quotient(a, b),
+            TermOperation::Bits(op) => self.arena.binary(bits_of(op), a, b),
             TermOperation::Remainder => self.arena.binary(Binary::Mod, a, b),
             TermOperation::Power => self.arena.binary(Binary::Pow, a, b),
             TermOperation::Direction => self.arena.binary(Binary::Atan, a, b),

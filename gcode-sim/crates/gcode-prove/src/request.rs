@@ -41,9 +41,15 @@ pub enum RequestError {
     /// A variable whose bounds are wanted is unreadable.
     #[error("--bounds {0}: write a variable, '#100'")]
     Bounds(String),
+    /// A variable can't have bounds.
+    #[error("--bounds #{0}: only local and common variables have bounds: {1}")]
+    BoundsVariable(u32, String),
     /// The conditions exclude every value.
     #[error("--where: no value of the ranges satisfies the conditions: widen a range or correct a condition")]
     NothingLeft,
+    /// The arithmetic is off by too much.
+    #[error("--widen {0}: a part of each result from 0 to 0.001, such as 1e-9")]
+    Widening(String),
     /// Nothing is asked.
     #[error("nothing to prove: give --claim or --bounds")]
     NoQuestion,

@@ -25,6 +25,8 @@ pub(crate) struct Prober<'s, L> {
     pub(crate) watch: &'s Watch<'s>,
     /// Points that the real control has run without need, to compare.
     compared: u32,
+    /// Number of boxes that weren't decided.
+    pub(crate) undecided_boxes: u64,
 }
 
 /// Number of points whose run by the control is compared with the tree.
@@ -47,7 +49,16 @@ impl<'s, L: Library> Prober<'s, L> {
         shared: &'s Shared,
         watch: &'s Watch<'s>,
     ) -> Self {
-        Self { tree, points: Points::default(), witness, question, shared, watch, compared: 0 }
+        Self {
+            tree,
+            points: Points::default(),
+            witness,
+            question,
+            shared,
+            watch,
+            compared: 0,
+            undecided_boxes: 0,
+        }
     }
 
     /// Tries a point; claims that fail there are refuted once the control has confirmed it.

@@ -45,7 +45,9 @@ pub(crate) fn simplified<L: Library>(
 
 /// Returns numbers of a range that are shorter than one of it, the shortest first.
 fn rounder(value: f64, low: f64, high: f64) -> Vec<f64> {
-    let length = |value: f64| value.abs().to_string().len() + usize::from(value < 0.0);
+    // Nothing is rounder than 0.
+    let digits = |value: f64| value.abs().to_string().len() + usize::from(value < 0.0);
+    let length = |value: f64| if value == 0.0 { 0 } else { digits(value) };
     let mut candidates = vec![0.0, low, high];
     for exponent in -20..4 {
         for digits in ["1", "2", "5", "25"] {
@@ -86,5 +88,6 @@ mod tests {
         assert!(candidates.contains(&3.74));
         assert!(candidates.iter().all(|value| (2.5..=9.0).contains(value)));
         assert!(rounder(0.0, -1.0, 1.0).is_empty());
+        assert_eq!(rounder(9.0, 0.0, 20.0), [0.0]);
     }
 }

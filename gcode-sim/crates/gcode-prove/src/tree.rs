@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use gcode_control::symbolic::{Advance, Formula, Halt, Snapshot, SymbolicRun, Term, Test};
 use gcode_control::{Control, Limits};
-use gcode_enclosure::{Condition, Domain, NodeId};
+use gcode_enclosure::{Condition, Domain, Node, NodeId, Unary};
 use gcode_lang::program::{Bytecode, Library};
 use gcode_lang::syntax::ast::BinaryOp;
 
@@ -23,6 +23,8 @@ pub(crate) struct Question {
     pub(crate) claims: Vec<Claim>,
     pub(crate) bounds: Vec<u32>,
     pub(crate) max_blocks: u64,
+    /// Part of a result by which it may be off.
+    pub(crate) widening: f64,
 }
 
 impl Question {
@@ -162,7 +164,7 @@ pub(crate) struct Tree<L> {
 impl<L: Library> Tree<L> {
     /// Returns the tree of a control that hasn't begun; its variables of the ranges are set to numbers already.
     pub(crate) fn new(control: Control, library: L, question: Arc<Question>) -> Self {
-        let mut nodes = Nodes::new(semantics(control.settings()), question.domain());
+        let mut nodes = Nodes::new(semantics(control.settings()), question.domain(), question.widening);
         let mut run = SymbolicRun::new(control);
         for (index, range) in question.ranges.iter().enumerate() {
             let term = if range.low == range.high { Term::Number(range.low) } else { nodes.input(index) };
@@ -178,6 +180,39 @@ impl<L: Library> Tree<L> {
     /// Returns the number of variables whose bounds are wanted.
     pub(crate) fn bound_count(&self) -> usize {
         self.question.bounds.len()
+    }
+
+    /// Returns for each input whether the conditions of the request let it have whole numbers only: `#1 EQ ROUND[#1]`.
+    pub(crate) fn whole_inputs(&mut self) -> Vec<bool> {
+        let question = Arc::clone(&self.question);
+        let mut wholes = vec![false; question.ranges.len()];
+        for code in &question.conditions {
+            if let Ok((formula, _)) = self.run.condition(code, &mut self.nodes, &[]) {
+                self.note_wholes(&formula, &mut wholes);
+            }
+        }
+        wholes
+    }
+
+    fn note_wholes(&mut self, formula: &Formula, wholes: &mut [bool]) {
+        match formula {
+            Formula::Logic(BinaryOp::And, left, right) => {
+                self.note_wholes(left, wholes);
+                self.note_wholes(right, wholes);
+            }
+            Formula::Compare(gcode_lang::syntax::ast::Relation::Eq, left, right) => {
+                let sides = [self.nodes.id(*left), self.nodes.id(*right)];
+                for (input, whole) in [(sides[0], sides[1]), (sides[1], sides[0])] {
+                    if let (Node::Input(index), Node::Unary(Unary::Round | Unary::Fix | Unary::Fup, of)) =
+                        (self.nodes.arena().node(input), self.nodes.arena().node(whole))
+                        && of == input
+                    {
+                        wholes[index] = true;
+                    }
+                }
+            }
+            _ => {}
+        }
     }
 
     /// Returns the segment's end, after its blocks are executed.

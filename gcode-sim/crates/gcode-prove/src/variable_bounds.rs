@@ -77,10 +77,10 @@ struct BoundSearch<'a, L> {
     is_included: bool,
 }
 
-/// Returns one bound of a variable over a box.
+/// Returns one bound of a variable over some boxes.
 pub(crate) fn bound<L: Library>(
     tree: &mut Tree<L>,
-    domain: &Domain,
+    starts: &[Domain],
     index: usize,
     side: Side,
     watch: &Watch<'_>,
@@ -92,9 +92,12 @@ pub(crate) fn bound<L: Library>(
         if watch.is_over() {
             break;
         }
-        search.value_at(&spread_point(domain, point));
+        let domain = point as usize % starts.len().max(1);
+        if let Some(domain) = starts.get(domain) {
+            search.value_at(&spread_point(domain, point));
+        }
     }
-    search.run(domain)
+    search.run(starts)
 }
 
 impl<L: Library> BoundSearch<'_, L> {
@@ -115,12 +118,14 @@ impl<L: Library> BoundSearch<'_, L> {
         if self.side == Side::Upper { value } else { -value }
     }
 
-    fn run(&mut self, whole: &Domain) -> Bound {
+    fn run(&mut self, starts: &[Domain]) -> Bound {
         let mut boxes = BinaryHeap::new();
         // Bounds of boxes that aren't divided further.
         let mut settled = f64::NEG_INFINITY;
-        let (first, finding) = self.examine(whole);
-        self.add(&mut boxes, &mut settled, whole.clone(), first, f64::INFINITY, &finding);
+        for domain in starts {
+            let (first, finding) = self.examine(domain);
+            self.add(&mut boxes, &mut settled, domain.clone(), first, f64::INFINITY, &finding);
+        }
         let mut findings_left = 2_000_000_u64;
         while let Some(worst) = boxes.pop() {
             if self.is_close(worst.bound)

@@ -7,13 +7,17 @@ use crate::leaf::End;
 use crate::region::{ClaimSet, Finding, examine};
 use crate::search::Prober;
 use crate::shared::{Pending, Shared};
+use crate::tree::Tree;
 use crate::watch::Watch;
 
 /// Boxes with at most this many doubles are run double by double.
 const MAX_DOUBLES: u64 = 48;
 
-/// Relative width of a box that isn't divided further.
-const LEAST_WIDTH: f64 = 1e-13;
+/// Largest number of boxes of whole numbers with which the work begins.
+const MAX_WHOLE: f64 = 4096.0;
+
+/// Largest number of divisions down to single points.
+const MAX_DIVE: u32 = 300;
 
 /// Work on one box; it ends even by a fault, after which the other threads stop.
 struct BoxWork<'s> {
@@ -46,7 +50,10 @@ impl<L: Library> Prober<'_, L> {
         if claims == 0 {
             return;
         }
-        if let Some(points) = doubles(&pending.domain) {
+        // Runs of the control prove nothing of other arithmetic.
+        if self.question.widening == 0.0
+            && let Some(points) = doubles(&pending.domain)
+        {
             return self.run_points(&points, &Pending { claims, ..pending });
         }
         let ranges = Enclosures::with_degree(pending.domain.clone(), 0);
@@ -67,14 +74,49 @@ impl<L: Library> Prober<'_, L> {
         if left == 0 {
             return;
         }
-        self.divide(&Pending { claims: left, ..pending }, &finding);
+        let pending = Pending { claims: left, ..pending };
+        self.undecided_boxes += 1;
+        if self.undecided_boxes >= 64 && self.undecided_boxes.is_power_of_two() {
+            self.dive(&pending);
+        }
+        self.divide(&pending, &finding);
+    }
+
+    /// Divides a box down to single points, as long as a part isn't decided: a search that the boxes lead.
+    fn dive(&mut self, pending: &Pending) {
+        let (mut domain, mut claims) = (pending.domain.clone(), pending.claims);
+        for step in 0..MAX_DIVE {
+            claims &= self.shared.open_claims();
+            if claims == 0 || self.watch.is_over() {
+                return;
+            }
+            if let Some(points) = doubles(&domain) {
+                points.iter().for_each(|point| self.try_point(point));
+                return;
+            }
+            let finding = examine(&mut self.tree, Enclosures::new(domain.clone()), claims, self.watch);
+            if finding.proved == claims || finding.is_final || finding.is_stopped {
+                return;
+            }
+            self.try_point(&domain.midpoint());
+            let mut parts = divide(self.tree.nodes.arena(), &domain, &finding);
+            if step % 2 == 1 {
+                parts.reverse();
+            }
+            let is_open = |prober: &mut Self, part: &Domain| {
+                let ranges = Enclosures::with_degree(part.clone(), 0);
+                examine(&mut prober.tree, ranges, claims, prober.watch).proved != claims
+            };
+            let Some(next) = parts.into_iter().find(|part| is_open(self, part)) else { return };
+            domain = next;
+        }
     }
 
     fn divide(&self, pending: &Pending, finding: &Finding) {
         if let Some(what) = &finding.unfollowed {
             self.shared.note_unfollowed(what);
         }
-        let parts = if finding.is_final || finding.is_stopped || is_tiny(&pending.domain) {
+        let parts = if finding.is_final || finding.is_stopped {
             Vec::new()
         } else {
             divide(self.tree.nodes.arena(), &pending.domain, finding)
@@ -84,7 +126,11 @@ impl<L: Library> Prober<'_, L> {
             return;
         }
         let whole = self.question.domain();
-        self.shared.push(parts.into_iter().map(|domain| pending_box(domain, &whole, pending.claims)));
+        let part = |domain: Domain| {
+            let volume = pending.volume * part_of(&domain, &pending.domain);
+            Pending { volume, ..pending_box(domain, &whole, pending.claims) }
+        };
+        self.shared.push(parts.into_iter().map(part));
     }
 
     /// Decides claims at single points, by runs of the control.
@@ -107,7 +153,9 @@ impl<L: Library> Prober<'_, L> {
                     self.shared.note_unfollowed(what);
                 }
                 let domain = Domain::new(point.iter().map(|value| Interval::point(*value)).collect());
-                self.shared.park(pending_box(domain, &self.question.domain(), undecided));
+                let volume = pending.volume / points.len() as f64;
+                let single = pending_box(domain, &self.question.domain(), undecided);
+                self.shared.park(Pending { volume, ..single });
             }
         }
     }
@@ -126,8 +174,27 @@ pub(crate) fn pending_box(domain: Domain, whole: &Domain, claims: ClaimSet) -> P
     Pending { domain, claims, volume, size }
 }
 
-fn is_tiny(domain: &Domain) -> bool {
-    domain.ranges().iter().all(|range| range.width() <= range.magnitude() * LEAST_WIDTH)
+/// Returns the part of a box's volume that a box in it has.
+fn part_of(domain: &Domain, whole: &Domain) -> f64 {
+    let ranges = domain.ranges().iter().zip(whole.ranges()).filter(|(_, all)| all.lo() < all.hi());
+    ranges.map(|(range, all)| (range.hi() - range.lo()) / (all.hi() - all.lo())).product()
+}
+
+/// Returns the boxes with which the work begins: one for each of the whole numbers that inputs can have.
+pub(crate) fn starting_boxes<L: Library>(tree: &mut Tree<L>, whole: &Domain) -> Vec<Domain> {
+    let mut boxes = vec![whole.clone()];
+    for (input, is_whole) in tree.whole_inputs().into_iter().enumerate() {
+        let (low, high) = (whole.range(input).lo().ceil(), whole.range(input).hi().floor());
+        let count = high - low + 1.0;
+        if !is_whole || count * boxes.len() as f64 > MAX_WHOLE {
+            continue;
+        }
+        let numbers = (0..count.max(0.0) as u32).map(|index| low + f64::from(index));
+        let with = |domain: &Domain, number: f64| domain.with(input, Interval::point(number));
+        let all = boxes.iter();
+        boxes = all.flat_map(|domain| numbers.clone().map(move |number| with(domain, number))).collect();
+    }
+    boxes
 }
 
 /// Returns all points of a box with few doubles.

@@ -121,15 +121,13 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
         if value.as_number().is_none_or(|value| !value.is_nan()) {
             return SymbolicValue::of(value).ok_or_else(|| Halt::unfollowed(format!("#{number}")));
         }
-        let state = &self.registers.state;
-        let copied = match number {
-            5001..=5020 if self.registers.shows_programmed_position() => {
-                state.programmed_position.0.get(number as usize - 5001).copied()
-            }
-            4109 => Some(state.modal_words.f),
+        let modal = &self.registers.state.modal_words;
+        let term = match number {
+            5001..=5060 => self.position(number),
+            4109 => Term::of(modal.f),
+            4119 => Term::of(modal.s),
             _ => None,
         };
-        let term = copied.and_then(Term::of);
         term.map(SymbolicValue::Term).ok_or_else(|| Halt::unfollowed(format!("#{number}")))
     }
 
@@ -146,7 +144,7 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
     }
 
     /// Computes + − * / and MOD.
-    fn combine(&mut self, op: BinaryOp, left: Term, right: Term, span: Span) -> Symbolic<Term> {
+    pub(super) fn combine(&mut self, op: BinaryOp, left: Term, right: Term, span: Span) -> Symbolic<Term> {
         if let (Term::Number(left), Term::Number(right)) = (left, right) {
             let undocumented = &self.registers.data.settings.undocumented;
             return Ok(Term::Number(locate(binary(op, left, right, undocumented), span)?));
@@ -164,10 +162,7 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
                 self.check_divisor(right, span)?;
                 return Ok(self.oracle.terms.node(TermOperation::Remainder, [left, right]));
             }
-            BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
-                let (left, right) = (self.oracle.pin(left)?, self.oracle.pin(right)?);
-                return self.combine(op, Term::Number(left), Term::Number(right), span);
-            }
+            BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => return self.bitwise(op, left, right, span),
         };
         let node = self.oracle.terms.node(operation, [left, right]);
         self.check_finite(node, || Alarm::FloatOverflow, span)
@@ -393,13 +388,6 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
 }
 
 impl Registers {
-    /// Returns true if #5001… show the programmed position as it is stored.
-    fn shows_programmed_position(&self) -> bool {
-        !self.is_inch()
-            && !self.data.settings.undocumented.shows_transformed
-            && self.state.end_before_transform.is_none()
-    }
-
     pub(super) fn is_inch(&self) -> bool {
         self.state.modal.unit == gcode_lang::program::modes::Unit::Inch
     }

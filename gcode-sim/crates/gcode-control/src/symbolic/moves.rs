@@ -88,8 +88,8 @@ impl SymbolicRun {
         if let Some(feed) = terms.feed {
             plan.state.modal_words.f = feed.stored();
         }
-        if terms.has_speed {
-            plan.state.modal_words.s = UNFOLLOWED;
+        if let Some(speed) = terms.speed {
+            plan.state.modal_words.s = speed.stored();
         }
         plan.state.modal_words.n = number.unwrap_or(plan.state.modal_words.n);
         let moves = plan.commands_axes;
@@ -367,10 +367,8 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         if let Term::Number(value) = term {
             return Term::Number(self.registers.data.remove_residue(value));
         }
-        let grid = Term::Number(coordinates::residue_grid(self.registers.data.settings.increment));
-        let product = self.node(TermOperation::Multiply, term, grid);
-        let whole = self.node(TermOperation::Function(Function::Round), product, product);
-        self.node(TermOperation::Divide, whole, grid)
+        let grid = coordinates::residue_grid(self.registers.data.settings.increment);
+        self.oracle.without_residue(term, grid)
     }
 
     /// Raises the alarm of an axis beyond the largest coordinate.
@@ -402,7 +400,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         }
         let depends = self.terms.feed.is_some() || state.modal_words.f.is_nan();
         let is_per_revolution = state.modal.feed_mode == FeedMode::PerRevolution;
-        if is_per_revolution && (depends || self.terms.has_speed || state.modal_words.s.is_nan()) {
+        if is_per_revolution && (depends || self.terms.speed.is_some() || state.modal_words.s.is_nan()) {
             return Err(Halt::unfollowed("a feed in G95"));
         }
         if !depends {

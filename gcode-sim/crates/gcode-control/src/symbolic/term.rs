@@ -60,6 +60,8 @@ pub enum TermOperation {
     Divide,
     /// Remainder of the quotient of two whole numbers, with the sign of the dividend.
     Remainder,
+    /// AND, OR or XOR of two whole numbers of 32 bits.
+    Bits(BinaryOp),
     /// Power.
     Power,
     /// ATAN of two values: the first is along y, the second along x.

@@ -111,7 +111,7 @@ fn what_depends_on_a_term_and_is_not_followed_is_named() {
         ("G90 G00 B#1\n#100=#5005\nM30\n", "#5005"),
         ("#5221=#1\nM30\n", "#5221"),
         ("G90 G00 X#1\n#100=#3001\nM30\n", "#3001"),
-        ("G90 G00 X#1\n#100=#5041\nM30\n", "#5041"),
+        ("G90 G00 B#1\n#100=#5045\nM30\n", "#5045"),
     ] {
         let mut run = SymbolicRun::new(control(text));
         run.set_term(1, Term::Node(0)).unwrap();

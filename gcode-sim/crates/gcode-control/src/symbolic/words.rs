@@ -18,13 +18,13 @@ pub(super) struct BlockTerms {
     /// Axis words, by letter.
     pub(super) axes: Vec<(u8, Term)>,
     pub(super) feed: Option<Term>,
-    /// The block has a spindle speed that depends on the ranges.
-    pub(super) has_speed: bool,
+    /// Spindle speed, a whole number.
+    pub(super) speed: Option<Term>,
 }
 
 impl BlockTerms {
     pub(super) fn is_none(&self) -> bool {
-        self.axes.is_empty() && self.feed.is_none() && !self.has_speed
+        self.axes.is_empty() && self.feed.is_none() && self.speed.is_none()
     }
 }
 
@@ -204,6 +204,6 @@ fn speed<T: Terms>(term: Term, oracle: &mut Oracle<'_, T>, terms: &mut BlockTerm
     if oracle.ask(Test::Compare(Relation::Lt, whole, Term::Number(1.0)))? {
         return Ok(0.0);
     }
-    terms.has_speed = true;
+    terms.speed = Some(whole);
     Ok(1.0)
 }

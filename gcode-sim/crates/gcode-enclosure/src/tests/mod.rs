@@ -1,6 +1,7 @@
 //! Tests of the crate as a whole: soundness at random, published kernels.
 mod exact;
 mod guards;
+mod identities;
 mod kernels;
 mod libm_errors;
 mod random_nodes;

@@ -1,0 +1,191 @@
+//! Two formulas of one quantity: the range of their difference holds every computed one, and is as small as the roundings.
+use crate::{Arena, Binary, Domain, Enclosures, Interval, NodeId, Unary};
+
+/// Builder of expressions of some inputs.
+struct Formulas(Arena);
+
+impl Formulas {
+    fn of(&mut self, operator: Binary, a: NodeId, b: NodeId) -> NodeId {
+        self.0.binary(operator, a, b)
+    }
+
+    fn square(&mut self, x: NodeId) -> NodeId {
+        self.of(Binary::Mul, x, x)
+    }
+
+    fn root(&mut self, x: NodeId) -> NodeId {
+        self.0.unary(Unary::Sqrt, x)
+    }
+}
+
+/// Returns points of a box: corners, places near them, and a sequence that fills it.
+fn points(ranges: &[Interval]) -> Vec<Vec<f64>> {
+    let mut points = Vec::new();
+    for index in 0..4000_u32 {
+        let coordinate = |(place, range): (usize, &Interval)| {
+            let step = f64::from(index) * [0.618_033_988_7, 0.754_877_666_2, 0.569_840_290_9][place];
+            let part = match index % 4 {
+                0 => step.fract(),
+                // Near either end, by a distance of 1e-1 to 1e-16 of the width.
+                1 => libm::pow(10.0, -16.0 * step.fract()),
+                2 => 1.0 - libm::pow(10.0, -16.0 * step.fract()),
+                _ => f64::from(index >> (2 + place) & 1),
+            };
+            (range.lo() + (range.hi() - range.lo()) * part).clamp(range.lo(), range.hi())
+        };
+        points.push(ranges.iter().enumerate().map(coordinate).collect());
+    }
+    points
+}
+
+/// Asserts that the range of a node over the whole box holds its values at many points; returns it.
+fn enclosed(formulas: &Formulas, node: NodeId, ranges: &[(f64, f64)]) -> Interval {
+    let ranges: Vec<_> = ranges.iter().map(|(low, high)| Interval::new(*low, *high)).collect();
+    let range = Enclosures::new(Domain::new(ranges.clone())).enclose(&formulas.0, node);
+    for point in points(&ranges) {
+        let Ok(value) = formulas.0.evaluate(node, &point) else { continue };
+        assert!(range.contains(value), "{value:e} at {point:?} outside {range:?}");
+    }
+    range
+}
+
+#[test]
+fn the_sag_of_a_circle_by_two_formulas() {
+    let mut f = Formulas(Arena::default());
+    let (a, r) = (f.0.input(0), f.0.input(1));
+    let (aa, rr) = (f.square(a), f.square(r));
+    let difference = f.of(Binary::Sub, rr, aa);
+    let root = f.root(difference);
+    let sag = f.of(Binary::Sub, r, root);
+    let sum = f.of(Binary::Add, r, root);
+    let quotient = f.of(Binary::Div, aa, sum);
+    let rest = f.of(Binary::Sub, sag, quotient);
+    // Where the root is 0 its argument is off by 2500 units of 2^-53: 3e-13, which the sum 50 divides; the sag is 50.
+    let range = enclosed(&f, rest, &[(0.0, 50.0), (50.0, 200.0)]);
+    assert!(range.magnitude() < 1e-11, "{range:?}");
+    assert!(range.magnitude() > 1e-14, "{range:?}");
+}
+
+#[test]
+fn a_sag_with_another_factor_is_none() {
+    let mut f = Formulas(Arena::default());
+    let (a, r) = (f.0.input(0), f.0.input(1));
+    let (aa, rr) = (f.square(a), f.square(r));
+    let difference = f.of(Binary::Sub, rr, aa);
+    let root = f.root(difference);
+    let sag = f.of(Binary::Sub, r, root);
+    let sum = f.of(Binary::Add, r, root);
+    let factor = f.0.constant(1.0 + 1e-9);
+    let more = f.of(Binary::Mul, aa, factor);
+    let quotient = f.of(Binary::Div, more, sum);
+    let rest = f.of(Binary::Sub, sag, quotient);
+    // At a = r = 50 it is 5e-8.
+    let range = enclosed(&f, rest, &[(0.0, 50.0), (50.0, 200.0)]);
+    assert!(range.lo() <= -4.99e-8, "{range:?}");
+}
+
+#[test]
+fn a_rotation_keeps_the_length() {
+    let mut f = Formulas(Arena::default());
+    let [x, y, t] = [0, 1, 2].map(|input| f.0.input(input));
+    let (sine, cosine) = (f.0.unary(Unary::Sin, t), f.0.unary(Unary::Cos, t));
+    let product = |f: &mut Formulas, a, b| f.of(Binary::Mul, a, b);
+    let (xc, ys) = (product(&mut f, x, cosine), product(&mut f, y, sine));
+    let (xs, yc) = (product(&mut f, x, sine), product(&mut f, y, cosine));
+    let (turned_x, turned_y) = (f.of(Binary::Sub, xc, ys), f.of(Binary::Add, xs, yc));
+    let squares = [turned_x, turned_y, x, y].map(|node| f.square(node));
+    let (after, before) =
+        (f.of(Binary::Add, squares[0], squares[1]), f.of(Binary::Add, squares[2], squares[3]));
+    let rest = f.of(Binary::Sub, after, before);
+    // 200 × some units in the last place.
+    let range = enclosed(&f, rest, &[(-10.0, 10.0), (-10.0, 10.0), (0.0, 360.0)]);
+    assert!(range.magnitude() < 1e-11, "{range:?}");
+}
+
+#[test]
+fn a_double_angle_and_complements() {
+    let mut f = Formulas(Arena::default());
+    let x = f.0.input(0);
+    let two = f.0.constant(2.0);
+    let double = f.of(Binary::Mul, two, x);
+    let (sine, of_double) = (f.0.unary(Unary::Sin, x), f.0.unary(Unary::Cos, double));
+    let square = f.square(sine);
+    let twice = f.of(Binary::Mul, two, square);
+    let other = f.of(Binary::Sub, Arena::ONE, twice);
+    let rest = f.of(Binary::Sub, of_double, other);
+    assert!(enclosed(&f, rest, &[(-180.0, 180.0)]).magnitude() < 1e-13);
+
+    let (arc_sine, arc_cosine) = (f.0.unary(Unary::Asin, x), f.0.unary(Unary::Acos, x));
+    let sum = f.of(Binary::Add, arc_sine, arc_cosine);
+    let range = enclosed(&f, sum, &[(0.0, 1.0)]);
+    assert!(range.lo() > 90.0 - 1e-10 && range.hi() < 90.0 + 1e-10, "{range:?}");
+    // From −1 on, the arc sine has a turn more: 450.
+    assert!(enclosed(&f, sum, &[(-1.0, 1.0)]).hi() >= 450.0 - 1e-9);
+}
+
+#[test]
+fn the_direction_of_polar_coordinates() {
+    for is_signed in [false, true] {
+        let semantics = crate::Semantics { returns_signed_angles: is_signed, ..Default::default() };
+        let mut f = Formulas(Arena::new(semantics));
+        let (r, t) = (f.0.input(0), f.0.input(1));
+        let (sine, cosine) = (f.0.unary(Unary::Sin, t), f.0.unary(Unary::Cos, t));
+        let (y, x) = (f.of(Binary::Mul, r, sine), f.of(Binary::Mul, r, cosine));
+        let angle = f.of(Binary::Atan, y, x);
+        let rest = f.of(Binary::Sub, angle, t);
+        let turn = if is_signed { (-180.0, 180.0) } else { (0.0, 360.0) };
+        assert!(enclosed(&f, rest, &[(0.5, 10.0), turn]).magnitude() < 1e-11);
+        // Beyond the turn, and for a negative radius, the direction is another one.
+        let beyond = enclosed(&f, rest, &[(0.5, 10.0), (turn.0, turn.1 + 1.0)]);
+        assert!(beyond.lo() <= -359.0, "{beyond:?}");
+        let opposite = enclosed(&f, rest, &[(-10.0, 10.0), turn]);
+        assert!(opposite.hi() >= 179.0, "{opposite:?}");
+    }
+}
+
+#[test]
+fn roots_by_two_formulas() {
+    let mut f = Formulas(Arena::default());
+    let [a, b, r] = [0, 1, 2].map(|input| f.0.input(input));
+    let (first, rr) = (f.of(Binary::Div, r, a), f.square(r));
+    let ratio = f.square(first);
+    let part = f.of(Binary::Sub, Arena::ONE, ratio);
+    let root = f.root(part);
+    let left = f.of(Binary::Mul, b, root);
+    let aa = f.square(a);
+    let legs = f.of(Binary::Sub, aa, rr);
+    let leg = f.root(legs);
+    let product = f.of(Binary::Mul, b, leg);
+    let right = f.of(Binary::Div, product, a);
+    let rest = f.of(Binary::Sub, left, right);
+    // The heights are 180 to 1200; the squares are multiplied by the fourth power of a, of which the least is 256 times less.
+    let ranges = [(500.0, 2000.0), (300.0, 1200.0), (0.0, 400.0)];
+    assert!(enclosed(&f, rest, &ranges).magnitude() < 1e-7);
+
+    let mut f = Formulas(Arena::default());
+    let x = f.0.input(0);
+    let next = f.of(Binary::Add, x, Arena::ONE);
+    let (high, low) = (f.root(next), f.root(x));
+    let (difference, sum) = (f.of(Binary::Sub, high, low), f.of(Binary::Add, high, low));
+    let quotient = f.of(Binary::Div, Arena::ONE, sum);
+    let rest = f.of(Binary::Sub, difference, quotient);
+    // The squares are off by some units of 1001, 1.1e-13 each; the least sum is 1.
+    assert!(enclosed(&f, rest, &[(0.0, 1000.0)]).magnitude() < 1e-11);
+}
+
+#[test]
+fn a_widening_widens_an_identity() {
+    let of = |widening: f64| {
+        let mut f = Formulas(Arena::default().with_widening(widening));
+        let (x, y) = (f.0.input(0), f.0.input(1));
+        let (sum, difference) = (f.of(Binary::Add, x, y), f.of(Binary::Sub, x, y));
+        let product = f.of(Binary::Mul, sum, difference);
+        let (xx, yy) = (f.square(x), f.square(y));
+        let squares = f.of(Binary::Sub, xx, yy);
+        let rest = f.of(Binary::Sub, product, squares);
+        enclosed(&f, rest, &[(1.0, 100.0), (1.0, 100.0)])
+    };
+    // At x = 100 and y = 1 a product of 101 · 99 that is off by a part of 1e-9 is off by 1e-5.
+    assert!(of(0.0).magnitude() < 1e-10);
+    assert!((1e-5..1e-3).contains(&of(1e-9).magnitude()), "{:?}", of(1e-9));
+}
