@@ -9,6 +9,7 @@ const STRIP = 40;
 class Camera {
   constructor(up) {
     this.up = up;
+    this.scale = 1;
     this.look("reset");
   }
 
