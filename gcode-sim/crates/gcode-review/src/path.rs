@@ -105,13 +105,7 @@ impl Record {
     /// Returns all moves in at most about `legs` legs with at most `points` points: consecutive moves of one kind are drawn
     /// together, without the points that are no farther from the line than the least tolerance that leaves few enough. At most
     /// `exact_points` points are those of [`Leg::exact`].
-    pub fn whole_path(
-        &self,
-        machine: &Machine,
-        legs: usize,
-        points: usize,
-        exact_points: usize,
-    ) -> Vec<Leg> {
+    pub fn whole_path(&self, machine: &Machine, legs: usize, points: usize, exact_points: usize) -> Vec<Leg> {
         let joined = self.moves().div_ceil(legs.max(1)).max(1);
         let mut all: Vec<Leg> = Vec::new();
         for next in self.legs(machine, usize::MAX, usize::MAX, exact_points) {
@@ -122,8 +116,7 @@ impl Record {
                 _ => all.push(next),
             }
         }
-        let mut room =
-            exact_points.saturating_sub(all.iter().map(|leg| leg.exact.len()).sum());
+        let mut room = exact_points.saturating_sub(all.iter().map(|leg| leg.exact.len()).sum());
         let mut tolerance = CHORD;
         while points < all.iter().map(|leg| leg.points.len()).sum() && tolerance < MAX_SIMPLIFICATION {
             for leg in &mut all {
@@ -337,7 +330,8 @@ mod tests {
         let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
         let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
         let deviation = |points: &[nalgebra::Point3<f64>]| {
-            let of_chord = |pair: &[nalgebra::Point3<f64>]| 10.0 - (pair[0].coords + pair[1].coords).norm() / 2.0;
+            let of_chord =
+                |pair: &[nalgebra::Point3<f64>]| 10.0 - (pair[0].coords + pair[1].coords).norm() / 2.0;
             points.windows(2).map(of_chord).fold(0.0, f64::max)
         };
         for legs in [10, 2] {

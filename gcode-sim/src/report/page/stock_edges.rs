@@ -43,7 +43,10 @@ mod tests {
     #[test]
     fn a_box_has_twelve_edges() {
         let stock = Stock::Box { min: [0.0, 0.0, -3.0], max: [1.0, 2.0, 0.0], pocket: Vec::new() };
-        let lengths = edges(&stock).iter().map(|edge| (0..3).map(|axis| edge[1][axis] - edge[0][axis]).sum()).collect::<Vec<f64>>();
+        let lengths = edges(&stock)
+            .iter()
+            .map(|edge| (0..3).map(|axis| edge[1][axis] - edge[0][axis]).sum())
+            .collect::<Vec<f64>>();
         for length in [1.0, 2.0, 3.0] {
             assert_eq!(lengths.iter().filter(|edge| **edge == length).count(), 4, "{lengths:?}");
         }

@@ -272,8 +272,7 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
             // The corner farthest from the reader, at which three hidden edges meet.
             let towards = view.side.towards();
             let hidden = (0..3).filter(|axis| towards[*axis] < 0.0).fold(0, |ends, axis| ends | 1 << axis);
-            let is_hidden =
-                |ends: [usize; 2]| view.kind == StandardView::Isometric && ends.contains(&hidden);
+            let is_hidden = |ends: [usize; 2]| view.kind == StandardView::Isometric && ends.contains(&hidden);
             edges
                 .filter(|(from, to)| from != to)
                 .map(|(from, to)| {
