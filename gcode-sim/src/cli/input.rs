@@ -35,7 +35,7 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, UsageError> {
 }
 
 /// Signatures of files that are not programs, and their kinds.
-const OTHERS: [(&[u8], &str); 5] = [
+const OTHERS: [(&[u8], &str); 7] = [
     (b"\x89PNG", "a picture"),
     (b"\xff\xd8\xff", "a picture"),
     (b"%PDF-", "a PDF document"),

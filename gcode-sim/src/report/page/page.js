@@ -179,7 +179,7 @@
     } else if (turns) camera.turn(...turns);
     else if (event.key === "+" || event.key === "=") camera.magnify(1.2);
     else if (event.key === "-") camera.magnify(1 / 1.2);
-    else if (event.key === "0") look("reset");
+    else if (event.key === "0") look("first");
     else if (event.key === "n" || event.key === "N") step(side, 1);
     else if (event.key === "p" || event.key === "P") step(side, -1);
     else if (event.key === "Enter") follow();
@@ -189,7 +189,8 @@
   }
 
   function look(view) {
-    viewer.camera.look(view);
+    if (view === "first") viewer.first();
+    else viewer.camera.look(view);
     viewer.fit();
   }
 
@@ -290,5 +291,6 @@
   });
   if (editor) viewer.drawn = () => editor.setState(viewer.camera);
   measure();
+  if (!editor) look("first");
   arrive();
 })();

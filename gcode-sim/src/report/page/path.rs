@@ -258,7 +258,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
         ("top", "Top", Some("View from above")),
         ("front", "Front", Some("View from the front")),
         ("side", "Side", Some("View from the side")),
-        ("reset", "Reset", None),
+        ("reset", "All", Some("View of the whole path")),
         ("in", "+", Some("Zoom in")),
         ("out", "\u{2212}", Some("Zoom out")),
     ];
@@ -287,7 +287,10 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                 @if data.has_pen(Pen::Rapid) { li.rapid { "rapid" } }
                 @if data.has_pen(Pen::Feed) { li.feed { "feed, arc" } }
                 @if data.has_pen(Pen::Probe) { li.probe { "probing move" } }
-                @if sides.len() == 2 { li.changed { "different from the other program" } }
+                @if sides.len() == 2 {
+                    li.changed { "different from the other program" }
+                    li.other { "the other program\u{2019}s cut" }
+                }
                 @if data.has_hole(|status| matches!(status, HoleStatus::Good | HoleStatus::Unjudged)) { li.hole { "hole" } }
                 @if data.has_hole(|status| matches!(status, HoleStatus::Bad | HoleStatus::Extra)) {
                     li.wrong { "hole that differs or has a fault" }
@@ -299,7 +302,8 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
             details.note #keys {
                 summary { "Mouse, touch and keys" }
                 "Drag, or use the arrow keys, to rotate; the wheel, two fingers, + and − zoom; Shift and drag moves. "
-                "N and P go from move to move, Enter to the block of the selected move, 0 resets the view."
+                "N and P go from move to move, Enter to the block of the selected move, 0 goes back to the first view. "
+                "The wheel and two fingers zoom at the pointer."
             }
             @for (side, drawn) in sides.iter().zip(&data.sides) { (left_out(side, sides, drawn)) }
             noscript { p { "The drawing needs scripts; everything else on this page works without them." } }

@@ -167,8 +167,7 @@ class Side {
     return sharp ? [sharp, 0, sharp.length] : [this.screen, 2 * this.starts[move], 2 * this.starts[move + 1]];
   }
 
-  strokeMoves(colour, width, dash, matches) {
-    const context = this.context;
+  strokeMoves(colour, width, dash, matches, context = this.context) {
     Object.assign(context, { strokeStyle: colour, lineWidth: width });
     context.setLineDash(dash);
     let drawn = 0;
@@ -188,7 +187,7 @@ class Side {
     context.setLineDash([]);
   }
 
-  draw(colours, options, pick) {
+  draw(colours, options, pick, other) {
     const context = this.context;
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
     // Dashes of a line much longer than the canvas are slow.
@@ -209,6 +208,12 @@ class Side {
     const rapid = (move) => this.moves[move].pen === "rapid";
     if (options.rapids) this.strokeMoves(colours.changed, few ? 2 : 0.8, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
     this.strokeMoves(colours.changed, few ? 3.5 : 1.2, [], (move) => this.isChanged.has(move) && !rapid(move));
+    // What the other program does instead, faint.
+    if (other) {
+      context.globalAlpha = 0.6;
+      other.strokeMoves(colours.changed, 1, few ? [2, 3] : [], (move) => other.isChanged.has(move) && !(other.moves[move].pen === "rapid"), context);
+      context.globalAlpha = 1;
+    }
     const line = pick.line?.side === this ? pick.line.number : null;
     if (line !== null) this.strokeMoves(colours.pick, 4, [], (move) => shown(move) && this.places[this.at[move]].includes(line));
     if (pick.side === this && pick.move !== undefined) {
@@ -433,6 +438,40 @@ class Viewer {
     return Math.min((0.42 * width) / wide, (0.42 * (height - STRIP)) / high);
   }
 
+  // Looks at the change, else at all: at the largest displacement of a hole, or at the first cut that differs.
+  first() {
+    this.camera.look("reset");
+    const change = this.sides.length === 2 ? this.displacement() : null;
+    if (!change) return;
+    const [from, to] = change;
+    const way = to.map((mm, axis) => mm - from[axis]);
+    const length = Math.hypot(...way);
+    // A displacement along the upright axis is seen from the front, another from above.
+    this.camera.look(Math.abs(way["xyz".indexOf(this.camera.up)]) > 0.7 * length ? "front" : "top");
+    const rows = this.camera.axes();
+    const fitting = Math.min(...this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight)));
+    // It spans 40 pixels, so that 0.05 mm are seen as well as 50.
+    this.camera.zoom = Math.max(1, Math.min(1e5, 40 / length / fitting));
+    this.camera.offset = from.map((mm, axis) => (mm + to[axis]) / 2 - this.middle[axis]);
+  }
+
+  // Returns both ends of the largest displacement; null if nothing is displaced.
+  displacement() {
+    const [old, now] = this.sides;
+    const rows = new Map(old.holes.filter((hole) => hole.row !== null).map((hole) => [hole.row, hole]));
+    const far = ([a, b]) => Math.hypot(...a.map((mm, axis) => mm - b[axis]));
+    const holes = now.holes.filter((hole) => rows.has(hole.row)).flatMap((hole) => {
+      const before = rows.get(hole.row);
+      return [[before.entry, hole.entry], [before.bottom, hole.bottom]];
+    });
+    const end = (side, move) => [...side.xyz.slice(3 * side.starts[move + 1] - 3, 3 * side.starts[move + 1])];
+    const cut = (side) => [...side.isChanged].find((move) => side.moves[move].pen !== "rapid");
+    const cuts = [cut(old), cut(now)];
+    const moves = cuts.every((move) => move !== undefined) ? [[end(old, cuts[0]), end(now, cuts[1])]] : [];
+    const largest = [...holes, ...(holes.some((pair) => far(pair) > 1e-3) ? [] : moves)].sort((a, b) => far(b) - far(a))[0];
+    return largest && far(largest) > 1e-3 ? largest : null;
+  }
+
   fit() {
     this.scales = null;
     this.ask();
@@ -465,8 +504,9 @@ class Viewer {
       }
       side.context.setTransform(dots, 0, 0, dots, 0, 0);
       side.project({ rows, middle, scale, width, height, zoom: this.camera.zoom, cx: width / 2, cy: (height - STRIP) / 2 });
-      side.draw(colours, this.options, this.pick);
     }
+    const drawn = this.sides.filter((side) => side.view && side.canvas.clientWidth && side.canvas.clientHeight);
+    for (const side of drawn) side.draw(colours, this.options, this.pick, drawn.find((other) => other !== side));
     this.drawn?.();
   }
 }
