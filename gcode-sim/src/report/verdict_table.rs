@@ -347,9 +347,9 @@ mod tests {
 Position of 2 holes against Φ0.1: predicted by simulation, not measured
 mm and degrees; deviations are actual − nominal
 
-hole         x         y         z       dx       dy       dz   entry  bottom    tilt    depth       Φ     out  verdict
-1      420.000   674.930     0.000  +0.0001   0.0000   0.0000  0.0001  0.0001  0.0000   0.0000  0.0002  0.0000  pass
-2      420.000   674.930     0.000  +0.0617   0.0000   0.0000  0.0617  0.0617  0.0000   0.0000  0.1234  0.0234  FAIL position
+hole       x       y     z      dx     dy     dz bottom   tilt  depth      Φ  verdict
+1    420.000 674.930 0.000 +0.0001 0.0000 0.0000 0.0001 0.0000 0.0000 0.0002  pass
+2    420.000 674.930 0.000 +0.0617 0.0000 0.0000 0.0617 0.0000 0.0000 0.1234  FAIL position
 
 FAIL     1 of 17 holes in tolerance, 15 missing
 worst    Φ0.1234, tolerance Φ0.1: hole 2, …

@@ -450,6 +450,7 @@ class Viewer {
     this.camera.look(Math.abs(way["xyz".indexOf(this.camera.up)]) > 0.7 * length ? "front" : "top");
     const rows = this.camera.axes();
     const fitting = Math.min(...this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight)));
+    if (!(fitting > 0)) return;
     // It spans 40 pixels, so that 0.05 mm are seen as well as 50.
     this.camera.zoom = Math.max(1, Math.min(1e5, 40 / length / fitting));
     this.camera.offset = from.map((mm, axis) => (mm + to[axis]) / 2 - this.middle[axis]);

@@ -230,7 +230,9 @@ impl TopView {
         };
         let numbers = if hole.status == HoleStatus::Good { [turn, phi] } else { [phi, turn] };
         let far = |hole: &Hole| Vector3::from(hole.axis).dot(&self.side.towards()) < -FAR_SIDE;
-        let far = hole.shown().is_some_and(far).then(|| "far side".to_owned());
+        // An unrolled cylinder shows all of them, a cylinder from above none.
+        let is_far = self.cylinder.is_none() && hole.shown().is_some_and(far);
+        let far = is_far.then(|| "far side".to_owned());
         let lines = [hole.id.clone()].into_iter().chain(words).chain(far);
         let lines = lines.chain(numbers.into_iter().flatten());
         lines.filter(|line| !line.is_empty()).collect()
