@@ -306,7 +306,9 @@ fn hole_picture(
     }
     let has_stock = !matches!(stock, None | Some(Stock::Surface { .. }));
     let is_part_known = holes.outline.is_some() || holes.cylinder.is_some();
-    let shows_more = has_stock && !is_part_known || tool_path::shows_more(&path, simulation);
+    // A part of a family is drawn with its own outline, and its stops are those of the set-up sheet.
+    let shows_more = !is_part_known && (has_stock || tool_path::has_curves_or_stops(&path))
+        || tool_path::shows_more(&path, simulation);
     if is_empty || !is_asked && !shows_more {
         return Ok(gcode_draw::top_view(&holes));
     }

@@ -16,19 +16,20 @@ use gcode_session::Simulation;
 /// Largest number of stops whose text is in the title block.
 const MAX_STOP_TEXTS: usize = 3;
 
-/// Returns true if a path shows more than the symbols of the holes do: a feed that makes none, a curved feed, an operator
-/// stop, or motion without holes.
+/// Returns true if a path shows more than the symbols of the holes do: a feed that makes none, or motion without holes.
 pub(crate) fn shows_more(path: &ToolPath, simulation: &Simulation) -> bool {
     let holes = &simulation.extracted.holes;
-    if !path.moves.is_empty() && (path.has_curved_feed() || path.stops.iter().any(|stop| stop.at.is_some())) {
-        return true;
-    }
     let blocks: BTreeSet<(SourceId, u32)> = holes
         .iter()
         .flat_map(|hole| hole.passes().map(|pass| (pass.backtrace.block.source, pass.backtrace.block.start)))
         .collect();
     let is_of_hole = |block: Span| blocks.contains(&(block.source, block.start));
     !path.moves.is_empty() && (holes.is_empty() || path.has_feed_off_holes(is_of_hole))
+}
+
+/// Returns true if a path has a milled hole, or an operator stop at a known position.
+pub(crate) fn has_curves_or_stops(path: &ToolPath) -> bool {
+    !path.moves.is_empty() && (path.has_curved_feed() || path.stops.iter().any(|stop| stop.at.is_some()))
 }
 
 /// Returns the side from which the part is cut: that of the tool in most feeds, of most holes, or of the spindle. A tool of
