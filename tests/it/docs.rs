@@ -27,7 +27,7 @@ fn sessions(text: &str) -> Vec<ConsoleExample> {
 /// The program a line runs, as `cargo run` or by its own name; `None` for what no test may run (the tests themselves).
 fn as_program(command: &str) -> Option<String> {
     for name in ["gcode-sim", "gcode-gen"] {
-        if let Some(rest) = command.strip_prefix(&format!("cargo run --release --quiet --bin {name} -- ")) {
+        if let Some(rest) = command.strip_prefix(&format!("cargo run --bin {name} -- ")) {
             return Some(format!("{name} {rest}"));
         }
         if command.starts_with(&format!("{name} ")) {

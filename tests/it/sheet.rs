@@ -122,7 +122,7 @@ mod screen {
 /// at each of them. T1 mills at S3000 with H1 and D11 in G54, T2 drills two holes at S1200 with H2 in G55, after M00 and a stop
 /// that names #101.
 const BY_HAND: &str = "%\nO1234 (PLATE <B>)\nG90 G17 G21 G40 G80 G49\nT1 M6\nG54 G0 X-10. Y0.\nG43 H1 Z50. S3000 M3\n\
-                       M8\nG1 Z0. F600\nG41 D11 X10. Y0.\nX310.\nG40 X320.\nG0 Z50. M9\nM5\nM00\n#101=12.5\n\
+                       M8\nG1 Z0. F600\nG41 D11 X10. Y0.\nX310.\nG40 X320.\nG0 Z50. M9\nM5\nM00 (TURN THE PART)\n#101=12.5\n\
                        #3006=1(SET JAW TO #101)\nT2 M6\nG55 G0 X10. Y10.\nG43 H2 Z50. S1200 M3\nM77\n\
                        G99 G81 Z-10. R2. F120.\nX20.\nG80\nG0 Z50.\nM30\n%\n";
 
@@ -162,7 +162,7 @@ fn a_program_by_hand_has_a_sheet_with_its_tools_offsets_stops_and_codes() {
 
     let stops = rows(&html, "Operator stops");
     assert_eq!(stops.len(), 2, "{stops:?}");
-    assert!(stops[0][1].starts_with("M00") && stops[0][2] == "T1", "{stops:?}");
+    assert!(stops[0][1].starts_with("M00 TURN THE PART") && stops[0][2] == "T1", "{stops:?}");
     assert!(stops[1][1].starts_with("#3006 SET JAW TO #101 #101 = 12.5"), "{stops:?}");
     assert_eq!(rows(&html, "M codes of the machine builder")[0][..2], ["M77", "O1234 line 20"]);
 }

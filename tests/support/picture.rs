@@ -226,6 +226,7 @@ fn drawn_hole(case: &HoleCase) -> DrawnHole {
         status: standing,
         position_deviation: case.phi,
         rotary_angle: case.turn,
+        further_angles: Vec::new(),
         remarks: case.remark.iter().cloned().collect(),
     }
 }

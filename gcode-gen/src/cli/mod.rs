@@ -33,10 +33,10 @@ Exit codes:
   1  refused: the programs of this job fail verification, or a file was edited since; nothing is written
   2  the request is invalid: bad flag, unreadable or malformed job, unwritable folder
 
-Results go to standard output, messages to standard error. --format json writes one document and nothing else; its
+Results go to standard output, messages to standard error. --format json writes one document and nothing else; its \
 schema is what `gcode-gen schema` prints for the command.
 
-Every program is simulated and verified against the job's geometry before a file is written. That is a
+Every program is simulated and verified against the job's geometry before a file is written. That is a \
 prediction, not a measurement.";
 
 #[derive(Debug, Subcommand)]

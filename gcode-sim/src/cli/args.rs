@@ -27,10 +27,10 @@ Exit codes:
   2  the request is invalid: bad flag, unreadable file, malformed job or reference
   3  the control stopped with an alarm, or a limit ended the run
 
-Results go to standard output, messages to standard error. --format json writes one document and nothing else; its
+Results go to standard output, messages to standard error. --format json writes one document and nothing else; its \
 schema is what `gcode-sim schema` prints for the command.
 
-gcode.toml in the program's folder or one above gives machine, control, libraries and references; so does machine.toml
+gcode.toml in the program's folder or one above gives machine, control, libraries and references; so does machine.toml \
 beside the program for the machine. Flags win.
 
 A program is simulated, not measured: every number printed here is a prediction.";

@@ -35,12 +35,14 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, UsageError> {
 }
 
 /// Signatures of files that are not programs, and their kinds.
-const OTHERS: [(&[u8], &str); 5] = [
+const OTHERS: [(&[u8], &str); 7] = [
     (b"\x89PNG", "a picture"),
     (b"\xff\xd8\xff", "a picture"),
     (b"%PDF-", "a PDF document"),
     (b"PK\x03\x04", "an archive or an office document"),
     (b"{\\rtf", "a word processor's document"),
+    (b"<!", "a web page"),
+    (b"<?xml", "an XML document"),
 ];
 
 /// Reads a program as UTF-8 text; refuses files of another kind, and text that is no program.
@@ -200,6 +202,17 @@ mod tests {
         );
         assert!(why("\x7fELF\0\0\0\0X").unwrap().starts_with("it has zero bytes"));
         assert_eq!(why("\0\0\0%\nO1\nM30\n%\n\0\0\0"), None, "a tape with leader and trailer");
+    }
+
+    #[test]
+    fn a_page_is_no_program_and_a_program_with_a_name_is_none_of_the_others() {
+        let what = |text: &str| {
+            let other = OTHERS.iter().find(|(start, _)| text.as_bytes().starts_with(start));
+            other.map(|(_, what)| *what)
+        };
+        assert_eq!(what("<!DOCTYPE html><html>"), Some("a web page"));
+        assert_eq!(what("<?xml version=\"1.0\"?>"), Some("an XML document"));
+        assert_eq!(what("<HTML>\nM30\n"), None);
     }
 
     /// 钻孔加工程序 in GBK, 穴あけ加工のプログラム in Shift-JIS: tables of the two standards.

@@ -304,10 +304,15 @@ fn hole_picture(
     if is_empty && simulation.run.stop_finding().is_none() {
         return Err(UsageError::new("nothing to draw: the program makes no move between known positions"));
     }
-    if is_empty || !is_asked && !tool_path::shows_more(&path, simulation) {
+    let has_stock = !matches!(stock, None | Some(Stock::Surface { .. }));
+    let is_part_known = holes.outline.is_some() || holes.cylinder.is_some();
+    // A part of a family is drawn with its own outline, and its stops are those of the set-up sheet.
+    let shows_more = !is_part_known && (has_stock || tool_path::has_curves_or_stops(&path))
+        || tool_path::shows_more(&path, simulation);
+    if is_empty || !is_asked && !shows_more {
         return Ok(gcode_draw::top_view(&holes));
     }
-    let top = match holes.outline.is_some() || holes.cylinder.is_some() {
+    let top = match is_part_known {
         true => holes.side,
         false => tool_path::top_side(&path, &simulation.hole_list().holes, machine, holes.side),
     };

@@ -47,7 +47,15 @@ pub fn of_changes(
         };
         let remarks = remarks(pair, made(0, pair.old), made(1, pair.new));
         let rotary_angle = found.and_then(|found| rotary.angle(found));
-        DrawnHole { nominal: was, actual: is, rotary_angle, remarks, ..blank_hole(id, status) }
+        let further_angles = found.map_or_else(Vec::new, |found| rotary.further_angles(found));
+        DrawnHole {
+            nominal: was,
+            actual: is,
+            rotary_angle,
+            further_angles,
+            remarks,
+            ..blank_hole(id, status)
+        }
     };
     let mut holes: Vec<DrawnHole> = compared.holes.iter().map(drawn).collect();
     hide_constant_rotary(&mut holes);

@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::count;
 use super::top::side_along_holes;
-use gcode_draw::{DrawnTool, PathPlace, PathRun, PathView, RunKind, Side, Sign, TopView};
+use gcode_draw::{DrawnTool, PathPlace, PathRun, PathView, RunKind, Side, Sign, TopView, TravelLimit};
 use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool};
 use gcode_inspect::tool_path::{PathKind, ToolPath};
 use gcode_lang::control::StrokeLimits;
@@ -25,6 +25,11 @@ pub(crate) fn shows_more(path: &ToolPath, simulation: &Simulation) -> bool {
         .collect();
     let is_of_hole = |block: Span| blocks.contains(&(block.source, block.start));
     !path.moves.is_empty() && (holes.is_empty() || path.has_feed_off_holes(is_of_hole))
+}
+
+/// Returns true if a path has a milled hole, or an operator stop at a known position.
+pub(crate) fn has_curves_or_stops(path: &ToolPath) -> bool {
+    !path.moves.is_empty() && (path.has_curved_feed() || path.stops.iter().any(|stop| stop.at.is_some()))
 }
 
 /// Returns the side from which the part is cut: that of the tool in most feeds, of most holes, or of the spindle. A tool of
@@ -74,7 +79,7 @@ pub(crate) fn of_path(
         programs: programs.into_iter().map(|(name, _)| name).collect(),
         places: places(&path, simulation),
         zeros: zeros(machine),
-        limits: strokes.map_or_else(Vec::new, |strokes| travel_limits(machine, &strokes)),
+        limits: strokes.map_or_else(Vec::new, |strokes| travel_limits(&path, machine, &strokes)),
         stock,
         notes: notes(&path),
         points: path.points,
@@ -124,24 +129,32 @@ fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
     machine.offsets.iter().map(|offset| (offset.system.name(), zero(&offset.values))).collect()
 }
 
-/// Returns the travel limits of the tip along X and Y, where no head and no stated table rotates; that of Z changes with the
-/// tool.
-fn travel_limits(machine: &Machine, strokes: &StrokeLimits) -> Vec<(usize, f64)> {
+/// Returns the travel limits of the tip, where no head and no stated table rotates. That of Z is one for each tool whose
+/// length the machine file gives, for the tip is lower than the spindle by that length.
+fn travel_limits(path: &ToolPath, machine: &Machine, strokes: &StrokeLimits) -> Vec<TravelLimit> {
     let is_rotating = !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_))
         || !machine.has_default_table && !machine.table.0.is_empty();
     if is_rotating {
         return Vec::new();
     }
-    let ends = ["X", "Y"].into_iter().enumerate().filter_map(|(coordinate, name)| {
-        let axis = machine.axes.find(name.as_bytes()[0])?;
+    let ends = |coordinate: usize, name: u8, tool: Option<u32>| {
+        let axis = machine.axes.find(name)?;
+        let setup = Setup { tool, ..Setup::default() };
         let tip = move |limit: f64| {
             let mut at = Position::default();
             at[axis] = limit;
-            (coordinate, machine.forward(&at, &Setup::default()).tip[coordinate])
+            let mm = machine.forward(&at, &setup).tip[coordinate];
+            TravelLimit { axis: coordinate, mm, tool: tool.map(|tool| format!("T{tool}")) }
         };
         Some([strokes.min[axis], strokes.max[axis]].into_iter().flatten().map(tip))
-    });
-    ends.flatten().collect()
+    };
+    let across = [(0, b'X'), (1, b'Y')].into_iter().filter_map(|(axis, name)| ends(axis, name, None));
+    let used: BTreeSet<u32> = path.stretches.iter().filter_map(|stretch| stretch.tool).collect();
+    let is_known = |tool: &Tool| used.contains(&tool.number) && tool.length.is_some();
+    let is_along_z = matches!(machine.head.kind, HeadKind::Fixed(out) if 0.999 < out.z);
+    let tools = machine.tools.iter().filter(|tool| is_along_z && is_known(tool));
+    let along = tools.filter_map(|tool| ends(2, b'Z', Some(tool.number)));
+    across.flatten().chain(along.flatten()).collect()
 }
 
 /// Returns what the picture lacks, and the texts of the first stops.

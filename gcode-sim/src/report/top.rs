@@ -1,5 +1,5 @@
 //! Contents of the top view: actual holes and, with a reference, the verdict on each.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector3;
 
@@ -31,6 +31,7 @@ pub fn of_holes(
     let drawn = holes.map(|(index, (found, hole))| DrawnHole {
         actual: Some(hole),
         rotary_angle: rotary.angle(found),
+        further_angles: rotary.further_angles(found),
         ..blank_hole((index + 1).to_string(), HoleStatus::Unjudged)
     });
     let mut holes: Vec<DrawnHole> = drawn.collect();
@@ -73,6 +74,7 @@ pub fn of_verdict(
             actual: Some(found[hole.drilled_index].hole(no_location)),
             position_deviation: Some(hole.position_deviation),
             rotary_angle: rotary.angle(&found[hole.drilled_index]),
+            further_angles: rotary.further_angles(&found[hole.drilled_index]),
             remarks: remark.into_iter().collect(),
             ..blank_hole(hole.id.clone(), if hole.ok { HoleStatus::Good } else { HoleStatus::Bad })
         }
@@ -132,15 +134,19 @@ pub(super) fn blank_hole(id: String, status: HoleStatus) -> DrawnHole {
         status,
         position_deviation: None,
         rotary_angle: None,
+        further_angles: Vec::new(),
         remarks: Vec::new(),
     }
 }
 
-/// Removes the angles of a rotary axis that is at 0 for every hole.
+/// Removes the angles of the rotary axes that are at 0 for every hole.
 pub(super) fn hide_constant_rotary(holes: &mut [DrawnHole]) {
     if holes.iter().all(|hole| hole.rotary_angle.is_none_or(|turn| turn == 0.0)) {
         holes.iter_mut().for_each(|hole| hole.rotary_angle = None);
     }
+    let all = holes.iter().flat_map(|hole| &hole.further_angles);
+    let turned: BTreeSet<char> = all.filter(|(_, turn)| *turn != 0.0).map(|(letter, _)| *letter).collect();
+    holes.iter_mut().for_each(|hole| hole.further_angles.retain(|(letter, _)| turned.contains(letter)));
 }
 
 /// Returns the next of 1, 2, 5, 10, 20, … from `value` on.
@@ -215,26 +221,39 @@ pub(super) fn no_location(_: gcode_lang::source::Span) -> (String, u32) {
     (String::new(), 0)
 }
 
-/// The rotary axis of the table, whose angle is shown at each hole.
-pub(super) struct Rotary(Option<(AxisIndex, char, bool)>);
+/// The rotary axes, whose angles are shown at each hole: the first of the table, the others of table and head.
+pub(super) struct Rotary {
+    first: Option<(AxisIndex, char, bool)>,
+    further: Vec<(AxisIndex, char)>,
+}
 
 impl Rotary {
     pub(super) fn of(machine: &Machine) -> Self {
         let turns = |link: &&AxisLink| matches!(link.motion, LinkMotion::Rotary { .. });
-        let link = machine.table.0.iter().find(turns);
-        Self(link.map(|link| (link.axis, machine.axes.letter(link.axis), is_link_reversed(link))))
+        let letter = |link: &AxisLink| (link.axis, machine.axes.letter(link.axis));
+        let mut of_table = machine.table.0.iter().filter(turns);
+        let first = of_table.next().map(|link| (letter(link).0, letter(link).1, is_link_reversed(link)));
+        let of_head = match &machine.head.kind {
+            HeadKind::Axes { chain, .. } => chain.0.as_slice(),
+            HeadKind::Free | HeadKind::Fixed(_) | HeadKind::Manual { .. } | HeadKind::Axis { .. } => &[],
+        };
+        Self { first, further: of_table.chain(of_head.iter().filter(turns)).map(letter).collect() }
     }
 
     pub(super) fn letter(&self) -> String {
-        self.0.map_or_else(String::new, |(_, letter, _)| letter.to_string())
+        self.first.map_or_else(String::new, |(_, letter, _)| letter.to_string())
     }
 
     pub(super) fn is_reversed(&self) -> bool {
-        self.0.is_some_and(|(_, _, backwards)| backwards)
+        self.first.is_some_and(|(_, _, backwards)| backwards)
     }
 
     pub(super) fn angle(&self, found: &DrilledHole) -> Option<f64> {
-        self.0.map(|(axis, ..)| found.axis_position[axis])
+        self.first.map(|(axis, ..)| found.axis_position[axis])
+    }
+
+    pub(super) fn further_angles(&self, found: &DrilledHole) -> Vec<(char, f64)> {
+        self.further.iter().map(|(axis, letter)| (*letter, found.axis_position[*axis])).collect()
     }
 }
 

@@ -62,30 +62,49 @@ fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     order.into_iter().map(|index| &holes[index]).collect()
 }
 
-/// Names and widths of the columns between a hole's name and its verdict.
-const COLUMNS: [&str; 12] = ["x", "y", "z", "dx", "dy", "dz", "entry", "bottom", "tilt", "depth", "Φ", "out"];
-const WIDTHS: [usize; 12] = [9, 9, 9, 8, 8, 8, 7, 7, 7, 8, 7, 7];
+/// Names of the columns between a hole's name and its verdict; the others are among those of `--full`.
+const COLUMNS: [&str; 10] = ["x", "y", "z", "dx", "dy", "dz", "bottom", "tilt", "depth", "Φ"];
+
+/// Width of the table: longer lists of faults end with the number of the others.
+const WIDTH: usize = 100;
 
 /// Writes one line per hole.
 fn lines(text: &mut String, holes: &[&HoleVerdict]) {
     if holes.is_empty() {
         return;
     }
-    let wide = holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(4, 12);
-    let mut line = |name: &str, cells: [String; 12], verdict: &str| {
-        let cells = cells.iter().zip(WIDTHS).map(|(cell, wide)| format!(" {cell:>wide$}"));
-        let _ = writeln!(text, "{name:<wide$}{}  {verdict}", cells.collect::<String>());
-    };
-    line("hole", COLUMNS.map(str::to_owned), "verdict");
-    for hole in holes {
+    let cells = |hole: &&HoleVerdict| {
         let [x, y, z] = hole.nominal.entry.map(|v| rounded(v, 3));
         let [dx, dy, dz] = off(hole).map(signed);
-        let [entry, bottom, tilt] = [hole.at_entry, hole.at_bottom, hole.tilt].map(|v| rounded(v, 4));
-        let [phi, out] = [hole.position_deviation, hole.out_of_tolerance].map(|v| rounded(v, 4));
-        let depth = signed(hole.depth_error);
-        line(&hole.id, [x, y, z, dx, dy, dz, entry, bottom, tilt, depth, phi, out], &remarks_of(hole));
+        let [bottom, tilt, phi] = [hole.at_bottom, hole.tilt, hole.position_deviation].map(|v| rounded(v, 4));
+        [x, y, z, dx, dy, dz, bottom, tilt, signed(hole.depth_error), phi]
+    };
+    let rows: Vec<[String; 10]> =
+        [COLUMNS.map(str::to_owned)].into_iter().chain(holes.iter().map(cells)).collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: [usize; 10] = std::array::from_fn(width);
+    let wide = holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(4, 12);
+    let names = ["hole"].into_iter().chain(holes.iter().map(|hole| hole.id.as_str()));
+    let used = wide + widths.iter().map(|width| width + 1).sum::<usize>() + 2;
+    let remarks = |hole: &&HoleVerdict| short_remarks(hole, WIDTH.saturating_sub(used));
+    let verdicts = ["verdict".to_owned()].into_iter().chain(holes.iter().map(remarks));
+    for ((name, row), verdict) in names.zip(&rows).zip(verdicts) {
+        let cells = row.iter().zip(widths).map(|(cell, wide)| format!(" {cell:>wide$}"));
+        let _ = writeln!(text, "{name:<wide$}{}  {verdict}", cells.collect::<String>());
     }
     text.push('\n');
+}
+
+/// Returns the verdict with as many faults as fit in a width, and the number of the others: `FAIL position +2`.
+fn short_remarks(hole: &HoleVerdict, width: usize) -> String {
+    let mut shown = fault_names(hole).len();
+    loop {
+        let text = with_faults(hole, shown);
+        if text.chars().count() <= width || shown == 0 {
+            return text;
+        }
+        shown -= 1;
+    }
 }
 
 /// Writes every column, with a line each for nominal, actual and deviation.
@@ -132,8 +151,36 @@ fn off(hole: &HoleVerdict) -> [f64; 3] {
 }
 
 fn remarks_of(hole: &HoleVerdict) -> String {
-    let why: Vec<_> = hole.error_codes.iter().map(|code| code.trim_start_matches("hole-")).collect();
-    if hole.ok { "pass".to_owned() } else { format!("FAIL {}", why.join(", ")) }
+    with_faults(hole, usize::MAX)
+}
+
+/// Returns the verdict with the first `most` of its kinds of faults, and the number of the others.
+fn with_faults(hole: &HoleVerdict, most: usize) -> String {
+    if hole.ok {
+        return "pass".to_owned();
+    }
+    let names = fault_names(hole);
+    let shown = names.len().min(most);
+    let first = names[..shown].join(", ");
+    let more = names.len() - shown;
+    let more = (0 < more).then(|| format!("+{more}"));
+    ["FAIL".to_owned()]
+        .into_iter()
+        .chain((!first.is_empty()).then_some(first))
+        .chain(more)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// Returns the kinds of a hole's faults, each once.
+fn fault_names(hole: &HoleVerdict) -> Vec<&'static str> {
+    let mut names: Vec<&str> = Vec::new();
+    for name in hole.error_codes.iter().map(|code| code.trim_start_matches("hole-")) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// Number of missing and of extra holes that are listed; the others are counted.
@@ -300,9 +347,9 @@ mod tests {
 Position of 2 holes against Φ0.1: predicted by simulation, not measured
 mm and degrees; deviations are actual − nominal
 
-hole         x         y         z       dx       dy       dz   entry  bottom    tilt    depth       Φ     out  verdict
-1      420.000   674.930     0.000  +0.0001   0.0000   0.0000  0.0001  0.0001  0.0000   0.0000  0.0002  0.0000  pass
-2      420.000   674.930     0.000  +0.0617   0.0000   0.0000  0.0617  0.0617  0.0000   0.0000  0.1234  0.0234  FAIL position
+hole       x       y     z      dx     dy     dz bottom   tilt  depth      Φ  verdict
+1    420.000 674.930 0.000 +0.0001 0.0000 0.0000 0.0001 0.0000 0.0000 0.0002  pass
+2    420.000 674.930 0.000 +0.0617 0.0000 0.0000 0.0617 0.0000 0.0000 0.1234  FAIL position
 
 FAIL     1 of 17 holes in tolerance, 15 missing
 worst    Φ0.1234, tolerance Φ0.1: hole 2, …
@@ -310,6 +357,21 @@ worst    Φ0.1234, tolerance Φ0.1: hole 2, …
 rounding to the control's least increment alone can cause Φ0.0211: 21.1 % of the tolerance zone
 missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
+    }
+
+    /// The columns take 78 characters with the two spaces behind them: 22 are left.
+    #[test]
+    fn a_line_has_at_most_100_characters() {
+        let codes = ["hole-position", "hole-cut-aside", "hole-cut-aside", "hole-depth", "feature-depth"];
+        let text = table(&Verdict { holes: vec![hole("1", 0.6, &codes)], ..verdict() }, Layout::default());
+        let line = text.lines().find(|line| line.starts_with("1 ")).unwrap();
+        assert!(line.ends_with("  FAIL position +3"), "{line}");
+        assert!(line.chars().count() <= 100, "{line}");
+        assert_eq!(short_remarks(&hole("1", 0.6, &codes), 8), "FAIL +4");
+        assert_eq!(
+            short_remarks(&hole("1", 0.6, &codes), 80),
+            "FAIL position, cut-aside, depth, feature-depth"
+        );
     }
 
     #[test]

@@ -47,8 +47,12 @@ pub fn lay_out(picture: &Picture, size: Size) -> Result<Sheet, PictureError> {
 
     let extent = extent(scene);
     let largest_dial = (2.4 * text).min(0.05 * drawing.width().min(drawing.height()));
+    let numbers = scale_numbers_width(scene, &font, text);
     let frame_of = |axis_reach: f64| {
-        let scale = Scale::fitting(extent, drawing.grown(-axis_reach - 0.9 * text));
+        let margin = axis_reach + 0.9 * text;
+        let area = drawing.grown(-margin);
+        let area = Rect { left: area.left + (numbers + text - margin).max(0.0), ..area };
+        let scale = Scale::fitting(extent, area);
         Frame { font: Font::embedded(), text_size: text, scale, largest_dial, axis_reach }
     };
     let mut frame = frame_of(2.0 * text);
@@ -92,10 +96,12 @@ impl Plan {
     fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
         let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text_size), frame.text_size);
         let mut sheet = Sheet::empty(drawing);
-        for stroke in &scene.strokes {
-            sheet.commands.extend(shape_commands(stroke, &frame.scale, frame.text_size));
-            block_stroke(&mut field, stroke, frame);
-        }
+        // The symbols of places lie above those of holes.
+        let (places, strokes): (Vec<&Stroke>, Vec<&Stroke>) =
+            scene.strokes.iter().partition(|stroke| matches!(stroke.shape, Shape::Sign { .. }));
+        let draw = |stroke: &Stroke| shape_commands(stroke, &frame.scale, frame.text_size);
+        sheet.commands.extend(strokes.into_iter().flat_map(draw));
+        scene.strokes.iter().for_each(|stroke| block_stroke(&mut field, stroke, frame));
         sheet.commands.extend(axes(scene, frame, extent, drawing, &mut field));
         // A straight line's caption has one position, a hole's label many, the caption of a circle or path
         // any.
@@ -108,6 +114,7 @@ impl Plan {
             let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.status.is_good() == good);
             sheet.commands.extend(holes.flat_map(|(_, hole)| hole.commands.iter().cloned()));
         }
+        sheet.commands.extend(places.into_iter().flat_map(draw));
         let mut lettering = LabelLayout::of(scene, &drawn, frame, &field);
         lettering.write(scene, frame, &mut sheet);
         let is_other = |stroke: &Stroke| !is_line(stroke);
@@ -154,6 +161,18 @@ fn check(scene: &Scene) -> Result<(), PictureError> {
         }
     }
     Ok(())
+}
+
+/// Returns the width of the longest number beside an upright scale; 0 without one.
+fn scale_numbers_width(scene: &Scene, font: &Font, text: f64) -> f64 {
+    let width = |stroke: &Stroke| match (&stroke.shape, &stroke.caption) {
+        (Shape::Line(points), Some(caption)) if stroke.pen == Pen::Ruler => {
+            let [from, to] = points[..] else { return 0.0 };
+            if to[0] < from[0] && to[1] == from[1] { font.width(caption, text) } else { 0.0 }
+        }
+        _ => 0.0,
+    };
+    scene.strokes.iter().map(width).fold(0.0, f64::max)
 }
 
 /// Returns the extent of the drawing, mm: all holes, all lines except unchanged tool paths, and the origin if

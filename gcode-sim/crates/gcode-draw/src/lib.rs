@@ -106,7 +106,7 @@ pub use views::flutes::{side_view, tip_view};
 pub use views::helix::helix_graph;
 pub use views::path_picture::path_picture;
 pub use views::path_view::{
-    Arrangement, ColorBy, DrawnTool, PathPlace, PathRun, PathView, RunKind, StandardView,
+    Arrangement, ColorBy, DrawnTool, PathPlace, PathRun, PathView, RunKind, StandardView, TravelLimit,
 };
 pub use views::purpose::PicturePurpose;
 pub use views::top::{Cylinder, DrawnHole, TopView, top_view};

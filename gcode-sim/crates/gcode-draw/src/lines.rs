@@ -30,9 +30,10 @@ pub(super) fn shape_commands(stroke: &Stroke, scale: &Scale, text: f64) -> Vec<D
     }]
 }
 
-/// Adds a stroke to the label area: labels never cover edges and avoid other lines.
+/// Adds a stroke to the label area: labels never cover edges, symbols and texts, and avoid other lines.
 pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame) {
-    let hard = stroke.pen == Pen::Outline || matches!(stroke.shape, Shape::Zero(_) | Shape::Sign { .. });
+    let is_symbol = matches!(stroke.shape, Shape::Zero(_) | Shape::Sign { .. } | Shape::Text { .. });
+    let hard = stroke.pen == Pen::Outline || is_symbol;
     let segments = |points: &[Point], step: usize| -> Vec<Obstacle> {
         let ends: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
         ends.windows(2).map(|w| Obstacle::Segment(w[0], w[1])).collect()

@@ -101,7 +101,7 @@ mod tests {
             text.split("</title>").nth(1).unwrap().trim_end_matches("</svg>").to_owned()
         };
         let (from, to): (Point, Point) = ([0.0, 0.0], [10.0, 5.0]);
-        let line = "stroke=\"#56b4e9\" stroke-width=\"0.7\" stroke-dasharray=\"2.5 2.5 2.5 2.5\" stroke-linecap=\"butt\"/>";
+        let line = "stroke=\"#2d87be\" stroke-width=\"0.7\" stroke-dasharray=\"2.5 2.5 2.5 2.5\" stroke-linecap=\"butt\"/>";
         assert_eq!(of(Shape::Line(vec![from, to])), format!("<polyline points=\"0,30 20,20\" {line}"));
         let circle = Shape::Circle { centre: to, radius: 3.0 };
         assert_eq!(of(circle), format!("<circle cx=\"20\" cy=\"20\" r=\"6\" {line}"));

@@ -139,6 +139,16 @@ impl ToolPath {
     }
 }
 
+impl ToolPath {
+    /// Returns true if a feed is curved: an arc, a helix, or a turn of the part under the tool.
+    pub fn has_curved_feed(&self) -> bool {
+        self.stretches.iter().filter(|stretch| stretch.kind == PathKind::Feed).any(|stretch| {
+            // Each straight move has one point but the first.
+            stretch.moves.len() + 1 < stretch.points.len()
+        })
+    }
+}
+
 /// Returns true if all points are less than 0.01 mm off the line through two others.
 fn are_on_line(points: &[[f64; 3]], [from, to]: &[Point3<f64>; 2]) -> bool {
     let along = (to - from).try_normalize(1e-9).unwrap_or_else(Vector3::zeros);

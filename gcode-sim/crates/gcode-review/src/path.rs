@@ -8,14 +8,17 @@ use nalgebra::Point3;
 use super::block_location::BlockLocation;
 use super::first_command::CommandKind;
 use super::record::Record;
-use super::steps::{Step, StepKind};
+use super::steps::StepKind;
 use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};
 use gcode_inspect::tool_path::for_each_drawn_pose;
-use gcode_lang::motion::{PlanarArc, Position, StopKind};
+use gcode_lang::motion::{Position, StopKind};
 
 /// Largest deviation of a curved path from its chords, mm.
 const CHORD: f64 = 0.05;
+
+/// Largest deviation of [`Leg::exact`] from the path, mm.
+const FINE_CHORD: f64 = 0.001;
 
 /// Tolerance at which a path is not simplified further, mm.
 const MAX_SIMPLIFICATION: f64 = 100.0;
@@ -37,6 +40,55 @@ pub struct Leg {
     pub block_number: usize,
     /// Points from start to end, mm; the end alone if an axis has not been commanded before the move.
     pub points: Vec<Point3<f64>>,
+    /// Largest distance of the path from the line through `points`, mm; 0 of straight moves that are all there.
+    pub deviation: f64,
+    /// Points that deviate from the path by at most 0.001 mm; empty if `points` are these, or if there are too many.
+    pub exact: Vec<Point3<f64>>,
+}
+
+impl Leg {
+    /// Appends a move that follows.
+    fn join(&mut self, next: Leg) {
+        self.steps = *self.steps.start()..=*next.steps.end();
+        self.moves += next.moves;
+        self.is_of_hole |= next.is_of_hole;
+        if next.points.len() == 1 {
+            (self.points, self.exact, self.deviation) = (next.points, next.exact, next.deviation);
+            return;
+        }
+        let is_exact = |leg: &Leg| !leg.exact.is_empty();
+        if (is_exact(self) || self.deviation == 0.0) && (is_exact(&next) || next.deviation == 0.0) {
+            if is_exact(self) || is_exact(&next) {
+                if !is_exact(self) {
+                    self.exact.clone_from(&self.points);
+                }
+                let more = if is_exact(&next) { &next.exact } else { &next.points };
+                self.exact.extend(more.iter().skip(1));
+            }
+        } else {
+            self.exact.clear();
+        }
+        self.deviation = self.deviation.max(next.deviation);
+        self.points.extend(next.points.into_iter().skip(1));
+    }
+
+    /// Leaves out points that are no farther from the line than `tolerance`. They stay in `exact` if `room` points allow it;
+    /// returns the rest of it.
+    fn simplify(&mut self, tolerance: f64, room: usize) -> usize {
+        let few = simplified(&self.points, tolerance);
+        if few.len() == self.points.len() {
+            return room;
+        }
+        let all = std::mem::replace(&mut self.points, few);
+        let is_complete = self.deviation == 0.0;
+        self.deviation += tolerance;
+        if !is_complete || room < all.len() {
+            return room;
+        }
+        let rest = room - all.len();
+        self.exact = all;
+        rest
+    }
 }
 
 impl Record {
@@ -51,27 +103,25 @@ impl Record {
     }
 
     /// Returns all moves in at most about `legs` legs with at most `points` points: consecutive moves of one kind are drawn
-    /// together, without the points that are no farther from the line than the least tolerance that leaves few enough.
-    pub fn whole_path(&self, machine: &Machine, legs: usize, points: usize) -> Vec<Leg> {
+    /// together, without the points that are no farther from the line than the least tolerance that leaves few enough. At most
+    /// `exact_points` points are those of [`Leg::exact`].
+    pub fn whole_path(&self, machine: &Machine, legs: usize, points: usize, exact_points: usize) -> Vec<Leg> {
         let joined = self.moves().div_ceil(legs.max(1)).max(1);
         let mut all: Vec<Leg> = Vec::new();
-        for next in self.path(machine, usize::MAX, usize::MAX) {
+        for next in self.legs(machine, usize::MAX, usize::MAX, exact_points) {
             match all.last_mut() {
                 Some(leg) if leg.kind == next.kind && is_same_feed(leg, &next) && leg.moves < joined => {
-                    leg.steps = *leg.steps.start()..=*next.steps.end();
-                    leg.moves += next.moves;
-                    leg.is_of_hole |= next.is_of_hole;
-                    match next.points.as_slice() {
-                        [_] => leg.points = next.points,
-                        _ => leg.points.extend(next.points.into_iter().skip(1)),
-                    }
+                    leg.join(next);
                 }
                 _ => all.push(next),
             }
         }
+        let mut room = exact_points.saturating_sub(all.iter().map(|leg| leg.exact.len()).sum());
         let mut tolerance = CHORD;
         while points < all.iter().map(|leg| leg.points.len()).sum() && tolerance < MAX_SIMPLIFICATION {
-            all.iter_mut().for_each(|leg| leg.points = simplified(&leg.points, tolerance));
+            for leg in &mut all {
+                room = leg.simplify(tolerance, room);
+            }
             tolerance *= 2.0;
         }
         all
@@ -79,11 +129,16 @@ impl Record {
 
     /// Returns the first moves, at most `moves` with at most `points` points in all.
     pub fn path(&self, machine: &Machine, moves: usize, points: usize) -> Vec<Leg> {
+        self.legs(machine, moves, points, 0)
+    }
+
+    /// Returns the first moves, each as a leg; curved ones with their exact points as long as `exact_points` are not spent.
+    fn legs(&self, machine: &Machine, moves: usize, points: usize, exact_points: usize) -> Vec<Leg> {
         let of_holes: BTreeSet<usize> = self.feeds.iter().flatten().copied().collect();
         let mut legs: Vec<Leg> = Vec::new();
         let mut setup = Setup::default();
         let mut from = Position::default();
-        let mut left = points;
+        let (mut left, mut exact_left) = (points, exact_points);
         let unknown_starts = self.moves_from_unknown_positions(machine);
         let mut move_number = 0;
         for (index, step) in self.steps.iter().enumerate() {
@@ -94,9 +149,16 @@ impl Record {
                     StepKind::Arc(arc, _) => Some(arc),
                     _ => None,
                 };
-                let mut points_of_move = move_points(machine, &setup, &from, &to, arc);
+                let travel = AxisMotion { from: &from, to: &to, arc };
+                let mut points_of_move = move_points(machine, &setup, &travel, CHORD);
                 if move_number < unknown_starts {
                     points_of_move.drain(..points_of_move.len() - 1);
+                }
+                let is_curved = 2 < points_of_move.len();
+                let mut exact = Vec::new();
+                if is_curved && 0 < exact_left {
+                    exact = move_points(machine, &setup, &travel, FINE_CHORD);
+                    exact_left = exact_left.saturating_sub(exact.len());
                 }
                 move_number += 1;
                 if legs.len() == moves || left < points_of_move.len() {
@@ -105,7 +167,17 @@ impl Record {
                 left -= points_of_move.len();
                 let back =
                     legs.last().is_some_and(|leg| leg.is_of_hole && is_back(&leg.points, &points_of_move));
-                legs.push(leg(index, &step, of_holes.contains(&index) || back, points_of_move));
+                legs.push(Leg {
+                    steps: index..=index,
+                    moves: 1,
+                    kind: step.kind.name(),
+                    feed: step.kind.rate(),
+                    is_of_hole: of_holes.contains(&index) || back,
+                    block_number: step.block_number,
+                    points: points_of_move,
+                    deviation: if is_curved { CHORD } else { 0.0 },
+                    exact,
+                });
             }
             from = to;
         }
@@ -130,11 +202,6 @@ fn is_same_feed(one: &Leg, other: &Leg) -> bool {
         (Some(one), Some(other)) => (one - other).abs() <= 1e-9 * one.abs(),
         (one, other) => one == other,
     }
-}
-
-fn leg(index: usize, step: &Step<'_>, is_of_hole: bool, points: Vec<Point3<f64>>) -> Leg {
-    let (kind, feed) = (step.kind.name(), step.kind.rate());
-    Leg { steps: index..=index, moves: 1, kind, feed, is_of_hole, block_number: step.block_number, points }
 }
 
 /// Returns the points of a line that are farther than `tolerance` from the line without them, and its ends (Douglas and Peucker).
@@ -183,15 +250,9 @@ fn set_up(setup: &mut Setup, kind: &StepKind) {
 }
 
 /// Returns the points of a move on the part.
-fn move_points(
-    machine: &Machine,
-    setup: &Setup,
-    from: &Position,
-    to: &Position,
-    arc: Option<&PlanarArc>,
-) -> Vec<Point3<f64>> {
+fn move_points(machine: &Machine, setup: &Setup, travel: &AxisMotion<'_>, chord: f64) -> Vec<Point3<f64>> {
     let mut points = Vec::new();
-    for_each_drawn_pose(machine, setup, &AxisMotion { from, to, arc }, CHORD, |pose| points.push(pose.tip));
+    for_each_drawn_pose(machine, setup, travel, chord, |pose| points.push(pose.tip));
     points
 }
 
@@ -234,7 +295,7 @@ mod tests {
             Machine::default(),
         );
         let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
-        let whole = revision.record.whole_path(&request.machine, 5, 100);
+        let whole = revision.record.whole_path(&request.machine, 5, 100, 0);
         let counts: Vec<_> = whole.iter().map(|leg| (leg.kind, leg.moves, leg.points.len())).collect();
         assert_eq!(
             counts,
@@ -247,10 +308,41 @@ mod tests {
                 ("feed", 4, 5)
             ]
         );
-        let few = revision.record.whole_path(&request.machine, 5, 20);
+        let few = revision.record.whole_path(&request.machine, 5, 20, 1000);
         assert!(few.iter().all(|leg| leg.points.len() <= 3), "{few:?}");
+        // What is left out stays beside them: the points of whole, of the legs that have fewer now.
+        for (leg, all) in few.iter().zip(&whole) {
+            let exact = if leg.exact.is_empty() { &leg.points } else { &leg.exact };
+            assert_eq!(exact, &all.points);
+        }
+        let unlimited: usize = few.iter().map(|leg| leg.exact.len()).sum();
+        let limited = revision.record.whole_path(&request.machine, 5, 20, unlimited - 1);
+        assert!(limited.iter().map(|leg| leg.exact.len()).sum::<usize>() < unlimited);
+        assert!(limited.iter().any(|leg| leg.exact.is_empty() && 0.0 < leg.deviation), "and it says so");
         let end = few.last().unwrap().points.last().unwrap();
         assert_eq!((end.x, few.iter().map(|leg| leg.moves).sum::<usize>()), (40.0, 41));
+    }
+
+    /// Chords of a circle of 10 mm deviate from it by 10 − 10·cos(half their angle).
+    #[test]
+    fn an_arc_has_fine_chords_beside_its_coarse_ones() {
+        let text = "O1\nG90 G0 X10. Y0 Z0\nG3 X10. Y0 I-10. J0 F100\nG3 X10. Y0 I-10. J0 F100\nM30\n";
+        let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
+        let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
+        let deviation = |points: &[nalgebra::Point3<f64>]| {
+            let of_chord =
+                |pair: &[nalgebra::Point3<f64>]| 10.0 - (pair[0].coords + pair[1].coords).norm() / 2.0;
+            points.windows(2).map(of_chord).fold(0.0, f64::max)
+        };
+        for legs in [10, 2] {
+            let path = revision.record.whole_path(&request.machine, legs, 1000, 10_000);
+            let arc = path.last().unwrap();
+            assert!(deviation(&arc.points) <= 0.05 && 0.01 < deviation(&arc.points), "{legs}");
+            assert!(deviation(&arc.exact) <= 0.001 && !arc.exact.is_empty(), "{legs}");
+        }
+        let none = revision.record.whole_path(&request.machine, 10, 1000, 0);
+        assert!(none.iter().all(|leg| leg.exact.is_empty()));
+        assert_eq!(none.last().unwrap().deviation, 0.05);
     }
 
     /// X is known after the first move, Z after the second: the third is the first one between known positions. A stated start

@@ -2,6 +2,7 @@
 //! neither network nor libraries.
 mod changed;
 mod document;
+mod exact_path;
 mod facts;
 mod holes;
 mod lines;
@@ -10,6 +11,7 @@ mod messages;
 mod path;
 mod proof;
 mod rows;
+mod stock_edges;
 mod stops;
 mod words;
 

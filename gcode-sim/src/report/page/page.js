@@ -66,13 +66,19 @@
     return next - first === 1 ? `move ${first}` : `moves ${first} to ${next - 1}`;
   }
 
-  function pickMove(side, move) {
+  // Describes a move; of several that are one line the one at a part of it, if its exact points are known.
+  function pickMove(side, move, part) {
     viewer.pick = { side, move };
-    const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${side.xyz[3 * at + axis].toFixed(3)}`).join(" ");
-    const [from, to] = [point(side.starts[move]), point(side.starts[move + 1] - 1)];
-    const isWhole = side.starts[move + 1] - side.starts[move] > 1;
-    const way = isWhole ? `from ${from} to ${to}` : `from an unknown position to ${to}`;
-    describe(`${name(side)}${numbers(side, move)} of ${side.all_moves}, ${side.kinds[side.kind[move]]} ${way}`, side, linesOf(viewer.pick));
+    const exact = side.known.get(move);
+    const isOne = part !== undefined && exact && side.joined[move] === exact.length / 3 - 1;
+    const points = isOne ? exact : side.xyz;
+    const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${points[3 * at + axis].toFixed(3)}`).join(" ");
+    const [first, last] = isOne ? [part, part + 1] : [side.starts[move], side.starts[move + 1] - 1];
+    const way = first < last ? `from ${point(first)} to ${point(last)}` : `from an unknown position to ${point(last)}`;
+    const all = numbers(side, move);
+    const which = isOne && exact.length > 6 ? `move ${side.firsts[move] + part}` : all;
+    const others = which === all ? "" : `, one of ${all}, which begin at the block`;
+    describe(`${name(side)}${which} of ${side.all_moves}, ${side.kinds[side.kind[move]]} ${way}${others}`, side, linesOf(viewer.pick));
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     tellEditor(anchor);
@@ -169,12 +175,11 @@
     const turns = { ArrowLeft: [-6, 0], ArrowRight: [6, 0], ArrowUp: [0, 6], ArrowDown: [0, -6] }[event.key];
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     if (turns && event.shiftKey) {
-      camera.panX += 4 * turns[0];
-      camera.panY -= 4 * turns[1];
+      camera.pan(4 * turns[0], -4 * turns[1]);
     } else if (turns) camera.turn(...turns);
     else if (event.key === "+" || event.key === "=") camera.magnify(1.2);
     else if (event.key === "-") camera.magnify(1 / 1.2);
-    else if (event.key === "0") look("reset");
+    else if (event.key === "0") look("first");
     else if (event.key === "n" || event.key === "N") step(side, 1);
     else if (event.key === "p" || event.key === "P") step(side, -1);
     else if (event.key === "Enter") follow();
@@ -184,7 +189,8 @@
   }
 
   function look(view) {
-    viewer.camera.look(view);
+    if (view === "first") viewer.first();
+    else viewer.camera.look(view);
     viewer.fit();
   }
 
@@ -210,11 +216,12 @@
       far += Math.hypot(dx, dy);
       const before = down.size === 2 ? spread() : 0;
       down.set(event.pointerId, [event.clientX, event.clientY]);
-      if (down.size === 2) viewer.camera.magnify(spread() / (before || 1));
-      if (down.size === 2 || event.shiftKey) {
-        viewer.camera.panX += dx / down.size;
-        viewer.camera.panY += dy / down.size;
-      } else if (far > 4) viewer.camera.turn(-0.4 * dx, 0.4 * dy);
+      if (down.size === 2) {
+        const [a, b] = [...down.values()];
+        viewer.camera.magnify(spread() / (before || 1), ...side.fromMiddle((a[0] + b[0]) / 2, (a[1] + b[1]) / 2));
+      }
+      if (down.size === 2 || event.shiftKey) viewer.camera.pan(dx / down.size, dy / down.size);
+      else if (far > 4) viewer.camera.turn(-0.4 * dx, 0.4 * dy);
       viewer.ask();
     });
     const up = (event) => {
@@ -226,7 +233,7 @@
       if (choice?.hole) {
         pickHole(side, choice.hole);
         follow();
-      } else if (choice) pickMove(side, choice.move);
+      } else if (choice) pickMove(side, choice.move, choice.part);
     };
     canvas.addEventListener("pointerup", up);
     canvas.addEventListener("pointercancel", up);
@@ -234,7 +241,7 @@
     canvas.addEventListener("keydown", (event) => key(side, event));
     const wheel = (event) => {
       event.preventDefault();
-      viewer.camera.magnify(Math.exp(-0.0015 * event.deltaY));
+      viewer.camera.magnify(Math.exp(-0.0015 * event.deltaY), ...side.fromMiddle(event.clientX, event.clientY));
       viewer.ask();
     };
     canvas.addEventListener("wheel", wheel, { passive: false });
@@ -284,5 +291,6 @@
   });
   if (editor) viewer.drawn = () => editor.setState(viewer.camera);
   measure();
+  if (!editor) look("first");
   arrive();
 })();

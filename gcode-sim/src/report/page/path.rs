@@ -8,7 +8,7 @@ use super::holes::HoleTable;
 use super::lines::Lines;
 use super::rows::HoleRowState;
 use super::words::{count, shown};
-use super::{Page, ReviewSide, heading};
+use super::{Page, ReviewSide, exact_path, heading, stock_edges};
 use crate::report::figures::short;
 use gcode_draw::{HoleStatus, Mark, Pen, Scene, Shape, Stroke};
 use gcode_inspect::machine::HeadKind;
@@ -18,6 +18,8 @@ use gcode_review::{BlockLocation, Leg};
 /// Numbers of moves and points drawn; the page must rotate without delay.
 const MOST_MOVES: usize = 40_000;
 const MOST_POINTS: usize = 160_000;
+/// Number of points of the exact path, which the page draws where it is zoomed in.
+const MOST_EXACT_POINTS: usize = 2_000_000;
 /// Number of holes drawn.
 const MOST_HOLES: usize = 10_000;
 
@@ -26,6 +28,8 @@ const MOST_HOLES: usize = 10_000;
 pub(super) struct Data {
     /// Axis of the part that points up.
     up: char,
+    /// Edges of the stock, mm.
+    stock: Vec<Vec<[f64; 3]>>,
     sides: Vec<SidePath>,
 }
 
@@ -55,6 +59,15 @@ struct SidePath {
     all_moves: usize,
     /// Number of moves of each stroke; empty if each stroke is one.
     joined: Vec<usize>,
+    /// Exact points of each stroke that lacks some of them, else an empty text.
+    exact: Vec<String>,
+    /// Largest distance of the path from a stroke with exact points, mm.
+    deviation: f64,
+    /// Largest distance of the path from a stroke without them, mm.
+    #[serde(skip)]
+    hidden_deviation: f64,
+    /// True if the run ends at the last move with an alarm.
+    ends_with_alarm: bool,
     all_holes: usize,
 }
 
@@ -67,11 +80,22 @@ struct HoleLinks {
     lines: Vec<usize>,
 }
 
+impl Data {
+    fn has_pen(&self, pen: Pen) -> bool {
+        self.sides.iter().any(|side| side.scene.strokes.iter().any(|stroke| stroke.pen == pen))
+    }
+
+    fn has_hole(&self, is: impl Fn(HoleStatus) -> bool) -> bool {
+        self.sides.iter().any(|side| side.scene.marks.iter().any(|mark| is(mark.status)))
+    }
+}
+
 pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable) -> Data {
     let up = up(page);
     let drawn =
         sides.iter().enumerate().map(|(side_index, side)| drawn(page, side_index, side, table, sides.len()));
-    Data { up, sides: drawn.collect() }
+    let stock = page.reference.and_then(|reference| reference.stock.as_ref()).or(page.machine.stock.as_ref());
+    Data { up, stock: stock.map(stock_edges::edges).unwrap_or_default(), sides: drawn.collect() }
 }
 
 /// Returns the axis of the part that points up: along a vertical spindle; without a known head that of most holes.
@@ -122,11 +146,11 @@ fn drawn(
     sides: usize,
 ) -> SidePath {
     let record = &side.observed.revision.record;
-    let mut legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
+    let legs = record.whole_path(page.machine, MOST_MOVES, MOST_POINTS, MOST_EXACT_POINTS);
     let all_moves = record.moves();
-    if legs.len() < all_moves {
-        legs = record.whole_path(page.machine, MOST_MOVES, MOST_POINTS);
-    }
+    let (exact, inexact): (Vec<&Leg>, Vec<&Leg>) = legs.iter().partition(|leg| !leg.exact.is_empty());
+    let largest = |legs: &[&Leg]| legs.iter().map(|leg| leg.deviation).fold(0.0, f64::max);
+    let (deviation, hidden_deviation) = (largest(&exact), largest(&inexact));
     let mut known = LineIndex::default();
     let (marks, holes) = holes(page, side_index, side, table, &mut known).into_iter().unzip();
     let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
@@ -162,6 +186,10 @@ fn drawn(
         holes,
         all_moves,
         joined,
+        exact: legs.iter().map(|leg| exact_path::encoded(&leg.exact)).collect(),
+        deviation,
+        hidden_deviation,
+        ends_with_alarm: side.observed.revision.simulation.run.stop_finding().is_some(),
         all_holes: side.observed.revision.simulation.extracted.holes.len(),
     }
 }
@@ -230,7 +258,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
         ("top", "Top", Some("View from above")),
         ("front", "Front", Some("View from the front")),
         ("side", "Side", Some("View from the side")),
-        ("reset", "Reset", None),
+        ("reset", "All", Some("View of the whole path")),
         ("in", "+", Some("Zoom in")),
         ("out", "\u{2212}", Some("Zoom out")),
     ];
@@ -256,18 +284,26 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
             }
             p #picked aria-live="polite" { "Click a move or a hole to see its block and its calls." }
             ul.legend {
-                li.rapid { "rapid" }
-                li.feed { "feed, arc" }
-                li.probe { "probing move" }
-                @if sides.len() == 2 { li.changed { "different from the other program" } }
-                li.hole { "hole" }
-                li.wrong { "hole that differs or has a fault" }
-                li.absent { "missing hole" }
+                @if data.has_pen(Pen::Rapid) { li.rapid { "rapid" } }
+                @if data.has_pen(Pen::Feed) { li.feed { "feed, arc" } }
+                @if data.has_pen(Pen::Probe) { li.probe { "probing move" } }
+                @if sides.len() == 2 {
+                    li.changed { "different from the other program" }
+                    li.other { "the other program\u{2019}s cut" }
+                }
+                @if data.has_hole(|status| matches!(status, HoleStatus::Good | HoleStatus::Unjudged)) { li.hole { "hole" } }
+                @if data.has_hole(|status| matches!(status, HoleStatus::Bad | HoleStatus::Extra)) {
+                    li.wrong { "hole that differs or has a fault" }
+                }
+                @if data.has_hole(|status| status == HoleStatus::Missing) { li.absent { "missing hole" } }
+                @if !data.stock.is_empty() { li.stock { "stock" } }
+                @if data.sides.iter().any(|side| side.ends_with_alarm) { li.alarm-end { "position at the alarm" } }
             }
             details.note #keys {
                 summary { "Mouse, touch and keys" }
                 "Drag, or use the arrow keys, to rotate; the wheel, two fingers, + and − zoom; Shift and drag moves. "
-                "N and P go from move to move, Enter to the block of the selected move, 0 resets the view."
+                "N and P go from move to move, Enter to the block of the selected move, 0 goes back to the first view. "
+                "The wheel and two fingers zoom at the pointer."
             }
             @for (side, drawn) in sides.iter().zip(&data.sides) { (left_out(side, sides, drawn)) }
             noscript { p { "The drawing needs scripts; everything else on this page works without them." } }
@@ -296,7 +332,15 @@ fn left_out(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>], drawn: &SidePath) -
         @if shown < drawn.all_moves {
             p.note {
                 (heading(side, sides)) ": " (count(drawn.all_moves as u64)) " moves are drawn as " (count(shown as u64))
-                " lines, consecutive moves of one kind together."
+                " lines, consecutive moves of one kind together"
+                @if drawn.hidden_deviation == 0.0 { "; zoomed in, the path itself is drawn" }
+                "."
+            }
+        }
+        @if 0.0 < drawn.hidden_deviation {
+            p.note {
+                (heading(side, sides)) ": there are too many points for all of them: some lines are up to "
+                (short(drawn.hidden_deviation)) " mm from the path, however far you zoom in."
             }
         }
         @if MOST_HOLES < drawn.all_holes {

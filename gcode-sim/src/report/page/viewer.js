@@ -1,18 +1,22 @@
 // The drawing: one camera for all canvases, in parallel projection.
 const RAD = Math.PI / 180;
+// Largest distance of a drawn line from the path, pixels, and largest number of letters of the exact path that replaces the lines.
+const MOST_PIXELS = 0.3;
+const MOST_LETTERS = 1.6e6;
 // Height of the strip for the scale bar below the drawing, pixels.
 const STRIP = 40;
 
 class Camera {
   constructor(up) {
     this.up = up;
+    this.scale = 1;
     this.look("reset");
   }
 
   // Named views. The axis `up` is z or y; with y, x points to the right and -z away from the viewer.
   look(name) {
     const [yaw, pitch] = { top: [0, 90], front: [0, 0], side: [90, 0], reset: [-30, 28] }[name];
-    Object.assign(this, { yaw, pitch, zoom: 1, panX: 0, panY: 0 });
+    Object.assign(this, { yaw, pitch, zoom: 1, offset: [0, 0, 0] });
   }
 
   turn(yaw, pitch) {
@@ -20,8 +24,19 @@ class Camera {
     this.pitch = Math.max(-90, Math.min(90, this.pitch + pitch));
   }
 
-  magnify(factor) {
-    this.zoom = Math.max(0.2, Math.min(500, this.zoom * factor));
+  // Moves the picture by pixels. The point in the middle of the canvas, about which it rotates, has an offset from that of the part.
+  pan(dx, dy) {
+    const [right, up] = this.axes();
+    this.offset = this.offset.map((mm, axis) => mm - (dx * right[axis] - dy * up[axis]) / this.scale);
+  }
+
+  // Zooms about a point of the canvas, given from its middle, that stays where it is.
+  magnify(factor, x = 0, y = 0) {
+    const zoom = Math.max(0.2, Math.min(1e5, this.zoom * factor));
+    const by = zoom / this.zoom;
+    this.zoom = zoom;
+    this.scale *= by;
+    this.pan(x * (1 - by), y * (1 - by));
   }
 
   // Rows: right, up, towards the viewer.
@@ -32,6 +47,24 @@ class Camera {
   }
 }
 
+// Reads the points of a path: differences of x, y, z in 0.0001 mm, in base64, 7 bits a byte, the lowest first.
+function exactPoints(text) {
+  const bytes = atob(text);
+  const points = [];
+  const last = [0, 0, 0];
+  for (let at = 0, axis = 0; at < bytes.length; axis = (axis + 1) % 3) {
+    let [number, place, byte] = [0, 1, 0];
+    do {
+      byte = bytes.charCodeAt(at++);
+      number += (byte & 127) * place;
+      place *= 128;
+    } while (byte & 128);
+    last[axis] += number % 2 ? -(number + 1) / 2 : number / 2;
+    points.push(last[axis] / 1e4);
+  }
+  return Float64Array.from(points);
+}
+
 class Side {
   // The scene has polylines with a pen, one for each move, and marks with a status, one for each hole.
   constructor({ scene, holes, changed, ...data }, canvas) {
@@ -40,6 +73,9 @@ class Side {
     this.moves.forEach(({ line }, move) => (this.starts[move + 1] = this.starts[move] + line.length / 3));
     this.xyz = Float64Array.from(this.moves.flatMap(({ line }) => line));
     this.isChanged = new Set(changed);
+    // Exact points by move, and those in sight on the canvas.
+    this.known = new Map();
+    this.sharp = new Map();
     this.screen = new Float32Array((2 * this.xyz.length) / 3);
     this.holes = scene.marks.map(({ position, direction, depth = 0, ...mark }, index) => ({
       ...mark,
@@ -82,19 +118,65 @@ class Side {
       this.screen[j] = view.cx + view.scale * (r[0] * a + r[1] * b + r[2] * c);
       this.screen[j + 1] = view.cy - view.scale * (u[0] * a + u[1] * b + u[2] * c);
     }
+    this.sharpen();
   }
 
-  strokeMoves(colour, width, dash, matches) {
-    const context = this.context;
+  // Finds the moves in sight whose lines are visibly off the path, and projects their exact points.
+  sharpen() {
+    this.sharp.clear();
+    const { width, height, scale } = this.view;
+    const reach = this.deviation * scale;
+    if (reach < MOST_PIXELS) return;
+    const moves = [];
+    let letters = 0;
+    for (let move = 0; move < this.moves.length; move++) {
+      if (!this.exact[move]) continue;
+      let [left, right, top, bottom] = [Infinity, -Infinity, Infinity, -Infinity];
+      for (let at = 2 * this.starts[move]; at < 2 * this.starts[move + 1]; at += 2) {
+        left = Math.min(left, this.screen[at]);
+        right = Math.max(right, this.screen[at]);
+        top = Math.min(top, this.screen[at + 1]);
+        bottom = Math.max(bottom, this.screen[at + 1]);
+      }
+      if (right + reach < 0 || width < left - reach || bottom + reach < 0 || height < top - reach) continue;
+      moves.push(move);
+      letters += this.exact[move].length;
+      if (MOST_LETTERS < letters) return;
+    }
+    if (4000 < this.known.size) this.known.clear();
+    for (const move of moves) {
+      if (!this.known.has(move)) this.known.set(move, exactPoints(this.exact[move]));
+      const points = this.known.get(move);
+      const screen = new Float32Array((2 * points.length) / 3);
+      for (let at = 0; at < points.length; at += 3) {
+        screen.set(this.point([points[at], points[at + 1], points[at + 2]]), (2 * at) / 3);
+      }
+      this.sharp.set(move, screen);
+    }
+  }
+
+  // Returns a place on the screen as pixels from the middle of the drawing.
+  fromMiddle(x, y) {
+    const box = this.canvas.getBoundingClientRect();
+    return [x - box.left - this.canvas.clientLeft - this.view.cx, y - box.top - this.canvas.clientTop - this.view.cy];
+  }
+
+  // Points of a move on the canvas, and the range of its coordinates.
+  line(move) {
+    const sharp = this.sharp.get(move);
+    return sharp ? [sharp, 0, sharp.length] : [this.screen, 2 * this.starts[move], 2 * this.starts[move + 1]];
+  }
+
+  strokeMoves(colour, width, dash, matches, context = this.context) {
     Object.assign(context, { strokeStyle: colour, lineWidth: width });
     context.setLineDash(dash);
     let drawn = 0;
     context.beginPath();
     for (let move = 0; move < this.moves.length; move++) {
       if (!matches(move)) continue;
-      let at = 2 * this.starts[move];
-      context.moveTo(this.screen[at], this.screen[at + 1]);
-      for (at += 2; at < 2 * this.starts[move + 1]; at += 2) context.lineTo(this.screen[at], this.screen[at + 1]);
+      const [points, first, end] = this.line(move);
+      context.moveTo(points[first], points[first + 1]);
+      for (let at = first + 2; at < end; at += 2) context.lineTo(points[at], points[at + 1]);
       // Long paths are slow to stroke.
       if (++drawn % 1000 === 0) {
         context.stroke();
@@ -105,10 +187,12 @@ class Side {
     context.setLineDash([]);
   }
 
-  draw(colours, options, pick) {
+  draw(colours, options, pick, other) {
     const context = this.context;
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    const few = this.moves.length < 5000;
+    // Dashes of a line much longer than the canvas are slow.
+    const few = this.moves.length < 5000 && this.view.zoom < 200;
+    this.drawStock(colours);
     const { upTo } = options;
     if (upTo !== null) {
       // The moves that follow are faint.
@@ -124,14 +208,49 @@ class Side {
     const rapid = (move) => this.moves[move].pen === "rapid";
     if (options.rapids) this.strokeMoves(colours.changed, few ? 2 : 0.8, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
     this.strokeMoves(colours.changed, few ? 3.5 : 1.2, [], (move) => this.isChanged.has(move) && !rapid(move));
+    // What the other program does instead, faint.
+    if (other) {
+      context.globalAlpha = 0.6;
+      other.strokeMoves(colours.changed, 1, few ? [2, 3] : [], (move) => other.isChanged.has(move) && !(other.moves[move].pen === "rapid"), context);
+      context.globalAlpha = 1;
+    }
     const line = pick.line?.side === this ? pick.line.number : null;
     if (line !== null) this.strokeMoves(colours.pick, 4, [], (move) => shown(move) && this.places[this.at[move]].includes(line));
     if (pick.side === this && pick.move !== undefined) {
       this.strokeMoves(colours.pick, 5, [], (move) => move === pick.move);
     }
     this.drawHoles(colours, pick);
+    if (this.ends_with_alarm && upTo === null) this.drawAlarm(colours);
     if (upTo !== null) this.drawTool(colours, upTo);
     this.drawAxes(colours);
+  }
+
+  drawStock(colours) {
+    const context = this.context;
+    Object.assign(context, { strokeStyle: colours.soft, lineWidth: 1 });
+    context.beginPath();
+    for (const edge of this.stock) {
+      context.moveTo(...this.point(edge[0]));
+      edge.slice(1).forEach((point) => context.lineTo(...this.point(point)));
+    }
+    context.stroke();
+  }
+
+  // Marks the end of the path by a cross.
+  drawAlarm(colours) {
+    if (this.moves.length === 0) return;
+    const at = 2 * (this.starts[this.moves.length] - 1);
+    const [x, y] = [this.screen[at], this.screen[at + 1]];
+    const context = this.context;
+    for (const [strokeStyle, lineWidth] of [[colours.paper, 6], [colours.wrong, 3]]) {
+      Object.assign(context, { strokeStyle, lineWidth });
+      context.beginPath();
+      for (const slope of [1, -1]) {
+        context.moveTo(x - 8, y - 8 * slope);
+        context.lineTo(x + 8, y + 8 * slope);
+      }
+      context.stroke();
+    }
   }
 
   // Marks where the tool stands after a number of moves.
@@ -272,10 +391,11 @@ class Side {
     if (best) return best;
     for (let move = 0; move < this.moves.length; move++) {
       if ((!options.rapids && this.moves[move].pen === "rapid") || (options.changedOnly && !this.isChanged.has(move))) continue;
-      for (let at = 2 * this.starts[move]; at < 2 * (this.starts[move + 1] - 1); at += 2) {
-        const far = toSegment(x, y, this.screen[at], this.screen[at + 1], this.screen[at + 2], this.screen[at + 3]);
+      const [points, first, end] = this.line(move);
+      for (let at = first; at < end - 2; at += 2) {
+        const far = toSegment(x, y, points[at], points[at + 1], points[at + 2], points[at + 3]);
         // The later of two coincident moves is on top.
-        if (far < reach && (!best || far <= best.far)) best = { far, move, side: this };
+        if (far < reach && (!best || far <= best.far)) best = { far, move, side: this, part: (at - first) / 2 };
       }
     }
     return best;
@@ -291,8 +411,10 @@ function toSegment(x, y, ax, ay, bx, by) {
 // Fits the extents into the canvases, and draws after changes.
 class Viewer {
   constructor(data, sides) {
+    sides.forEach((side) => (side.stock = data.stock));
     Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false, upTo: null } });
-    this.extents = sides.flatMap((side) => side.extent());
+    // A change is seen larger without the stock.
+    this.extents = [...sides.flatMap((side) => side.extent()), ...(sides.length === 1 ? data.stock.flat(2) : [])];
     this.middle = [0, 1, 2].map((axis) => {
       let [low, high] = [Infinity, -Infinity];
       for (let at = axis; at < this.extents.length; at += 3) {
@@ -316,6 +438,41 @@ class Viewer {
     return Math.min((0.42 * width) / wide, (0.42 * (height - STRIP)) / high);
   }
 
+  // Looks at the change, else at all: at the largest displacement of a hole, or at the first cut that differs.
+  first() {
+    this.camera.look("reset");
+    const change = this.sides.length === 2 ? this.displacement() : null;
+    if (!change) return;
+    const [from, to] = change;
+    const way = to.map((mm, axis) => mm - from[axis]);
+    const length = Math.hypot(...way);
+    // A displacement along the upright axis is seen from the front, another from above.
+    this.camera.look(Math.abs(way["xyz".indexOf(this.camera.up)]) > 0.7 * length ? "front" : "top");
+    const rows = this.camera.axes();
+    const fitting = Math.min(...this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight)));
+    if (!(fitting > 0)) return;
+    // It spans 40 pixels, so that 0.05 mm are seen as well as 50.
+    this.camera.zoom = Math.max(1, Math.min(1e5, 40 / length / fitting));
+    this.camera.offset = from.map((mm, axis) => (mm + to[axis]) / 2 - this.middle[axis]);
+  }
+
+  // Returns both ends of the largest displacement; null if nothing is displaced.
+  displacement() {
+    const [old, now] = this.sides;
+    const rows = new Map(old.holes.filter((hole) => hole.row !== null).map((hole) => [hole.row, hole]));
+    const far = ([a, b]) => Math.hypot(...a.map((mm, axis) => mm - b[axis]));
+    const holes = now.holes.filter((hole) => rows.has(hole.row)).flatMap((hole) => {
+      const before = rows.get(hole.row);
+      return [[before.entry, hole.entry], [before.bottom, hole.bottom]];
+    });
+    const end = (side, move) => [...side.xyz.slice(3 * side.starts[move + 1] - 3, 3 * side.starts[move + 1])];
+    const cut = (side) => [...side.isChanged].find((move) => side.moves[move].pen !== "rapid");
+    const cuts = [cut(old), cut(now)];
+    const moves = cuts.every((move) => move !== undefined) ? [[end(old, cuts[0]), end(now, cuts[1])]] : [];
+    const largest = [...holes, ...(holes.some((pair) => far(pair) > 1e-3) ? [] : moves)].sort((a, b) => far(b) - far(a))[0];
+    return largest && far(largest) > 1e-3 ? largest : null;
+  }
+
   fit() {
     this.scales = null;
     this.ask();
@@ -330,12 +487,15 @@ class Viewer {
   draw() {
     this.waiting = false;
     const style = getComputedStyle(document.documentElement);
-    const names = ["paper", "ink", "rapid", "feed", "probe", "changed", "hole", "wrong", "pick"];
+    const names = ["paper", "ink", "soft", "rapid", "feed", "probe", "changed", "hole", "wrong", "pick"];
     const colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
     const rows = this.camera.axes();
     this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight));
     const fitting = Math.min(...this.scales);
     const dots = window.devicePixelRatio || 1;
+    const scale = fitting * this.camera.zoom;
+    this.camera.scale = scale;
+    const middle = this.middle.map((mm, axis) => mm + this.camera.offset[axis]);
     for (const side of this.sides) {
       const { clientWidth: width, clientHeight: height } = side.canvas;
       if (!width || !height) continue;
@@ -344,10 +504,10 @@ class Viewer {
         side.canvas.height = Math.round(height * dots);
       }
       side.context.setTransform(dots, 0, 0, dots, 0, 0);
-      const scale = fitting * this.camera.zoom;
-      side.project({ rows, middle: this.middle, scale, width, height, cx: width / 2 + this.camera.panX, cy: (height - STRIP) / 2 + this.camera.panY });
-      side.draw(colours, this.options, this.pick);
+      side.project({ rows, middle, scale, width, height, zoom: this.camera.zoom, cx: width / 2, cy: (height - STRIP) / 2 });
     }
+    const drawn = this.sides.filter((side) => side.view && side.canvas.clientWidth && side.canvas.clientHeight);
+    for (const side of drawn) side.draw(colours, this.options, this.pick, drawn.find((other) => other !== side));
     this.drawn?.();
   }
 }

@@ -208,10 +208,12 @@ impl ProgramSheet<'_> {
         let row = |(index, stop): (usize, &SheetStop)| {
             let values =
                 stop.variables.iter().map(|(number, value)| format!("#{number} = {}", short(*value)));
+            let block = self.simulation.run.control.memory().sources().text(stop.backtrace.block);
+            let text = if stop.text.is_empty() { comment(&block) } else { stop.text.clone() };
             vec![
                 html! { (index + 1) },
                 html! {
-                    b { (stop.kind.name()) } " " span.mono { (stop.text) }
+                    b { (stop.kind.name()) } " " span.mono { (text) }
                     @for value in values { " " b { (value) } }
                     div.note { (self.location(&stop.backtrace)) }
                 },
@@ -332,4 +334,10 @@ fn range(range: Option<[f64; 2]>) -> String {
         Some([min, max]) if min == max => short(min),
         Some([min, max]) => format!("{} to {}", short(min), short(max)),
     }
+}
+
+/// Returns the comments of a block, which the control shows with it while it waits.
+fn comment(block: &str) -> String {
+    let comments = block.split('(').skip(1).map(|rest| rest.split(')').next().unwrap_or_default().trim());
+    comments.filter(|comment| !comment.is_empty()).collect::<Vec<_>>().join(" ")
 }

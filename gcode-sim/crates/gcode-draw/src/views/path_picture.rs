@@ -1,20 +1,17 @@
 //! The picture of a tool path: one or several views with frames, the holes on top, and a legend.
+use super::path_places::{MAX_PLACES, limits, places, zeros};
 use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale, stock_outline};
-use super::path_view::{Arrangement, ColorBy, PathPlace, PathView, RunKind, StandardView};
+use super::path_view::{Arrangement, ColorBy, PathView, RunKind, StandardView};
 use super::top::{TopView, hole_mark};
 use super::view_frames::{Frames, PlacedView, ViewBox};
 use crate::measure::plain;
 use crate::picture::{LegendItem, Picture, Sample};
-use crate::scene::{Mark, Pen, Point, Scene, Shape, Sign, Stroke, Style, Tint};
+use crate::scene::{HoleStatus, Mark, Pen, Scene, Shape, Sign, Stroke, Style, Tint};
 use crate::side::Projection;
 use nalgebra::Vector3;
 
 /// Largest number of tools or programs in the legend.
 const MAX_CLASSES: usize = 8;
-/// Largest number of places with a symbol.
-const MAX_PLACES: usize = 40;
-/// Distance at which places share one symbol, in parts of the extent of the views.
-const SAME_PLACE: f64 = 0.012;
 /// Cosine of the largest angle between a hole and the line of sight at which the hole is drawn: 60°.
 const FACING: f64 = 0.5;
 
@@ -65,7 +62,7 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
         }
         scene.strokes.extend(zeros(path, placed, index == 0));
         scene.strokes.extend(places(path, placed, frames.extent, index == 0));
-        scene.marks.extend(marks(view, placed, &mut labelled));
+        scene.marks.extend(marks(view, placed, 1 < frames.views.len(), &mut labelled));
     }
     if is_cut {
         notes.push("rapids beyond the frame are cut off".to_owned());
@@ -91,10 +88,17 @@ fn title_of(arrangement: &Arrangement) -> String {
             )
         }
         _ => {
-            let names: Vec<String> =
-                arrangement.views.iter().map(|view| view.name().to_lowercase()).collect();
             let top = arrangement.top.name();
-            format!("Views: {}; top seen from {top}", names.join(", "))
+            let name = |(index, view): (usize, &StandardView)| match (view, index) {
+                (StandardView::Top, 0) => format!("Top (from {top})"),
+                (StandardView::Top, _) => format!("top (from {top})"),
+                (_, 0) => view.name().to_owned(),
+                (..) => view.name().to_lowercase(),
+            };
+            let names: Vec<String> = arrangement.views.iter().enumerate().map(name).collect();
+            let has_top = arrangement.views.contains(&StandardView::Top);
+            let top = if has_top { String::new() } else { format!("; top seen from {top}") };
+            format!("{}{top}", names.join(", "))
         }
     }
 }
@@ -112,75 +116,8 @@ fn tool_order(path: &PathView) -> Vec<Option<usize>> {
     order
 }
 
-fn zeros(path: &PathView, view: &PlacedView, is_named: bool) -> Vec<Stroke> {
-    let seen = path.zeros.iter().filter(|(_, at)| is_inside(view, view.side.project(*at)));
-    let stroke = |(name, at): &(String, [f64; 3])| Stroke {
-        caption: is_named.then(|| name.clone()),
-        ..Stroke::new(Pen::Edge, Shape::Zero(view.project(*at)))
-    };
-    seen.map(stroke).collect()
-}
-
-/// Draws the travel limits that cross a plane view as lines across its frame.
-fn limits(path: &PathView, view: &PlacedView) -> Vec<Stroke> {
-    let [low, high] = view.frame;
-    let line = |(axis, mm): &(usize, f64)| {
-        let mut unit = [0.0; 3];
-        unit[*axis] = 1.0;
-        // An axis of the part runs along one direction of a plane view, or towards the reader.
-        let seen = view.side.project(unit);
-        let along = (0..2).find(|direction| 0.5 < seen[*direction].abs())?;
-        let at = mm * seen[along];
-        let mut ends = [low, high];
-        ends.iter_mut().for_each(|end| end[along] = at);
-        let is_seen = low[along] < at && at < high[along];
-        is_seen.then(|| Stroke::new(Pen::Limit, Shape::Line(ends.map(|end| view.moved(end)).into())))
-    };
-    let is_plane = view.kind != StandardView::Isometric;
-    path.limits.iter().filter(|_| is_plane).filter_map(line).collect()
-}
-
-fn is_inside(view: &PlacedView, at: Point) -> bool {
-    let [low, high] = view.frame;
-    (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis])
-}
-
-/// Draws the places of the path. Those near each other share a symbol, and one outside the frame lies on its edge.
-fn places(path: &PathView, view: &PlacedView, extent: f64, is_named: bool) -> Vec<Stroke> {
-    struct Group {
-        at: Point,
-        sign: Sign,
-        labels: Vec<String>,
-    }
-    let mut groups: Vec<Group> = Vec::new();
-    let [low, high] = view.frame;
-    for PathPlace { sign, at, label } in path.places.iter().take(MAX_PLACES) {
-        let seen = view.side.project(*at);
-        let at = [seen[0].clamp(low[0], high[0]), seen[1].clamp(low[1], high[1])];
-        let label = if at == seen { label.clone() } else { format!("{label} (outside)") };
-        let near =
-            |group: &&mut Group| libm::hypot(group.at[0] - at[0], group.at[1] - at[1]) < SAME_PLACE * extent;
-        match groups.iter_mut().find(near) {
-            Some(group) => {
-                if group.sign < *sign {
-                    (group.sign, group.at) = (*sign, at);
-                }
-                if !group.labels.contains(&label) {
-                    group.labels.push(label);
-                }
-            }
-            None => groups.push(Group { at, sign: *sign, labels: vec![label] }),
-        }
-    }
-    let stroke = |Group { at, sign, labels }: Group| Stroke {
-        caption: is_named.then(|| labels.join(", ")),
-        ..Stroke::new(Pen::Edge, Shape::Sign { at: view.moved(at), sign })
-    };
-    groups.into_iter().map(stroke).collect()
-}
-
 /// Returns the marks of the holes: all in the top view, in others those that face the reader. Each has its label in the first view that shows it.
-fn marks(view: &TopView, placed: &PlacedView, labelled: &mut [bool]) -> Vec<Mark> {
+fn marks(view: &TopView, placed: &PlacedView, is_crowded: bool, labelled: &mut [bool]) -> Vec<Mark> {
     let towards = placed.side.towards();
     let mut marks = Vec::new();
     for (index, hole) in view.holes.iter().enumerate() {
@@ -199,6 +136,9 @@ fn marks(view: &TopView, placed: &PlacedView, labelled: &mut [bool]) -> Vec<Mark
         if std::mem::replace(&mut labelled[index], true) {
             mark.label.clear();
             mark.deviation = None;
+        } else if is_crowded && hole.status == HoleStatus::Unjudged {
+            // Small views have room for the number alone.
+            mark.label.truncate(1);
         }
         marks.push(mark);
     }
@@ -315,8 +255,9 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::path_view::{DrawnTool, PathRun};
+    use super::super::path_view::{DrawnTool, PathPlace, PathRun, TravelLimit};
     use super::*;
+    use crate::scene::Point;
     use crate::side::Side;
 
     /// A slot of 10 mm along x at z −2 from (0, 0) to (100, 40), reached by a rapid from z 300.
@@ -367,7 +308,8 @@ mod tests {
     /// right view.
     #[test]
     fn a_travel_limit_within_the_frame_is_a_line() {
-        let path = PathView { limits: vec![(0, 104.0), (1, -20.0)], ..slot() };
+        let limit = |axis, mm| TravelLimit { axis, mm, tool: None };
+        let path = PathView { limits: vec![limit(0, 104.0), limit(1, -20.0)], ..slot() };
         let limits = |view| {
             let picture = picture(&path, &[view], Projection::Third);
             picture.scene.strokes.into_iter().filter(|stroke| stroke.pen == Pen::Limit).collect::<Vec<_>>()
@@ -379,6 +321,41 @@ mod tests {
         );
         // The frame begins 13.8 mm left of x 0.
         assert!((line[0][0] - 117.8).abs() < 1e-9 && (line[1][0] - 117.8).abs() < 1e-9, "{line:?}");
+    }
+
+    /// The deepest tip of T1 at z −6 crosses the front and the right view with the tool's name; from above it is no line.
+    #[test]
+    fn a_travel_limit_of_a_tool_has_its_name() {
+        let limit = TravelLimit { axis: 2, mm: -6.0, tool: Some("T1".to_owned()) };
+        let path = PathView { limits: vec![limit], ..slot() };
+        let named = |view| {
+            let picture = picture(&path, &[view], Projection::Third);
+            let limits = picture.scene.strokes.into_iter().filter(|stroke| stroke.pen == Pen::Limit);
+            limits.map(|stroke| stroke.caption).collect::<Vec<_>>()
+        };
+        let t1 = vec![Some("T1".to_owned())];
+        assert_eq!([named(StandardView::Front), named(StandardView::Right)], [t1.clone(), t1]);
+        assert!(named(StandardView::Top).is_empty());
+    }
+
+    /// In the front view the rapid from z 300 enters the frame at x 0: there the start is marked, not at a corner. The front
+    /// view as the second of two has no mark of it.
+    #[test]
+    fn a_start_outside_is_marked_where_the_path_enters() {
+        let starts = |views: &[StandardView]| {
+            let picture = picture(&slot(), views, Projection::Third);
+            let sign = |stroke: &Stroke| match stroke.shape {
+                Shape::Sign { at, .. } => Some((at, stroke.caption.clone())),
+                _ => None,
+            };
+            picture.scene.strokes.iter().filter_map(sign).collect::<Vec<_>>()
+        };
+        let front = starts(&[StandardView::Front]);
+        // 13.8 mm from the left of the frame, at its top: −2 ± 8.8.
+        let [right, up] = front[0].0;
+        assert!((right - 13.8).abs() < 1e-9 && (up - 17.6).abs() < 1e-9, "{front:?}");
+        assert_eq!(front[0].1.as_deref(), Some("start (outside)"));
+        assert_eq!(starts(&[StandardView::Top, StandardView::Front]).len(), 1);
     }
 
     /// In the third angle the top is above the front, in the first below; both have the same abscissa.

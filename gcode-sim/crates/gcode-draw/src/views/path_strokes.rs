@@ -1,5 +1,7 @@
 //! Lines of a tool path in one view: colour by a value or a class, dash pattern by tool, clipped to the frame.
-use super::path_view::{ColorBy, PathRun, PathView, RunKind};
+use std::collections::BTreeSet;
+
+use super::path_view::{ColorBy, PathRun, PathView, RunKind, StandardView};
 use super::view_frames::{PlacedView, axis_index};
 use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint, arc};
 use gcode_part::Stock;
@@ -109,6 +111,10 @@ impl PathDrawer<'_> {
     pub(super) fn rapids(&self, view: &PlacedView) -> (Vec<Stroke>, bool) {
         let (mut strokes, mut is_cut) = (Vec::new(), false);
         let mut line: Vec<Point> = Vec::new();
+        // Dashes drawn twice would fill each other's gaps.
+        let mut drawn: BTreeSet<[[i64; 2]; 2]> = BTreeSet::new();
+        let grid = 2.0 * RESOLUTION * self.extent;
+        let cell = |point: Point| point.map(|mm| (mm / grid).round() as i64);
         for run in self.path.runs.iter().filter(|run| run.kind == RunKind::Rapid) {
             for pair in self.sparse(view, run).windows(2) {
                 let Some([from, to]) = clipped([pair[0], pair[1]], view.frame) else {
@@ -116,9 +122,14 @@ impl PathDrawer<'_> {
                     continue;
                 };
                 is_cut |= from != pair[0] || to != pair[1];
+                let mut ends = [cell(from), cell(to)];
+                ends.sort_unstable();
+                if !drawn.insert(ends) {
+                    continue;
+                }
                 if line.last() != Some(&from) {
                     flush(&mut strokes, &mut line, view, Pen::Rapid, None);
-                    line.push(from);
+                    line = vec![from];
                 }
                 line.push(to);
             }
@@ -248,18 +259,26 @@ pub(super) fn clipped([from, to]: [Point; 2], [low, high]: [Point; 2]) -> Option
 
 /// Draws the outline of the stock.
 pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
-    let edge = |points: &[[f64; 3]]| {
+    let line = |pen: Pen, points: &[[f64; 3]]| {
         let points: Vec<Point> = points.iter().map(|point| view.project(*point)).collect();
-        Stroke::new(Pen::Outline, Shape::Line(points))
+        Stroke::new(pen, Shape::Line(points))
     };
+    let edge = |points: &[[f64; 3]]| line(Pen::Outline, points);
     match stock {
         Stock::Box { min, max, .. } => {
             let corner =
                 |ends: usize| [0, 1, 2].map(|axis| if ends >> axis & 1 == 1 { max[axis] } else { min[axis] });
-            let edges = (0..8).flat_map(|from| (0..3).map(move |axis| (from, from | 1 << axis)));
+            let edges = (0..8usize).flat_map(|from| (0..3).map(move |axis| (from, from | 1 << axis)));
+            // The corner farthest from the reader, at which three hidden edges meet.
+            let towards = view.side.towards();
+            let hidden = (0..3).filter(|axis| towards[*axis] < 0.0).fold(0, |ends, axis| ends | 1 << axis);
+            let is_hidden = |ends: [usize; 2]| view.kind == StandardView::Isometric && ends.contains(&hidden);
             edges
                 .filter(|(from, to)| from != to)
-                .map(|(from, to)| edge(&[corner(from), corner(to)]))
+                .map(|(from, to)| {
+                    let pen = if is_hidden([from, to]) { Pen::Construction } else { Pen::Outline };
+                    line(pen, &[corner(from), corner(to)])
+                })
                 .collect()
         }
         Stock::Cylinder { axis, diameter, from, to, .. } => {

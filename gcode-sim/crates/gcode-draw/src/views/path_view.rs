@@ -20,8 +20,8 @@ pub struct PathView {
     pub places: Vec<PathPlace>,
     /// Work zeros: name and position, mm.
     pub zeros: Vec<(String, [f64; 3])>,
-    /// Travel limits of the tip: index of the coordinate and its value, mm.
-    pub limits: Vec<(usize, f64)>,
+    /// Travel limits of the tip.
+    pub limits: Vec<TravelLimit>,
     /// Solid material before the program runs.
     pub stock: Option<Stock>,
     /// What the picture lacks, one sentence each.
@@ -61,6 +61,17 @@ pub struct DrawnTool {
     pub name: String,
     /// Diameter, mm; `None` if unknown.
     pub diameter: Option<f64>,
+}
+
+/// A travel limit of the tip along an axis of the part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TravelLimit {
+    /// Index of the axis.
+    pub axis: usize,
+    /// Coordinate, mm.
+    pub mm: f64,
+    /// Name of the tool with whose length it holds; `None` if it holds for all.
+    pub tool: Option<String>,
 }
 
 /// A place on the path with a symbol.

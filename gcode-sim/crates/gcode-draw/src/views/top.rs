@@ -70,6 +70,8 @@ pub struct DrawnHole {
     pub position_deviation: Option<f64>,
     /// Angle of the rotary axis during drilling, degrees.
     pub rotary_angle: Option<f64>,
+    /// Letters and angles of further rotary axes, degrees.
+    pub further_angles: Vec<(char, f64)>,
     /// Faults other than position, a few words each.
     pub remarks: Vec<String>,
 }
@@ -101,6 +103,9 @@ pub(super) const MAX_NUMBERED: usize = 60;
 
 /// Cosine of the largest angle between a hole and the line of sight at which its features are circles: 2.6°.
 const ALONG: f64 = 0.999;
+
+/// Cosine of the angle between a hole and the line of sight beyond which the hole is on the far side: 30° off it.
+const FAR_SIDE: f64 = 0.866;
 
 /// Largest number of construction circles; more would hide the holes.
 const MAX_CIRCLES: usize = 12;
@@ -212,7 +217,11 @@ impl TopView {
 
     /// Returns the label of a hole: number, remarks, rotary angle and deviation.
     pub(super) fn label(&self, hole: &DrawnHole) -> Vec<String> {
-        let turn = hole.rotary_angle.map(|turn| format!("{} {}°", self.rotary, signed(turn, 3)));
+        let angle = |name: &str, turn: f64| format!("{name} {}°", signed(turn, 3));
+        let first = hole.rotary_angle.map(|turn| angle(&self.rotary, turn));
+        let further = hole.further_angles.iter().map(|(letter, turn)| angle(&letter.to_string(), *turn));
+        let angles: Vec<String> = first.into_iter().chain(further).collect();
+        let turn = (!angles.is_empty()).then(|| angles.join(" "));
         let phi = hole.position_deviation.filter(|phi| self.purpose.shows_deviation(*phi, 3));
         let phi = phi.map(|phi| format!("Φ{phi:.3}"));
         let words = match hole.status {
@@ -220,7 +229,12 @@ impl TopView {
             HoleStatus::Good | HoleStatus::Bad | HoleStatus::Unjudged => hole.remarks.clone(),
         };
         let numbers = if hole.status == HoleStatus::Good { [turn, phi] } else { [phi, turn] };
-        let lines = [hole.id.clone()].into_iter().chain(words).chain(numbers.into_iter().flatten());
+        let far = |hole: &Hole| Vector3::from(hole.axis).dot(&self.side.towards()) < -FAR_SIDE;
+        // An unrolled cylinder shows all of them, a cylinder from above none.
+        let is_far = self.cylinder.is_none() && hole.shown().is_some_and(far);
+        let far = is_far.then(|| "far side".to_owned());
+        let lines = [hole.id.clone()].into_iter().chain(words).chain(far);
+        let lines = lines.chain(numbers.into_iter().flatten());
         lines.filter(|line| !line.is_empty()).collect()
     }
 

@@ -15,6 +15,9 @@ const GAP: f64 = 0.1;
 /// Length of a tick and distance of a name from its frame, in parts of the largest extent of all views.
 const TICK: f64 = 0.008;
 
+/// Width of a frame under which its name would meet the letter of its upright axis, in parts of the largest extent of all views.
+const NARROW: f64 = 0.15;
+
 /// The box that the views show, in the coordinates of the top view: right, up, and towards the reader.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ViewBox {
@@ -232,7 +235,9 @@ impl Frames {
         if self.views.len() == 1 {
             return strokes;
         }
-        let at = view.moved([(left + right) / 2.0, top + 2.5 * TICK * self.extent]);
+        // Above a narrow frame the name is clear of the letter of the upright axis.
+        let height = if right - left < NARROW * self.extent { 5.5 } else { 2.5 };
+        let at = view.moved([(left + right) / 2.0, top + height * TICK * self.extent]);
         let name = Shape::Text { at, align: Align::Centre, text: view.kind.name().to_owned() };
         strokes.push(Stroke::new(Pen::Scale, name));
         strokes
@@ -258,7 +263,7 @@ impl Frames {
         let (end, along) = if 0.0 < sign { (to, 1.0) } else { (from, -1.0) };
         let direction = [(to[0] - from[0]) / length * along, (to[1] - from[1]) / length * along];
         line(vec![end, further(end, direction, tick)], Pen::Ruler, Some(name.to_string()));
-        let most = (14.0 * length / self.extent).clamp(1.0, 10.0);
+        let most = (14.0 * length / self.extent).clamp(3.0, 10.0);
         let (first, last) = if 0.0 < sign { (low, high) } else { (-high, -low) };
         let ticks = Ticks::over(first, last, most);
         for value in ticks.all() {

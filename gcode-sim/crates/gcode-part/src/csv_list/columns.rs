@@ -4,15 +4,15 @@ use gcode_lang::similar;
 
 /// Columns of a list, with other names of each; a feature's own columns are beside them.
 const COLUMNS: [(&str, &[&str]); 11] = [
-    ("id", &["hole", "no", "nr", "no.", "nr."]),
+    ("id", &["hole", "no", "nr", "no.", "nr.", "孔号", "序号"]),
     ("x", &[]),
     ("y", &[]),
     ("z", &[]),
     ("i", &[]),
     ("j", &[]),
     ("k", &[]),
-    ("depth", &[]),
-    ("diameter", &["dia", "d", "ø", "φ"]),
+    ("depth", &["tiefe", "深度", "孔深"]),
+    ("diameter", &["dia", "d", "ø", "φ", "durchmesser", "直径", "孔径"]),
     ("features", &[]),
     ("through", &[]),
 ];
