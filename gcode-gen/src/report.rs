@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::check::{CheckedPackage, PackageVerdict};
+use crate::proof::report::JobProof;
 use crate::sheet::cost::{Cost, MachineTime};
 
 const BASIS: &str = "predicted by simulation, not measured";
@@ -15,6 +16,7 @@ const BASIS: &str = "predicted by simulation, not measured";
 pub const FORMATS: &[Format] = &[
     result::<EmitReport<'_>>("emit", "the result of emit"),
     result::<SheetReport>("sheet", "the result of sheet"),
+    result::<JobProof>("prove", "the result of prove"),
 ];
 
 /// The document of `emit --format json`.
