@@ -30,6 +30,8 @@ pub mod families;
 
 pub mod check;
 
+pub mod proved;
+
 pub mod sheet;
 
 pub mod proof;

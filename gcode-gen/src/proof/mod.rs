@@ -11,6 +11,8 @@ mod position;
 pub mod report;
 mod sample;
 mod statements;
+#[cfg(test)]
+mod tests;
 
 use std::num::NonZeroUsize;
 use std::time::Duration;

@@ -2,7 +2,7 @@
 use gcode_inspect::verify::Ending;
 use gcode_part::job::{HoleSpec, Job, PinHoles};
 
-use super::over::Over;
+use super::over::{Over, Quantity};
 use crate::check::{PackageVerdict, check};
 use crate::families::emit;
 use crate::package::Package;
@@ -38,12 +38,17 @@ pub(super) fn sampled(
     found
 }
 
-/// Returns the corners, then points after Halton, each with three decimals.
+/// Returns the corners, then points after Halton with three decimals; an azimuth is halfway between two increments of a rotary,
+/// where it is rounded most.
 fn points(overs: &[Over]) -> Vec<Vec<f64>> {
     const PRIMES: [u32; 5] = [2, 3, 5, 7, 11];
     let within = |over: &Over, part: f64| {
         let value = over.low + (over.high - over.low) * part;
         ((value * 1000.0).round() / 1000.0).clamp(over.low, over.high)
+    };
+    let halfway = |over: &Over, value: f64| match over.quantity {
+        Quantity::Azimuth => (value + 0.0005).clamp(over.low, over.high),
+        _ => value,
     };
     let halton = |index: u32, base: u32| {
         let (mut rest, mut value, mut digit) = (index, 0.0, 1.0 / f64::from(base));
@@ -60,7 +65,8 @@ fn points(overs: &[Over]) -> Vec<Vec<f64>> {
     };
     let spread = |index: u32| {
         let part = |place: usize| halton(index, PRIMES[place % PRIMES.len()]);
-        overs.iter().enumerate().map(|(place, over)| within(over, part(place))).collect()
+        let value = |(place, over)| halfway(over, within(over, part(place)));
+        overs.iter().enumerate().map(value).collect()
     };
     (0..1 << overs.len()).map(corner).chain((1..=SPREAD).map(spread)).collect()
 }
@@ -102,7 +108,6 @@ fn verified(
 
 #[cfg(test)]
 mod tests {
-    use super::super::over::Quantity;
     use super::*;
 
     #[test]
@@ -114,8 +119,8 @@ mod tests {
         let points = points(&overs);
         assert_eq!(points.len(), 44);
         assert_eq!(points[..4], [[0.0, -180.0], [1.0005, -180.0], [0.0, 180.0], [1.0005, 180.0]]);
-        // 0.50025 and −60, rounded.
-        assert_eq!(points[4], [0.5, -60.0]);
+        // 0.50025 and −60, rounded, and half an increment on.
+        assert_eq!(points[4], [0.5, -59.9995]);
         assert!(points.iter().all(|point| (0.0..=1.0005).contains(&point[0])));
     }
 }
