@@ -68,8 +68,8 @@ fn an_axial_hole_needs_no_angle() {
     assert!(claims.iter().all(|claim| claim.verdict == VerdictName::Proved), "{claims:?}");
 }
 
-/// The printed height, the angle of the wrong normal, whole degrees of B, its wrong sense, a hole 0.01 mm aside, and a head that
-/// is off by a degree.
+/// The printed height, the angle of the wrong normal, whole degrees of B, its wrong sense, a hole 0.02 mm aside, and a cosine for
+/// a sine.
 #[test]
 fn wrong_twins_are_refuted() {
     let height = "#24=#2*SQRT[[#1-#18]*[#1+#18]]/#1";
@@ -79,13 +79,24 @@ fn wrong_twins_are_refuted() {
         ("B[#21*#23]", "B[#21*FIX[#23]]"),
         ("B[#21*#23]", "B[-#21*#23]"),
         ("G01 X[#18+[#17-#7]*#26]", "G01 X[#18+0.02+[#17-#7]*#26]"),
-        ("#140=ROUND[#25*1000.]/1000.", "#140=ROUND[#25*1000.]/1000.+1."),
         ("#27=SIN[#141]", "#27=COS[#141]"),
     ] {
         let claims = proved(&job(), (from, to), &PART, 0.035);
         assert_eq!(claims[0].verdict, VerdictName::Refuted, "{to}: {:?}", claims[0]);
         assert!(claims[0].counterexample.is_some() && claims[0].proved_share < 1.0, "{to}: {:?}", claims[0]);
     }
+}
+
+/// At r ≤ 100 rounding allows 2·√(0.000838² + 0.000873²) = 0.00242. A head that is off by 0.019°, which O8101 accepts at 15 mm,
+/// moves the bottom by 0.005 mm.
+#[test]
+fn a_head_that_is_set_wrong_is_refuted() {
+    let over = ["hole.radius=0..100", "hole.azimuth=-180..180", "surface.a=500..2000", "surface.b=300..1200"];
+    let claims = proved(&job(), ("", ""), &over, 0.0025);
+    assert_eq!(claims[0].verdict, VerdictName::Proved, "{:?}", claims[0]);
+    let twin = ("#140=ROUND[#25*1000.]/1000.", "#140=ROUND[#25*1000.]/1000.+0.019");
+    let claims = proved(&job(), twin, &over, 0.0025);
+    assert_eq!(claims[0].verdict, VerdictName::Refuted, "{:?}", claims[0]);
 }
 
 #[test]
