@@ -48,7 +48,9 @@ pub fn proved(package: &Package) -> Vec<ProvedMacros> {
     let digests = digests(package);
     let is_same = |entry: &Entry| entry.macros.iter().all(|(name, digest)| digests.get(name) == Some(digest));
     let entries = table().into_iter().filter(is_same);
-    entries.map(|entry| ProvedMacros { macros: entry.macros.into_keys().collect(), says: entry.says }).collect()
+    entries
+        .map(|entry| ProvedMacros { macros: entry.macros.into_keys().collect(), says: entry.says })
+        .collect()
 }
 
 /// Returns the macros of a package of which no proof is recorded in this form.
@@ -140,8 +142,13 @@ mod tests {
             let name = entry.macros.keys().next().unwrap();
             let (job, package) = job_with(name);
             let own = digests(&package);
-            let changed: Vec<_> = entry.macros.keys().filter(|name| own[*name] != entry.macros[*name]).collect();
-            assert!(changed.is_empty(), "{changed:?} has changed: prove '{}' again and enter its digest", entry.says);
+            let changed: Vec<_> =
+                entry.macros.keys().filter(|name| own[*name] != entry.macros[*name]).collect();
+            assert!(
+                changed.is_empty(),
+                "{changed:?} has changed: prove '{}' again and enter its digest",
+                entry.says
+            );
             assert!(is_proved(entry, &job, &package), "{}", entry.says);
         }
     }

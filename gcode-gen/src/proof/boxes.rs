@@ -84,7 +84,8 @@ impl CaseBounds {
         let mut count = 1;
         while let Some(Pending { domain, found, .. }) = pending.pop() {
             let is_kept = found.is_some_and(|found| found.phi <= tolerance);
-            let parts = if is_kept || count >= MAX_BOXES || is_over() { None } else { divide(&domain, divided) };
+            let parts =
+                if is_kept || count >= MAX_BOXES || is_over() { None } else { divide(&domain, divided) };
             let Some(parts) = parts else {
                 all.boxes.push((domain, found));
                 continue;
@@ -141,7 +142,8 @@ impl CaseBounds {
 
     /// Returns the share of the ranges in which a tolerance is kept.
     pub(super) fn share_within(&self, tolerance: f64) -> f64 {
-        let others = self.boxes.iter().filter(|(_, found)| !found.is_some_and(|found| found.phi <= tolerance));
+        let others =
+            self.boxes.iter().filter(|(_, found)| !found.is_some_and(|found| found.phi <= tolerance));
         let missing: f64 = others.map(|(domain, _)| self.share(domain)).sum();
         (1.0 - missing).max(0.0)
     }
@@ -153,7 +155,8 @@ impl CaseBounds {
 
     /// Returns the box with the largest bound, if all have one.
     pub(super) fn worst(&self) -> Option<(&Domain, PositionBound)> {
-        let all: Option<Vec<_>> = self.boxes.iter().map(|(domain, found)| found.map(|found| (domain, found))).collect();
+        let all: Option<Vec<_>> =
+            self.boxes.iter().map(|(domain, found)| found.map(|found| (domain, found))).collect();
         all?.into_iter().max_by(|a, b| a.1.phi.total_cmp(&b.1.phi))
     }
 

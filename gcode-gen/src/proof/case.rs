@@ -87,11 +87,12 @@ impl Case<'_> {
 
     /// Returns the macro's call with every quantity as a variable.
     fn call(&self) -> String {
-        let word = |(letter, value): (char, f64)| {
-            match Quantity::ALL.into_iter().find(|quantity| quantity.letter() == letter) {
-                Some(quantity) => format!(" {letter}#{}", self.variable(quantity)),
-                None => format!(" {letter}{}", number(value)),
-            }
+        let word = |(letter, value): (char, f64)| match Quantity::ALL
+            .into_iter()
+            .find(|quantity| quantity.letter() == letter)
+        {
+            Some(quantity) => format!(" {letter}#{}", self.variable(quantity)),
+            None => format!(" {letter}{}", number(value)),
         };
         let (program, arguments) = hole_arguments(self.job, self.tool, self.hole);
         format!("G65 P{program}{}", arguments.into_iter().map(word).collect::<String>())
@@ -240,7 +241,8 @@ impl Case<'_> {
     fn statements(&self, controls: &Controls<'_>) -> Result<Vec<ClaimReport>, String> {
         let stated = Statements::of(self.request.package);
         let alarms = stated.alarms.join("|");
-        let mut texts = vec![if alarms.is_empty() { "no-alarm".to_owned() } else { format!("alarm {alarms}") }];
+        let mut texts =
+            vec![if alarms.is_empty() { "no-alarm".to_owned() } else { format!("alarm {alarms}") }];
         texts.extend(stated.blocks.map(|blocks| format!("blocks LE {}", blocks + OWN_BLOCKS)));
         let range = |quantity: Quantity| {
             let (low, high) = self.limits(quantity);

@@ -1,7 +1,7 @@
 //! The hole that a way of a program drills: the moves into it, the rotary, and the head's angle.
+use gcode_enclosure::{NodeId, Unary};
 use gcode_lang::motion::AxisIndex;
 use gcode_prove::{MoveKind, Trace, TracedMove, TracedWay};
-use gcode_enclosure::{NodeId, Unary};
 
 /// Axes of the machine of a pin-hole job.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +38,8 @@ impl HolePath {
         let first = way.moves.iter().position(is_feed).ok_or("a way without a feed")?;
         let into = &way.moves[first];
         let at = |positions: &[Option<NodeId>], axis: AxisIndex| positions.get(axis).copied().flatten();
-        let is_kept = |axis: AxisIndex| at(&into.from, axis).is_some() && at(&into.from, axis) == at(&into.to, axis);
+        let is_kept =
+            |axis: AxisIndex| at(&into.from, axis).is_some() && at(&into.from, axis) == at(&into.to, axis);
         let all_kept = (0..into.to.len()).filter(|axis| *axis != axes.x && *axis != axes.y).all(is_kept);
         if !all_kept {
             return Err(format!("{}: a feed that moves more than X and Y", into.place));

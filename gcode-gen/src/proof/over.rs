@@ -83,18 +83,19 @@ impl Over {
     }
 
     fn parse(text: &str) -> Result<Self, String> {
-        let (key, limits) = text
-            .split_once('=')
-            .ok_or_else(|| format!("--over {text}: write a key of the job and its limits, 'hole.radius=0..1100'"))?;
+        let (key, limits) = text.split_once('=').ok_or_else(|| {
+            format!("--over {text}: write a key of the job and its limits, 'hole.radius=0..1100'")
+        })?;
         let quantity = Quantity::ALL.into_iter().find(|quantity| quantity.key() == key.trim());
         let quantity = quantity.ok_or_else(|| {
             let keys = Quantity::ALL.map(Quantity::key).join(", ");
             format!("--over {text}: '{}' is none of {keys}", key.trim())
         })?;
         let limit = |limit: &str| limit.trim().parse::<f64>().ok().filter(|limit| limit.abs() <= 1e5);
-        let limits = limits.split_once("..").and_then(|(low, high)| Some((limit(low)? + 0.0, limit(high)? + 0.0)));
-        let (low, high) =
-            limits.ok_or_else(|| format!("--over {text}: write two numbers up to 100000, '{key}=0..1100'"))?;
+        let limits =
+            limits.split_once("..").and_then(|(low, high)| Some((limit(low)? + 0.0, limit(high)? + 0.0)));
+        let (low, high) = limits
+            .ok_or_else(|| format!("--over {text}: write two numbers up to 100000, '{key}=0..1100'"))?;
         if low > high {
             return Err(format!("--over {text}: the lower limit is above the upper one: exchange them"));
         }
@@ -104,7 +105,9 @@ impl Over {
             Quantity::Depth | Quantity::EquatorialRadius | Quantity::PolarRadius => 0.001,
         };
         if low < least {
-            return Err(format!("--over {text}: the lower limit is below {least}: no job file has that value"));
+            return Err(format!(
+                "--over {text}: the lower limit is below {least}: no job file has that value"
+            ));
         }
         Ok(Self { quantity, low, high })
     }

@@ -73,7 +73,8 @@ pub(super) fn bound(
     // C − E: the words' rounding, and the difference of the formulas.
     let [x, y, cosine, sine] = [path.x, path.y, path.cosine, path.sine].map(|node| forms.form(node).real);
     let reach = hole.reach;
-    let (aside, lost_x) = forms.combine(&[(1.0, &[&x]), (-reach, &[&cosine]), (1.0, &[&d, &cosine]), (-1.0, &[&r])])?;
+    let (aside, lost_x) =
+        forms.combine(&[(1.0, &[&x]), (-reach, &[&cosine]), (1.0, &[&d, &cosine]), (-1.0, &[&r])])?;
     let (height, lost_y) = forms.combine(&[(1.0, &[&y]), (-reach, &[&sine]), (1.0, &[&d, &sine])])?;
     let of_functions = TRIGONOMETRY + if zeroes_residues { RESIDUE } else { 0.0 };
     // Factors such as a reach that a word's scale rounds leave a rest, which is an error like any other.
@@ -107,8 +108,10 @@ pub(super) fn bound(
                 forms.combine(&[(1.0, &[&r, &over_a, &over_a])])?,
                 forms.combine(&[(1.0, &[&height, &over_b, &over_b])])?,
             ];
-            let (cross, lost) =
-                forms.combine(&[(1.0, &[&along_x.real, &gradient[1].0]), (-1.0, &[&along_y.real, &gradient[0].0])])?;
+            let (cross, lost) = forms.combine(&[
+                (1.0, &[&along_x.real, &gradient[1].0]),
+                (-1.0, &[&along_y.real, &gradient[0].0]),
+            ])?;
             let is_parallel = cross.is_zero() && lost == 0.0 && gradient.iter().all(|(_, lost)| *lost == 0.0);
             let has_one_sense = [&along_x.real, &along_y.real, &gradient[0].0, &gradient[1].0]
                 .into_iter()

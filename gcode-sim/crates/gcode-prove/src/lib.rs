@@ -65,10 +65,10 @@ mod worker;
 
 mod answer;
 
-mod exact;
-mod trace;
 #[cfg(test)]
 mod arithmetic_tests;
+mod exact;
+mod trace;
 
 pub use answer::{Answer, Ask, ClaimAnswer, ProveError, Setup, VariableBounds, Verdict, prove, sample};
 pub use exact::{Atom, ExactForm, ExactForms, Polynomial};

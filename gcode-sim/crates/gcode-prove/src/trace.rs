@@ -289,9 +289,9 @@ fn has_plain_codes(block: &str) -> bool {
     };
     let plain = [0.0, 1.0, 17.0, 18.0, 19.0, 21.0, 40.0, 49.0, 80.0, 90.0, 91.0, 94.0];
     let is_function = |at: usize| text[..at].ends_with(|c: char| c.is_ascii_alphabetic());
-    text.match_indices('G').filter(|(at, _)| !is_function(*at)).all(|(at, _)| {
-        code(text[at + 1..].trim_start()).is_some_and(|code| plain.contains(&code))
-    })
+    text.match_indices('G')
+        .filter(|(at, _)| !is_function(*at))
+        .all(|(at, _)| code(text[at + 1..].trim_start()).is_some_and(|code| plain.contains(&code)))
 }
 
 #[cfg(test)]
@@ -327,9 +327,8 @@ mod tests {
 
     #[test]
     fn each_side_of_a_question_is_a_way_with_its_moves() {
-        let trace = traced(
-            "O1\nIF[#1 LT 0]GOTO 9\nG90 G00 X#1\nG01 X[2*#1] F100.\nM30\nN9 #3000=1(NEGATIVE)\n",
-        );
+        let trace =
+            traced("O1\nIF[#1 LT 0]GOTO 9\nG90 G00 X#1\nG01 X[2*#1] F100.\nM30\nN9 #3000=1(NEGATIVE)\n");
         let ends: Vec<_> = trace.ways.iter().map(|way| (&way.end, way.moves.len())).collect();
         assert!(ends.contains(&(&TracedEnd::Alarm("MC3001".to_owned()), 0)), "{ends:?}");
         assert!(ends.contains(&(&TracedEnd::Program, 2)), "{ends:?}");

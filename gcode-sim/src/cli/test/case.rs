@@ -66,7 +66,11 @@ impl Case {
         let tried = main.and_then(|program| self.evaluate(&program, terms));
         let mut result = tried.unwrap_or_else(|refusal| {
             let (answer, error) = (CaseAnswer::Refused, Some(refusal.to_string()));
-            CaseResult { report: CaseReport { answer, error, ..CaseReport::default() }, record: None, lock: None }
+            CaseResult {
+                report: CaseReport { answer, error, ..CaseReport::default() },
+                record: None,
+                lock: None,
+            }
         });
         result.report.name.clone_from(&self.name);
         result.report.file = file;

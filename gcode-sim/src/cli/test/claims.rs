@@ -85,9 +85,14 @@ struct RecordingLibrary {
 }
 
 impl RecordingLibrary {
-    fn record(&self, name: String, find: impl FnOnce(&mut Folders) -> Option<(String, Bytes)>) -> Option<(String, Bytes)> {
+    fn record(
+        &self,
+        name: String,
+        find: impl FnOnce(&mut Folders) -> Option<(String, Bytes)>,
+    ) -> Option<(String, Bytes)> {
         let found = find(&mut self.folders.lock().unwrap_or_else(PoisonError::into_inner));
-        let digest = found.as_ref().map_or_else(|| ABSENT.to_owned(), |(_, bytes)| sha256(bytes.file_content()));
+        let digest =
+            found.as_ref().map_or_else(|| ABSENT.to_owned(), |(_, bytes)| sha256(bytes.file_content()));
         self.seen.lock().unwrap_or_else(PoisonError::into_inner).insert(name, digest);
         found
     }
@@ -145,7 +150,9 @@ pub(super) fn check(
     let claims: ClaimsFile =
         toml::from_str(&input::text(file)?).map_err(|error| UsageError::in_file(file, error.message()))?;
     let recorded: LockFile = match lock.exists() && !is_all {
-        true => toml::from_str(&input::text(lock)?).map_err(|error| UsageError::in_file(lock, error.message()))?,
+        true => {
+            toml::from_str(&input::text(lock)?).map_err(|error| UsageError::in_file(lock, error.message()))?
+        }
         false => LockFile::default(),
     };
     let mut proved = LockFile::default();
@@ -174,7 +181,8 @@ pub(super) fn check(
             let programs = controls.library.seen.lock().unwrap_or_else(PoisonError::into_inner).clone();
             proved.proved.push(ProvedRequest { request: digest, programs });
         } else if failure.is_none() {
-            failure = Some(FirstFailure { code: "claim".to_owned(), message: message(&answer), location: None });
+            failure =
+                Some(FirstFailure { code: "claim".to_owned(), message: message(&answer), location: None });
         }
     }
     let mut text = "# What gcode-sim test --accept has proved of claims.toml. A request whose programs and conditions still have these\n\
@@ -254,7 +262,8 @@ fn message(answer: &Answer) -> String {
             format!("claim '{}' is refuted at {}", claim.claim, values.collect::<Vec<_>>().join(" "))
         }
         None => {
-            let why = answer.unfollowed.first().map(|what| format!("; not followed: {what}")).unwrap_or_default();
+            let why =
+                answer.unfollowed.first().map(|what| format!("; not followed: {what}")).unwrap_or_default();
             format!("claim '{}' is undecided{why}", claim.claim)
         }
     }

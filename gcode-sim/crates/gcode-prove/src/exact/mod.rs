@@ -125,8 +125,12 @@ impl<'a> ExactForms<'a> {
         let lost = self.lost(&lost);
         let is_exact = |form: &ExactForm| form.relative == 0.0 && form.absolute == 0.0;
         let have_one_sign = match is_difference {
-            false => of_left.lo() >= 0.0 && of_right.lo() >= 0.0 || of_left.hi() <= 0.0 && of_right.hi() <= 0.0,
-            true => of_left.lo() >= 0.0 && of_right.hi() <= 0.0 || of_left.hi() <= 0.0 && of_right.lo() >= 0.0,
+            false => {
+                of_left.lo() >= 0.0 && of_right.lo() >= 0.0 || of_left.hi() <= 0.0 && of_right.hi() <= 0.0
+            }
+            true => {
+                of_left.lo() >= 0.0 && of_right.hi() <= 0.0 || of_left.hi() <= 0.0 && of_right.lo() >= 0.0
+            }
         };
         if is_exact(&left) && is_exact(&right) && lost == 0.0 {
             return Some(ExactForm { real, relative: ROUNDING, absolute: 0.0 });
@@ -190,7 +194,8 @@ impl<'a> ExactForms<'a> {
         }
         let relative = grown(left.relative + of_right + ROUNDING);
         let absolute = if left.absolute == 0.0 { 0.0 } else { left.absolute / least };
-        let underflow = if self.least_magnitude(a) / of_divisor.magnitude() >= NORMAL { 0.0 } else { UNDERFLOW };
+        let underflow =
+            if self.least_magnitude(a) / of_divisor.magnitude() >= NORMAL { 0.0 } else { UNDERFLOW };
         (of_right < 0.01).then(|| ExactForm {
             real,
             relative,
@@ -204,7 +209,8 @@ impl<'a> ExactForms<'a> {
         let (relative, absolute) = if form.absolute == 0.0 {
             (form.relative / 2.0 / (1.0 - form.relative) + ROUNDING, 0.0)
         } else {
-            let least = self.enclosures.enclose(self.arena, x).mignitude() * (1.0 - form.relative) - form.absolute;
+            let least =
+                self.enclosures.enclose(self.arena, x).mignitude() * (1.0 - form.relative) - form.absolute;
             if least <= 0.0 {
                 return None;
             }
@@ -278,9 +284,11 @@ impl<'a> ExactForms<'a> {
 
     /// Returns true if no factor and no atom of a polynomial can be negative.
     pub fn is_nonnegative(&mut self, polynomial: &Polynomial) -> bool {
-        let terms: Vec<_> = polynomial.terms.iter().map(|(powers, factor)| (powers.clone(), *factor)).collect();
+        let terms: Vec<_> =
+            polynomial.terms.iter().map(|(powers, factor)| (powers.clone(), *factor)).collect();
         terms.iter().all(|(powers, factor)| {
-            *factor >= 0.0 && powers.iter().all(|(atom, exponent)| exponent % 2 == 0 || self.is_positive(*atom))
+            *factor >= 0.0
+                && powers.iter().all(|(atom, exponent)| exponent % 2 == 0 || self.is_positive(*atom))
         })
     }
 
@@ -294,7 +302,8 @@ impl<'a> ExactForms<'a> {
 
     /// Returns a bound of a polynomial's magnitude; infinite without one.
     pub fn magnitude(&mut self, polynomial: &Polynomial) -> f64 {
-        let terms: Vec<_> = polynomial.terms.iter().map(|(powers, factor)| (powers.clone(), *factor)).collect();
+        let terms: Vec<_> =
+            polynomial.terms.iter().map(|(powers, factor)| (powers.clone(), *factor)).collect();
         self.lost(&terms.into_iter().map(|(powers, factor)| (powers, factor.abs())).collect())
     }
 

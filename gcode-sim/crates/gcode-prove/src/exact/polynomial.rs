@@ -96,7 +96,11 @@ impl Polynomial {
         if (before - (after - part)) + (factor - part) != 0.0 {
             lost.push((powers.clone(), after.abs() * ROUNDING));
         }
-        if after == 0.0 { self.terms.remove(&powers) } else { self.terms.insert(powers, after) };
+        if after == 0.0 {
+            self.terms.remove(&powers)
+        } else {
+            self.terms.insert(powers, after)
+        };
     }
 
     /// Returns the product, without the reduction of roots.

@@ -22,7 +22,8 @@ impl Ellipse {
     /// b·√((a − r)·(a + r))/a.
     fn height(&mut self) -> NodeId {
         let arena = &mut self.arena;
-        let (near, far) = (arena.binary(Binary::Sub, self.a, self.r), arena.binary(Binary::Add, self.a, self.r));
+        let (near, far) =
+            (arena.binary(Binary::Sub, self.a, self.r), arena.binary(Binary::Add, self.a, self.r));
         let product = arena.binary(Binary::Mul, near, far);
         let root = arena.unary(Unary::Sqrt, product);
         let scaled = arena.binary(Binary::Mul, self.b, root);
