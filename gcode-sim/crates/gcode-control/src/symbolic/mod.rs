@@ -37,6 +37,9 @@ pub struct SymbolicRun {
     control: Control,
 }
 
+/// Variables with their values; a value that isn't followed is `None`.
+type NamedTerms = Vec<(u32, Option<Term>)>;
+
 /// State of a run between two blocks.
 #[derive(Clone, Debug)]
 pub struct Snapshot(Box<Executor>);
@@ -151,7 +154,7 @@ impl SymbolicRun {
     }
 
     /// Returns the text of the last operator stop and the variables that it names; a value that isn't followed is `None`.
-    pub fn last_stop(&self) -> Option<(&str, Vec<(u32, Option<Term>)>)> {
+    pub fn last_stop(&self) -> Option<(&str, NamedTerms)> {
         let stop = self.control.stops().last()?;
         let term = |(number, stored): &(u32, f64)| (*number, Term::of(*stored));
         Some((stop.text.as_str(), stop.variables.iter().map(term).collect()))

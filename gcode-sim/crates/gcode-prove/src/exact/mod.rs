@@ -196,7 +196,7 @@ impl<'a> ExactForms<'a> {
         let absolute = if left.absolute == 0.0 { 0.0 } else { left.absolute / least };
         let underflow =
             if self.least_magnitude(a) / of_divisor.magnitude() >= NORMAL { 0.0 } else { UNDERFLOW };
-        (of_right < 0.01).then(|| ExactForm {
+        (of_right < 0.01).then_some(ExactForm {
             real,
             relative,
             absolute: absolute * MARGIN + 1.02 * lost + underflow,
