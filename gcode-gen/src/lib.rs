@@ -2,7 +2,7 @@
 //!
 //! **In:** a job file of one of the [`families`]. **Out:** a [`package::Package`] of programs and a machine file;
 //! [`check`] runs it as the control would and verifies its effect against the job's geometry, [`sheet`] makes the
-//! set-up sheet, and [`report`] formats the result. [`cli`] writes the files if the verdict is a pass. A module
+//! set-up sheet, [`proof`] proves the macros for all values of a job's quantities, and [`report`] formats the result. [`cli`] writes the files if the verdict is a pass. A module
 //! uses only those listed above it.
 //!
 //! ```
@@ -30,7 +30,11 @@ pub mod families;
 
 pub mod check;
 
+pub mod proved;
+
 pub mod sheet;
+
+pub mod proof;
 
 pub mod report;
 

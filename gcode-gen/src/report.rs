@@ -7,6 +7,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::check::{CheckedPackage, PackageVerdict};
+use crate::package::Package;
+use crate::proof::report::JobProof;
+use crate::proved::{ProvedMacros, not_proved, proved};
 use crate::sheet::cost::{Cost, MachineTime};
 
 const BASIS: &str = "predicted by simulation, not measured";
@@ -15,6 +18,7 @@ const BASIS: &str = "predicted by simulation, not measured";
 pub const FORMATS: &[Format] = &[
     result::<EmitReport<'_>>("emit", "the result of emit"),
     result::<SheetReport>("sheet", "the result of sheet"),
+    result::<JobProof>("prove", "the result of prove"),
 ];
 
 /// The document of `emit --format json`.
@@ -30,6 +34,10 @@ pub struct EmitReport<'c> {
     pub left_over: Vec<String>,
     /// Running time without operator stops; null if nothing could be run.
     pub seconds: Option<f64>,
+    /// What is proved of the macros as they are written.
+    pub proved: Vec<ProvedMacros>,
+    /// Macros of which no proof is recorded in this form.
+    pub not_proved: Vec<String>,
     /// The result of `verify` for the programs; null for measurements, and if nothing could be run.
     pub verdict: Option<&'c PackageVerdict>,
     #[serde(skip)]
@@ -51,9 +59,18 @@ impl<'c> EmitReport<'c> {
             written,
             left_over,
             seconds: checked.map(|checked| checked.seconds),
+            proved: Vec::new(),
+            not_proved: Vec::new(),
             verdict: verdict.filter(|verdict| !matches!(verdict, PackageVerdict::Measured)),
             table: checked.map_or("", |checked| &checked.report),
         }
+    }
+
+    /// Adds what is proved of the package's macros.
+    pub(crate) fn with_proofs(mut self, package: &Package) -> Self {
+        self.proved = proved(package);
+        self.not_proved = not_proved(package, &self.proved);
+        self
     }
 
     /// Formats the result for a terminal.
@@ -61,6 +78,15 @@ impl<'c> EmitReport<'c> {
         let mut text = self.table.to_owned();
         let minutes = self.seconds.unwrap_or_default() / 60.0;
         let _ = writeln!(text, "running time {minutes:.0} min without the operator's stops\n");
+        for ProvedMacros { macros, says } in &self.proved {
+            let _ = writeln!(text, "proved of {}: {says}", macros.join(", "));
+        }
+        if !self.not_proved.is_empty() {
+            let _ = writeln!(text, "no proof is recorded of {} in this form", self.not_proved.join(", "));
+        }
+        if !self.proved.is_empty() || !self.not_proved.is_empty() {
+            text.push('\n');
+        }
         for path in &self.written {
             let _ = writeln!(text, "written: {path}");
         }

@@ -28,6 +28,7 @@ const COMMANDS: &[(&str, &str, &[&str])] = &[
     ("gcode-gen", "new", &[]),
     ("gcode-gen", "emit", &["text", "json"]),
     ("gcode-gen", "sheet", &["text", "json"]),
+    ("gcode-gen", "prove", &["text", "json"]),
     ("gcode-gen", "schema", &[]),
     ("gcode-gen", "completions", &[]),
     ("gcode-gen", "man", &[]),

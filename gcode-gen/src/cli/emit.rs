@@ -88,7 +88,8 @@ pub(super) fn run(
     let left_over = stale_files(&job, &package, out);
     let name = |path: &PathBuf| path.display().to_string();
     let written = files.iter().map(|(path, _)| name(path)).collect();
-    let report = EmitReport::new(Some(checked), None, written, left_over.iter().map(name).collect());
+    let left = left_over.iter().map(name).collect();
+    let report = EmitReport::new(Some(checked), None, written, left).with_proofs(&package);
     output::report(&report, EmitReport::text, format)?;
     for path in left_over {
         output::print_message(&format!(

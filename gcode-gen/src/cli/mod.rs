@@ -3,6 +3,7 @@
 mod emit;
 mod emitted_files;
 mod new;
+mod prove;
 mod sheet;
 
 use std::ffi::OsString;
@@ -103,6 +104,14 @@ Part, drawing, minutes and rates come from the job's section [sheet]: see docs/s
         format: TextFormat,
     },
 
+    /// Prove a job's resident macro for all values of its quantities at once
+    #[command(after_help = "\
+Example:
+  gcode-gen prove job.toml --over 'hole.radius=0..1100' --over 'surface.a=500..2000'
+
+Exit code 0: every claim is proved; 1: one is refuted or undecided; 2: the request can't be used. See docs/prove.md.")]
+    Prove(prove::Arguments),
+
     /// Write the JSON Schema (draft 2020-12) of a result to standard output
     #[command(after_help = "\
 Example:
@@ -145,6 +154,7 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
         Command::New { family, output, force } => new::run(family, output.as_deref(), *force),
         Command::Emit { job, out, force, format } => emit::run(job, out, *force, *format),
         Command::Sheet { job, output, rates, format } => sheet::run(job, output, rates.as_deref(), *format),
+        Command::Prove(arguments) => prove::run(arguments),
         Command::Schema(name) => schema::print(&name.name, FORMATS),
         Command::Completions(shell) => packaging::completions::<Arguments>(shell),
         Command::Man(folder) => packaging::man::<Arguments>(folder),

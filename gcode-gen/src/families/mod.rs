@@ -10,6 +10,7 @@ mod start;
 
 use gcode_part::job::{Job, JobControl};
 
+pub(crate) use self::pin_holes::hole_arguments;
 pub use self::resident::Macro;
 use crate::package::{Package, Program};
 

@@ -59,6 +59,9 @@ pub(crate) struct CaseReport {
     /// The verdict against the reference, and what the case rests on; null if the case is invalid.
     #[serde(default)]
     pub(crate) verdict: Option<CaseVerdict>,
+    /// The claims of claims.toml; null without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) claims: Option<ClaimCounts>,
     /// The reason why the case is invalid.
     pub(crate) error: Option<String>,
     pub(crate) totals: Option<Totals>,
@@ -66,6 +69,20 @@ pub(crate) struct CaseReport {
     pub(crate) ending: Option<String>,
     /// The files of the programs that `changes` and `against` name.
     pub(crate) files: BTreeMap<String, String>,
+}
+
+/// Numbers of a case's claims.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ClaimCounts {
+    /// Claims that are proved now.
+    pub(crate) proved: usize,
+    /// Claims that are not proved again: claims.lock records their proof for the same programs and conditions.
+    pub(crate) kept: usize,
+    /// Claims that fail.
+    pub(crate) refuted: usize,
+    /// Claims of which neither is known.
+    pub(crate) undecided: usize,
 }
 
 /// Result of comparing a case with its accepted result.
@@ -151,6 +168,9 @@ impl TestReport {
         let others: String = others.map(|(number, word)| format!(", {number} {word}")).collect();
         let same = number(CaseAnswer::Same);
         let _ = writeln!(text, "{}: {same} as accepted{others}", count(self.cases.len(), "case"));
+        if let Some(line) = self.claims_line() {
+            let _ = writeln!(text, "{line}");
+        }
         if let Some(Shard { number, of, cases }) = self.shard.filter(|_| self.cases.is_empty()) {
             let _ = writeln!(text, "shard {number}/{of} is empty: {} in total", count(cases, "case"));
         }
@@ -171,6 +191,27 @@ impl TestReport {
             text.push_str("use --accept to accept the current results, with --only NAME those of one case\n");
         }
         text
+    }
+
+    /// Returns the line on the claims of all cases; `None` without any.
+    fn claims_line(&self) -> Option<String> {
+        let mut all = self.cases.iter().filter_map(|case| case.claims);
+        let first = all.next()?;
+        let sum = all.fold(first, |sum, one| ClaimCounts {
+            proved: sum.proved + one.proved,
+            kept: sum.kept + one.kept,
+            refuted: sum.refuted + one.refuted,
+            undecided: sum.undecided + one.undecided,
+        });
+        let others = [
+            (sum.refuted, "refuted"),
+            (sum.undecided, "undecided"),
+            (sum.kept, "not proved again: claims.lock has their proof for the same programs and conditions"),
+        ];
+        let others = others.iter().filter(|(number, _)| 0 < *number);
+        let others: String = others.map(|(number, words)| format!(", {number} {words}")).collect();
+        let number = sum.proved + sum.kept + sum.refuted + sum.undecided;
+        Some(format!("{}: {} proved{others}", count(number, "claim"), sum.proved))
     }
 
     /// Returns the errors of the invalid cases.

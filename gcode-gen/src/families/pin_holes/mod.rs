@@ -127,6 +127,12 @@ fn head_call(job: &PinHoles, tool: &Tool, setting: &HeadSetting<'_>) -> Block {
 }
 
 fn hole_call(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> Block {
+    let (program, arguments) = hole_arguments(job, tool, hole);
+    Block::call(program, arguments).comment(format!("HOLE {}", hole.id))
+}
+
+/// Returns the macro of one hole, and its arguments.
+pub(crate) fn hole_arguments(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> (u32, [(char, f64); 13]) {
     let arguments = [
         ('A', job.surface.a),
         ('B', job.surface.b),
@@ -142,7 +148,7 @@ fn hole_call(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> Block {
         ('U', f64::from(job.machine.rotary.sign)),
         ('Q', reach(job, tool)),
     ];
-    Block::call(HOLE, arguments).comment(format!("HOLE {}", hole.id))
+    (HOLE, arguments)
 }
 
 /// Returns the argument H.

@@ -5,6 +5,7 @@ use maud::{Markup, html};
 
 use super::{blank, cell, kind, mains, table};
 use crate::check::PackageVerdict;
+use crate::proved::{not_proved, proved};
 use crate::sheet::Sheet;
 
 pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
@@ -76,6 +77,24 @@ pub(super) fn programs(sheet: &Sheet<'_>) -> Markup {
             "The hash is that of the file as " code { "gcode-gen emit" } " writes it. Before it goes to the control: "
             code { "certutil -hashfile " (first) " SHA256" } " (Windows) or "
             code { "sha256sum " (first) } ". An edited file is not the simulated one."
+        }
+        (proofs(sheet))
+    }
+}
+
+/// Lists what is proved of the macros, which their hashes identify.
+fn proofs(sheet: &Sheet<'_>) -> Markup {
+    let all = proved(sheet.package);
+    let without = not_proved(sheet.package, &all);
+    html! {
+        @for one in &all {
+            p { b { "Proved of " (one.macros.join(", ")) ". " } (one.says) "." }
+        }
+        @if !without.is_empty() {
+            p.note { "No proof is recorded of " (without.join(", ")) " in this form." }
+        }
+        @if !all.is_empty() {
+            p.note { "Proofs are about the simulated control and hold for files with these hashes alone." }
         }
     }
 }

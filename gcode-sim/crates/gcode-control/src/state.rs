@@ -199,7 +199,8 @@ impl CycleState {
 /// Modal codes: one typed field per group, so that they can't contradict one another; `Default` is power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Modal {
-    pub(super) motion: Motion,
+    /// Group 01: motion.
+    pub motion: Motion,
     pub(super) plane: Plane,
     pub(super) distance: Distance,
     pub(super) stroke_check: StrokeCheck,

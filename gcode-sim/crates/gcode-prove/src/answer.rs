@@ -156,12 +156,7 @@ pub fn prove<S: Setup>(setup: &S, ask: &Ask, watch: &Watch<'_>) -> Result<Answer
 
 /// Reads a request: the question without its claims, and these.
 fn read<S: Setup>(setup: &S, ask: &Ask) -> Result<(Question, Vec<Claim>), ProveError> {
-    let ranges = ask.ranges.iter().map(|text| Range::parse(text)).collect::<Result<Vec<_>, _>>()?;
-    for (index, range) in ranges.iter().enumerate() {
-        if ranges[..index].iter().any(|other| other.variable == range.variable) {
-            return Err(RequestError::RangeTwice(ask.ranges[index].clone()).into());
-        }
-    }
+    let ranges = read_ranges(setup, &ask.ranges)?;
     let refused = |text: &String| condition(text).map_err(|why| RequestError::Condition(text.clone(), why));
     let conditions = ask.conditions.iter().map(refused).collect::<Result<Vec<_>, _>>()?;
     let claims = ask.claims.iter().map(|text| Claim::parse(text)).collect::<Result<Vec<_>, _>>()?;
@@ -169,7 +164,6 @@ fn read<S: Setup>(setup: &S, ask: &Ask) -> Result<(Question, Vec<Claim>), ProveE
     if claims.is_empty() && bounds.is_empty() {
         return Err(RequestError::NoQuestion.into());
     }
-    check_ranges(setup, &ranges)?;
     check_bounds(setup, &bounds)?;
     if !(0.0..=MAX_WIDENING).contains(&ask.widening) {
         return Err(RequestError::Widening(ask.widening.to_string()).into());
@@ -177,6 +171,18 @@ fn read<S: Setup>(setup: &S, ask: &Ask) -> Result<(Question, Vec<Claim>), ProveE
     let (max_blocks, widening) = (ask.max_blocks, ask.widening);
     let question = Question { ranges, conditions, claims: Vec::new(), bounds, max_blocks, widening };
     Ok((question, claims))
+}
+
+/// Reads ranges, each of another variable.
+pub(crate) fn read_ranges<S: Setup>(setup: &S, texts: &[String]) -> Result<Vec<Range>, ProveError> {
+    let ranges = texts.iter().map(|text| Range::parse(text)).collect::<Result<Vec<_>, _>>()?;
+    for (index, range) in ranges.iter().enumerate() {
+        if ranges[..index].iter().any(|other| other.variable == range.variable) {
+            return Err(RequestError::RangeTwice(texts[index].clone()).into());
+        }
+    }
+    check_ranges(setup, &ranges)?;
+    Ok(ranges)
 }
 
 fn empty(ask: &Ask) -> Answer {

@@ -39,7 +39,7 @@
 //!
 //! The modules stand in the order in which they use one another: a request is read (`request`), `tree` follows the ways of the
 //! program over `nodes`, `region` examines a box and `division` divides it, `points` and `witness` single points; `search` and `worker` are the work of a
-//! thread on the `shared` queue.
+//! thread on the `shared` queue. `trace` lists the ways of a box with their moves, for proofs that compare them with a part.
 #![warn(missing_docs)]
 
 mod request;
@@ -64,9 +64,14 @@ mod variable_bounds;
 mod worker;
 
 mod answer;
+
 #[cfg(test)]
 mod arithmetic_tests;
+mod exact;
+mod trace;
 
 pub use answer::{Answer, Ask, ClaimAnswer, ProveError, Setup, VariableBounds, Verdict, prove, sample};
+pub use exact::{Atom, ExactForm, ExactForms, Polynomial};
 pub use request::RequestError;
+pub use trace::{MoveKind, Trace, TracedEnd, TracedMove, TracedStop, TracedWay, trace};
 pub use watch::Watch;

@@ -81,6 +81,10 @@ impl Nodes {
         &self.arena
     }
 
+    pub(crate) fn arena_mut(&mut self) -> &mut Arena {
+        &mut self.arena
+    }
+
     /// Returns the term of an input.
     pub(crate) fn input(&mut self, index: usize) -> Term {
         let id = self.arena.input(index);

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::claims;
 use super::main_program::{self, MainProgram};
 use crate::cli::conditions::RunConditions;
 use crate::cli::project::Project;
@@ -42,6 +43,8 @@ pub(super) struct Terms<'a> {
     pub tolerance: f64,
     /// A case with an assumption fails.
     pub denies_assumptions: bool,
+    /// Claims that are recorded as proved are proved again.
+    pub proves_all: bool,
 }
 
 /// Result of a case.
@@ -49,6 +52,8 @@ pub(super) struct CaseResult {
     pub report: CaseReport,
     /// Record to be accepted; `None` if the case could not be run.
     pub record: Option<Record>,
+    /// Lock file of the claims that are proved, with its text; `None` if it is as it should be.
+    pub lock: Option<(PathBuf, String)>,
 }
 
 impl Case {
@@ -61,7 +66,11 @@ impl Case {
         let tried = main.and_then(|program| self.evaluate(&program, terms));
         let mut result = tried.unwrap_or_else(|refusal| {
             let (answer, error) = (CaseAnswer::Refused, Some(refusal.to_string()));
-            CaseResult { report: CaseReport { answer, error, ..CaseReport::default() }, record: None }
+            CaseResult {
+                report: CaseReport { answer, error, ..CaseReport::default() },
+                record: None,
+                lock: None,
+            }
         });
         result.report.name.clone_from(&self.name);
         result.report.file = file;
@@ -105,7 +114,7 @@ impl Case {
     fn evaluate(
         &self,
         main: &MainProgram,
-        Terms { libraries, tolerance, denies_assumptions }: Terms<'_>,
+        Terms { libraries, tolerance, denies_assumptions, proves_all }: Terms<'_>,
     ) -> Result<CaseResult, UsageError> {
         // A broken link counts as present, so that reading it reports the error.
         let present = |path: PathBuf| Some(path).filter(|path| path.exists() || path.is_symlink());
@@ -121,7 +130,16 @@ impl Case {
         };
         let project = Project::of(&main.file)?;
         let (conditions, _) = project.complete(&main.file, &conditions);
-        let (mut request, mut folders) = options::request(&conditions.of(&main.file))?;
+        let arguments = conditions.of(&main.file);
+        let (mut request, mut folders) = options::request(&arguments)?;
+        let libraries = &arguments.conditions.libraries;
+        let claims = own(claims::CLAIMS)
+            .map(|file| {
+                let lock = self.own_file(claims::LOCK);
+                let result = claims::check(&file, &lock, &request, (&main.file, libraries), proves_all)?;
+                Ok::<_, UsageError>((lock, result))
+            })
+            .transpose()?;
         request.denies_assumptions = denies_assumptions;
         if let (Some(one), Some(other)) = (own("reference.json"), own("reference.csv")) {
             let both = format!("{} and {}", one.display(), other.display());
@@ -199,18 +217,26 @@ impl Case {
             }
         };
         let record = &revision.record;
+        let (mut counts, mut lock, mut against) = (None, None, against);
+        if let Some((path, result)) = claims {
+            let is_recorded = path.exists() && input::text(&path)? == result.lock;
+            lock = Some((path, result.lock)).filter(|_| !is_recorded);
+            counts = Some(result.counts);
+            against = against.or(result.failure);
+        }
         let report = CaseReport {
             answer,
             files: files(&revision, &changes, against.as_ref()),
             changes,
             not_compared,
             against,
+            claims: counts,
             verdict: Some(verdict),
             totals: Some(record.totals.clone()),
             ending: Some(record.words().to_owned()),
             ..CaseReport::default()
         };
-        Ok(CaseResult { report, record: Some(revision.record) })
+        Ok(CaseResult { report, record: Some(revision.record), lock })
     }
 }
 

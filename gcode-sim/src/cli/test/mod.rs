@@ -1,5 +1,6 @@
 //! `gcode-sim test`: runs a folder of programs and compares each with its accepted result.
 mod case;
+mod claims;
 mod find;
 mod main_program;
 mod merge;
@@ -44,6 +45,10 @@ pub(super) struct Arguments {
     #[arg(long)]
     accept: bool,
 
+    /// Prove all claims of claims.toml, also those that claims.lock records as proved
+    #[arg(long)]
+    prove_all: bool,
+
     /// Re-run affected cases when a file is saved, until Ctrl-C; writes text, and accepts nothing
     #[arg(long, conflicts_with_all = ["accept", "format", "merge"])]
     watch: bool,
@@ -62,7 +67,12 @@ pub(super) struct Arguments {
 
 impl Arguments {
     fn terms(&self, tolerance: f64) -> Terms<'_> {
-        Terms { libraries: &self.libraries, tolerance, denies_assumptions: self.deny.denies_assumptions() }
+        Terms {
+            libraries: &self.libraries,
+            tolerance,
+            denies_assumptions: self.deny.denies_assumptions(),
+            proves_all: self.prove_all,
+        }
     }
 }
 
@@ -167,7 +177,8 @@ fn all(cases: &[Case], terms: Terms<'_>) -> Vec<CaseResult> {
 fn accept(cases: &[Case], tried: &mut [CaseResult]) -> Result<Vec<String>, UsageError> {
     let mut files = Vec::new();
     let mut names = Vec::new();
-    for (case, CaseResult { report, record }) in cases.iter().zip(tried.iter_mut()) {
+    for (case, CaseResult { report, record, lock }) in cases.iter().zip(tried.iter_mut()) {
+        files.extend(lock.take());
         let is_other = report.answer != CaseAnswer::Same;
         let is_taken = |record: &&Record| is_other && !record.lacks_program();
         let Some(record) = record.as_ref().filter(is_taken) else { continue };

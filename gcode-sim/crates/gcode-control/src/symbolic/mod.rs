@@ -30,6 +30,7 @@ use super::loop_detection::LoopDetector;
 use super::outcome::{AlarmStop, Limits, Outcome, RunEnd};
 use super::variables::{Value, VariableClass};
 use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::{Bytecode, Library, Memory, OpBody, OpKind, Operation, Statement};
 
 /// Run whose variables are terms.
@@ -37,6 +38,9 @@ use gcode_lang::program::{Bytecode, Library, Memory, OpBody, OpKind, Operation, 
 pub struct SymbolicRun {
     control: Control,
 }
+
+/// Variables with their values; a value that isn't followed is `None`.
+type NamedTerms = Vec<(u32, Option<Term>)>;
 
 /// State of a run between two blocks.
 #[derive(Clone, Debug)]
@@ -144,6 +148,18 @@ impl SymbolicRun {
         let value = self.control.variable(number).map_err(|_| Halt::unfollowed(format!("#{number}")))?;
         let Some(stored) = value.as_number() else { return Ok(None) };
         Term::of(stored).map(Some).ok_or_else(|| Halt::unfollowed(format!("#{number}")))
+    }
+
+    /// Returns the machine position of an axis; `None` if it isn't followed.
+    pub fn machine_position(&self, axis: AxisIndex) -> Option<Term> {
+        Term::of(self.control.executor.registers.state.machine_position[axis])
+    }
+
+    /// Returns the text of the last operator stop and the variables that it names; a value that isn't followed is `None`.
+    pub fn last_stop(&self) -> Option<(&str, NamedTerms)> {
+        let stop = self.control.stops().last()?;
+        let term = |(number, stored): &(u32, f64)| (*number, Term::of(*stored));
+        Some((stop.text.as_str(), stop.variables.iter().map(term).collect()))
     }
 
     /// Returns true if the run has made more moves than a run with these limits.

@@ -1,0 +1,188 @@
+//! The result of `prove`, as text and as data.
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use gcode_prove::Verdict;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::over::Over;
+
+/// Values of quantities.
+pub(super) type Point = BTreeMap<String, f64>;
+
+/// Ranges of quantities.
+pub(super) type RangeReport = BTreeMap<String, [f64; 2]>;
+
+/// Verdicts on the claims of a job's macro for all values of the quantities left open.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct JobProof {
+    /// `proved`, `refuted` or `undecided`: the worst of the claims'.
+    pub verdict: VerdictName,
+    /// Ranges of the quantities left open.
+    pub over: BTreeMap<String, [f64; 2]>,
+    /// One case for each direction and tool of the job's holes.
+    pub cases: Vec<CaseReport>,
+    /// Duration, seconds.
+    pub seconds: f64,
+    #[serde(skip)]
+    all: String,
+}
+
+/// Verdict on a claim.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum VerdictName {
+    /// It holds for all values.
+    Proved,
+    /// Neither is known.
+    #[default]
+    Undecided,
+    /// It fails at a point that was run.
+    Refuted,
+}
+
+impl From<Verdict> for VerdictName {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Proved => Self::Proved,
+            Verdict::Undecided => Self::Undecided,
+            Verdict::Refuted => Self::Refuted,
+        }
+    }
+}
+
+/// Claims of one call of the macro.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct CaseReport {
+    /// Direction of the holes and the tool.
+    pub holes: String,
+    /// The call with variables for the job's quantities.
+    pub call: String,
+    /// The claims.
+    pub claims: Vec<ClaimReport>,
+}
+
+/// Verdict on one claim.
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
+pub struct ClaimReport {
+    /// The claim.
+    pub claim: String,
+    /// Its verdict.
+    pub verdict: VerdictName,
+    /// Share of the values for which it is proved.
+    pub proved_share: f64,
+    /// The bound that is proved, mm; null for a claim without one.
+    pub bound: Option<f64>,
+    /// Where the bound is largest, or the largest part of the values that is left undecided.
+    pub worst: Option<RangeReport>,
+    /// Values at which the claim fails.
+    pub counterexample: Option<Point>,
+    /// The largest position deviation of the single holes that were verified, and its values.
+    pub found: Option<(f64, Point)>,
+    /// What isn't followed.
+    pub reasons: Vec<String>,
+}
+
+impl JobProof {
+    pub(super) fn new(overs: &[Over], cases: Vec<CaseReport>, seconds: f64) -> Self {
+        let verdicts = cases.iter().flat_map(|case| case.claims.iter().map(|claim| claim.verdict));
+        let words: Vec<_> = overs.iter().map(Over::words).collect();
+        let over = overs.iter().map(|over| (over.quantity.key().to_owned(), [over.low, over.high]));
+        Self {
+            verdict: verdicts.max().unwrap_or_default(),
+            over: over.collect(),
+            cases,
+            seconds,
+            all: words.join(", "),
+        }
+    }
+
+    /// Formats the result for a terminal.
+    pub(crate) fn text(&self) -> String {
+        let mut text = format!("for all {}\n", self.all);
+        for case in &self.cases {
+            let _ = writeln!(text, "\n{}\n{}", case.holes, case.call);
+            case.claims.iter().for_each(|claim| claim.write(&mut text));
+        }
+        let _ = writeln!(text, "\n{:.1} s; proved of the simulated control: see docs/prove.md", self.seconds);
+        text
+    }
+}
+
+impl CaseReport {
+    pub(super) fn new(holes: String, call: String, claims: Vec<ClaimReport>) -> Self {
+        Self { holes, call, claims }
+    }
+}
+
+impl ClaimReport {
+    fn write(&self, text: &mut String) {
+        let verdict = match self.verdict {
+            VerdictName::Proved => "proved   ",
+            VerdictName::Undecided => "undecided",
+            VerdictName::Refuted => "REFUTED  ",
+        };
+        let _ = write!(text, "  {verdict}  {}", self.claim);
+        if self.verdict == VerdictName::Undecided {
+            let _ = write!(text, ": proved for {}", percent(self.proved_share));
+        }
+        text.push('\n');
+        let ranges = self.worst.iter().map(|worst| {
+            let ranges = worst.iter().map(|(key, [low, high])| format!("{key} {low}..{high}"));
+            ranges.collect::<Vec<_>>().join(", ")
+        });
+        for ranges in ranges {
+            let word = if self.verdict == VerdictName::Undecided { "left" } else { "worst" };
+            let _ = writeln!(text, "             {word}: {ranges}");
+        }
+        if let Some((phi, point)) = &self.found {
+            let what = if phi.is_finite() { format!("Φ{phi:.5}") } else { "no hole there".to_owned() };
+            let _ = writeln!(text, "             verified: {what} at {}", words(point));
+        } else if let Some(point) = &self.counterexample {
+            let _ = writeln!(text, "             at {}", words(point));
+        }
+        for reason in &self.reasons {
+            let _ = writeln!(text, "             not followed: {reason}");
+        }
+    }
+}
+
+fn words(point: &Point) -> String {
+    point.iter().map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ")
+}
+
+/// Returns `hole.radius 3, surface.a 500`.
+pub(super) fn named(overs: &[Over], values: &[f64]) -> String {
+    let all = overs.iter().zip(values).map(|(over, value)| format!("{} {value}", over.quantity.key()));
+    all.collect::<Vec<_>>().join(", ")
+}
+
+/// Returns a share in percent, never rounded up to all.
+fn percent(share: f64) -> String {
+    let percent = (share * 1e5).floor() / 1e3;
+    format!("{percent} % of the values")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_is_never_rounded_up() {
+        assert_eq!(percent(0.999_999_9), "99.999 % of the values");
+        assert_eq!(percent(0.25), "25 % of the values");
+    }
+
+    #[test]
+    fn the_worst_claim_decides() {
+        let claim = |verdict: Verdict| ClaimReport { verdict: verdict.into(), ..ClaimReport::default() };
+        let case = |verdicts: &[Verdict]| {
+            let claims = verdicts.iter().map(|verdict| claim(*verdict)).collect();
+            JobProof::new(&[], vec![CaseReport::new(String::new(), String::new(), claims)], 0.0).verdict
+        };
+        assert_eq!(case(&[Verdict::Proved, Verdict::Proved]), VerdictName::Proved);
+        assert_eq!(case(&[Verdict::Proved, Verdict::Undecided]), VerdictName::Undecided);
+        assert_eq!(case(&[Verdict::Undecided, Verdict::Refuted, Verdict::Proved]), VerdictName::Refuted);
+    }
+}
