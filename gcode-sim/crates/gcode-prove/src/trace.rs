@@ -123,7 +123,7 @@ pub fn trace<S: Setup>(
     let domain = Domain::new(
         ranges.iter().map(|range| gcode_enclosure::Interval::new(range.low, range.high)).collect(),
     );
-    let mut nodes = Nodes::new(semantics(control()?.settings()), domain.clone());
+    let mut nodes = Nodes::new(semantics(control()?.settings()), domain.clone(), 0.0);
     let mut run = SymbolicRun::new(control()?);
     let mut inputs = Vec::new();
     for (index, range) in ranges.iter().enumerate() {

@@ -43,7 +43,7 @@ impl<T: Terms> Evaluation<'_, '_, T> {
     fn tool_centre(&self, axis: AxisIndex) -> Option<Term> {
         let registers = self.registers;
         let is_plain = registers.state.virtual_plane.is_none()
-            && registers.lookahead.offset[axis] == 0.0
+            && registers.lookahead.machine_offset()[axis] == 0.0
             && !registers.data.settings.rolls_over[axis]
             && !registers.is_inch();
         Term::of(registers.state.machine_position[axis]).filter(|_| is_plain)
