@@ -68,7 +68,7 @@ fn digests(package: &Package) -> BTreeMap<String, String> {
 #[cfg(test)]
 mod tests {
     use std::num::NonZeroUsize;
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
 
     use gcode_control::Control;
     use gcode_inspect::machine::Machine;
@@ -110,8 +110,7 @@ mod tests {
     }
 
     fn is_proved(entry: &Entry, job: &Job, package: &Package) -> bool {
-        let start = Instant::now();
-        let clock = || start.elapsed();
+        let clock = || Duration::ZERO;
         let threads = NonZeroUsize::new(2).unwrap();
         if let Some(tolerance) = entry.way.get("tolerance") {
             let tolerances = [tolerance.as_float().unwrap()];

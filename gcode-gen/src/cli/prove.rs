@@ -49,7 +49,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if !(arguments.time > 0.0 && arguments.time <= 86_400.0) {
         return Err(UsageError::new(format!("--time {}: seconds above 0, up to 86400", arguments.time)));
     }
-    if let Some(tolerance) = arguments.tolerance.iter().find(|tolerance| !(**tolerance > 0.0)) {
+    if let Some(tolerance) =
+        arguments.tolerance.iter().find(|tolerance| tolerance.is_nan() || **tolerance <= 0.0)
+    {
         return Err(UsageError::new(format!("--tolerance {tolerance}: millimetres above 0")));
     }
     let mut package = families::emit(&job);

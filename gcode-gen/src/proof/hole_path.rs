@@ -62,8 +62,8 @@ impl HolePath {
         let angle = match axes.head {
             Some(axis) => position(axis)?,
             None => {
-                let heads = way.stops.iter().filter(|stop| stop.moves <= first && names_head(&stop.text));
-                let stop = heads.last().ok_or("the head is never set")?;
+                let mut heads = way.stops.iter().filter(|stop| stop.moves <= first && names_head(&stop.text));
+                let stop = heads.next_back().ok_or("the head is never set")?;
                 match stop.variables.as_slice() {
                     [(_, Some(angle))] => *angle,
                     _ => return Err("a stop for the head whose angle isn't clear".to_owned()),
