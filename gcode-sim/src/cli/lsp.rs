@@ -14,6 +14,7 @@ use tempfile::TempDir;
 use super::conditions::RunConditions;
 use super::disk_files::DiskFiles;
 use super::project::Project;
+use super::rerun::Rerun;
 use super::{ExitStatus, UsageError, framing, input, options, output, page};
 use crate::report::proof::ProofReport;
 use crate::report::run::RunReport;
@@ -179,7 +180,9 @@ impl Host for EditorHost {
         let clock = || start.elapsed();
         let controls = EditedProgram { request, libraries };
         let answer = sentence(prove(&controls, &ask, &Watch::new(&clock, PROOF_TIME)))?;
-        json(&ProofReport::new(&answer, start.elapsed().as_secs_f64(), request.name.clone(), None))
+        // JSON has the values of a counterexample and not the command.
+        let rerun = Rerun::new(Path::new(&request.name), &RunConditions::default(), None);
+        json(&ProofReport::new(&answer, start.elapsed().as_secs_f64(), rerun))
     }
 
     fn write_page(

@@ -214,6 +214,7 @@ fn prove_one(one: &ProofRequest, controls: &Controls<'_>) -> Result<Answer, Stri
         max_blocks: controls.request.limits.blocks,
         // Cases run on all cores already.
         threads: NonZeroUsize::MIN,
+        widening: 0.0,
     };
     let start = Instant::now();
     let clock = || start.elapsed();

@@ -1,4 +1,6 @@
 //! Cutting conditions of each tool: spindle, speed, feed, pecks and length offset as the reference specifies them.
+use std::collections::BTreeSet;
+
 use super::*;
 use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFSET, SPINDLE_REVERSED};
 use crate::holes::CutConditions;
@@ -48,12 +50,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         }
         reported[index].1 += cut.count;
     };
+    let offsets = offsets_of_tools(conditions);
     for check in [reversed, speed, feed, feed_per_turn, rubbing_feed, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
             // Lengths that the machine file states are compared.
             let is_open = finding.kind == &LENGTH_OFFSET && inspection.machine.length_of(cut.tool).is_none();
-            let finding = match owner_of_length(cut, conditions).filter(|_| is_open) {
+            let finding = match owner_of_length(cut, &offsets).filter(|_| is_open) {
                 Some(owner) => finding
                     .with_severity(Severity::Error)
                     .note(format!("T{owner} cuts with it too: two tools have two lengths")),
@@ -63,7 +66,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         }
     }
     for cut in conditions {
-        if let Some(finding) = without_offset(cut, inspection) {
+        if let Some(finding) = without_offset(cut, &offsets, inspection) {
             report(finding, cut);
         }
     }
@@ -73,11 +76,17 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     }
 }
 
+/// Returns the first cut of each tool with each length offset.
+fn offsets_of_tools(conditions: &[CutConditions]) -> Vec<&CutConditions> {
+    let mut known = BTreeSet::new();
+    conditions.iter().filter(|cut| known.insert((cut.tool, cut.compensation))).collect()
+}
+
 /// Returns the tool of the same number as the length offset of a cut, if it cuts with that offset too and is another one.
-fn owner_of_length(cut: &CutConditions, all: &[CutConditions]) -> Option<u32> {
+fn owner_of_length(cut: &CutConditions, offsets: &[&CutConditions]) -> Option<u32> {
     let LengthCompensation::Plus(h) = cut.compensation else { return None };
-    let is_owner = |other: &CutConditions| other.tool == Some(h) && other.compensation == cut.compensation;
-    (cut.tool.is_some_and(|tool| tool != h) && all.iter().any(is_owner)).then_some(h)
+    let is_owner = |other: &&CutConditions| other.tool == Some(h) && other.compensation == cut.compensation;
+    (cut.tool.is_some_and(|tool| tool != h) && offsets.iter().any(is_owner)).then_some(h)
 }
 
 /// Reports a tool that turns against its hand. A thread has the hand of the spindle, which another check compares with the
@@ -336,7 +345,11 @@ fn same_length(cut: &CutConditions, length: f64, machine: &Machine) -> Option<Di
 
 /// Reports a tool of unknown length that cuts without a length offset where the program uses lengths: another tool of unknown
 /// length cuts with one, this one has had one, or the program sets its length.
-fn without_offset(cut: &CutConditions, inspection: &HoleInspection<'_>) -> Option<Diagnostic> {
+fn without_offset(
+    cut: &CutConditions,
+    offsets: &[&CutConditions],
+    inspection: &HoleInspection<'_>,
+) -> Option<Diagnostic> {
     let HoleInspection { extraction, machine, reference, .. } = inspection;
     let is_specified = reference.process_limits.tool_process(cut.tool).and_then(|tool| tool.offset).is_some();
     let is_open = |tool| machine.length_of(tool).is_none();
@@ -344,11 +357,11 @@ fn without_offset(cut: &CutConditions, inspection: &HoleInspection<'_>) -> Optio
     if cut.compensation.number().is_some() || is_specified || !is_open(cut.tool) {
         return None;
     }
-    let has_offset = |other: &&CutConditions| {
+    let has_offset = |other: &&&CutConditions| {
         other.compensation.number().is_some() && is_open(other.tool) && other.tool != cut.tool
     };
     let own = cut.tool.filter(|tool| extraction.program_lengths.contains(tool));
-    let reason = match (extraction.cut_conditions.iter().find(has_offset), own) {
+    let reason = match (offsets.iter().find(has_offset), own) {
         (Some(other), _) => format!("{} with one", tool_name(other.tool)),
         (None, Some(h)) => format!("the program sets the length of H{h}"),
         (None, None) if extraction.offset_tools.contains(&cut.tool) => {
