@@ -25,6 +25,7 @@
 pub mod alarm;
 pub mod control;
 pub mod diag;
+mod length_compensation;
 pub mod motion;
 pub mod program;
 mod similar;

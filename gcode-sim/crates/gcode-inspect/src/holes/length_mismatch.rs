@@ -25,6 +25,14 @@ pub(crate) struct LengthMismatch {
 }
 
 impl HoleExtractor<'_> {
+    /// Applies a change of the source of the length offset.
+    pub(super) fn apply_compensation(&mut self, compensation: LengthCompensation) {
+        self.cutting_state.compensation = compensation;
+        if compensation.number().is_some() {
+            self.offset_tools.insert(self.setup.tool);
+        }
+    }
+
     /// Returns the tool length minus the offset; `None` if the length is unknown, the offset is not along the tool, or
     /// they agree.
     pub(super) fn length_excess(&self) -> Option<f64> {

@@ -88,8 +88,8 @@ use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPar
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
-    Backtrace, Event, EventKind, EventSink, LengthCompensation, PlanarArc, Position, SkipMove, SkipSignal,
-    SpindleDirection, StopKind,
+    Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
+    StopKind,
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
@@ -419,14 +419,6 @@ impl<'m> HoleExtractor<'m> {
     fn update_outside(&mut self) {
         let is_outside = self.surface.is_some_and(|surface| surface.value(&self.pose.tip) > 0.0);
         self.has_left_start |= is_outside && self.positions.is_known(self.machine);
-    }
-
-    /// Applies a change of the source of the length offset.
-    fn apply_compensation(&mut self, compensation: LengthCompensation) {
-        self.cutting_state.compensation = compensation;
-        if compensation.number().is_some() {
-            self.offset_tools.insert(self.setup.tool);
-        }
     }
 
     /// Applies a change of the tool, its offset or the head, which moves the tip.
