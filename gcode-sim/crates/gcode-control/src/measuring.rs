@@ -63,7 +63,7 @@ impl OffsetMeasurement {
             Self::ToolDiameter { number, other, width } => {
                 let axes = data.settings.axes.len();
                 let linear = (0..axes).filter(|axis| !data.settings.axes.is_rotary(*axis));
-                let square: f64 = linear.map(|axis| (at[axis] - other[axis]).powi(2)).sum();
+                let square: f64 = linear.map(|axis| at[axis] - other[axis]).map(|way| way * way).sum();
                 let diameter = square.sqrt() - width;
                 let value = if data.settings.has_diameter_offsets() { diameter } else { diameter / 2.0 };
                 let register = data.table(Register::DGeometry);

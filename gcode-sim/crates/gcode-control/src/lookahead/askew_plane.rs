@@ -118,6 +118,7 @@ mod tests {
         assert_eq!(ends.last(), Some(&at(0.0, 7.071_067_812, 7.071_067_812)));
         assert!((total - 9.0).abs() < 1e-9);
         assert!(ends.iter().all(|end| (end[1] - end[2]).abs() < 1e-9), "the points are in the plane");
-        assert!(ends.iter().all(|end| ((end[0].powi(2) + 2.0 * end[1].powi(2)).sqrt() - 10.0).abs() < 1e-8));
+        let radius = |end: &Position| (end[0] * end[0] + end[1] * end[1] + end[2] * end[2]).sqrt();
+        assert!(ends.iter().all(|end| (radius(end) - 10.0).abs() < 1e-8));
     }
 }
