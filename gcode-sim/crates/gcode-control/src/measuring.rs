@@ -1,7 +1,7 @@
 //! G35, G36, G37 and G136 of a Haas: a skip whose signal sets an offset, and the point of M75 that two of them need.
 use super::data::{ControlData, Register, system_index};
 use super::functions::ExecResult;
-use super::plan::{BlockPlan, TableWrite};
+use super::plan::{BlockPlan, OffsetMeasurement, TableWrite};
 use super::planner::Planner;
 use super::state::State;
 use gcode_lang::alarm::Alarm;
@@ -14,35 +14,6 @@ const PROBE_OFFSETS: std::ops::RangeInclusive<u32> = 20_059..=20_062;
 
 /// Setting 63 of a Haas: the width of the tool probe.
 const TOOL_PROBE_WIDTH: u32 = 20_063;
-
-/// Offset that a skip signal sets.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum OffsetMeasurement {
-    /// G36 and G136: the active work zero, at the probed point or half-way to another.
-    WorkZero {
-        /// Axes of the block, as bits.
-        axes: u8,
-        /// I, J and K.
-        shift: Position,
-        /// Point of M75; `None` for G36.
-        other: Option<Position>,
-    },
-    /// G35: the diameter or radius, from the distance of two points.
-    ToolDiameter {
-        number: u32,
-        other: Position,
-        /// Width of the probe, mm.
-        width: f64,
-    },
-    /// G37: the length with which the tip of the tool is at `target`.
-    ToolLength {
-        number: u32,
-        axis: AxisIndex,
-        target: f64,
-        /// −1 for G44.
-        sign: f64,
-    },
-}
 
 impl OffsetMeasurement {
     /// Returns the offsets that a signal at the skip position of a state sets.
@@ -63,7 +34,7 @@ impl OffsetMeasurement {
             Self::ToolDiameter { number, other, width } => {
                 let axes = data.settings.axes.len();
                 let linear = (0..axes).filter(|axis| !data.settings.axes.is_rotary(*axis));
-                let square: f64 = linear.map(|axis| (at[axis] - other[axis]).powi(2)).sum();
+                let square: f64 = linear.map(|axis| at[axis] - other[axis]).map(|way| way * way).sum();
                 let diameter = square.sqrt() - width;
                 let value = if data.settings.has_diameter_offsets() { diameter } else { diameter / 2.0 };
                 let register = data.table(Register::DGeometry);

@@ -3,13 +3,12 @@ use super::cycle_expansion::CyclePlan;
 use super::data::Register;
 use super::flow::CallOrigins;
 use super::lookahead::Lookahead;
-use super::measuring::OffsetMeasurement;
 use super::notes::Note;
 use super::state::State;
 use super::variables::{Locals, Value};
 use crate::contour::Blend;
 use gcode_lang::control::ParameterId;
-use gcode_lang::motion::{EventKind, Position, StopKind};
+use gcode_lang::motion::{AxisIndex, EventKind, Position, StopKind};
 use gcode_lang::program::m_codes::SkipAlarm;
 use gcode_lang::program::modes::GroupSet;
 use gcode_lang::program::{OpIndex, ProgramId};
@@ -104,6 +103,35 @@ pub(super) struct SkipPlan {
     /// Offset that the signal sets.
     pub(super) measurement: Option<OffsetMeasurement>,
     pub(super) span: Span,
+}
+
+/// Offset that a skip signal sets.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum OffsetMeasurement {
+    /// G36 and G136: the active work zero, at the probed point or half-way to another.
+    WorkZero {
+        /// Axes of the block, as bits.
+        axes: u8,
+        /// I, J and K.
+        shift: Position,
+        /// Point of M75; `None` for G36.
+        other: Option<Position>,
+    },
+    /// G35: the diameter or radius, from the distance of two points.
+    ToolDiameter {
+        number: u32,
+        other: Position,
+        /// Width of the probe, mm.
+        width: f64,
+    },
+    /// G37: the length with which the tip of the tool is at `target`.
+    ToolLength {
+        number: u32,
+        axis: AxisIndex,
+        target: f64,
+        /// −1 for G44.
+        sign: f64,
+    },
 }
 
 /// Continuation of the program after the block.

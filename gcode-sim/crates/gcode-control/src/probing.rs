@@ -1,8 +1,7 @@
 //! G31: the planned move, the machine's skip signal, and the position of the axes then.
 use super::functions::ExecResult;
-use super::measuring::OffsetMeasurement;
 use super::notes::Note;
-use super::plan::{BlockPlan, SkipPlan};
+use super::plan::{BlockPlan, OffsetMeasurement, SkipPlan};
 use super::planner::Planner;
 use super::registers::Registers;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};

@@ -101,9 +101,9 @@ mod tests {
 
     #[test]
     fn a_point_comes_back_from_the_plane() {
-        // √2 along the plane's Y is 1 along Y and 1 along Z.
-        assert_eq!(plane().on_machine(&at(3.0, 2.0_f64.sqrt(), 0.0)), at(3.0, 1.0, 1.0));
-        assert_eq!(plane().in_plane(&at(3.0, 1.0, 1.0)), at(3.0, 1.414_213_562, 0.0));
+        // 5·√2 along the plane's Y is 5 along Y and 5 along Z.
+        assert_eq!(plane().on_machine(&at(3.0, 50.0_f64.sqrt(), 0.0)), at(3.0, 5.0, 5.0));
+        assert_eq!(plane().in_plane(&at(3.0, 5.0, 5.0)), at(3.0, 7.071_067_812, 0.0));
     }
 
     #[test]
@@ -118,6 +118,7 @@ mod tests {
         assert_eq!(ends.last(), Some(&at(0.0, 7.071_067_812, 7.071_067_812)));
         assert!((total - 9.0).abs() < 1e-9);
         assert!(ends.iter().all(|end| (end[1] - end[2]).abs() < 1e-9), "the points are in the plane");
-        assert!(ends.iter().all(|end| ((end[0].powi(2) + 2.0 * end[1].powi(2)).sqrt() - 10.0).abs() < 1e-8));
+        let radius = |end: &Position| (end[0] * end[0] + end[1] * end[1] + end[2] * end[2]).sqrt();
+        assert!(ends.iter().all(|end| (radius(end) - 10.0).abs() < 1e-8));
     }
 }
