@@ -122,8 +122,8 @@ fn a_denied_assumption_fails_everywhere() {
     let line = "gcode-sim verify O1.nc --reference r.csv --deny assumptions";
     let (verdict, code) = run_json(&format!("{line} --format json"), place);
     assert_eq!((&verdict["verdict"], code), (&json!("fail"), 1));
-    let summary = "1 assumption is denied; 3 of 3 holes in tolerance; not checked: diameters, the tool's length, \
-                   head angles, motion beside the holes (no stock)";
+    let summary = "1 assumption is denied; 3 of 3 holes in tolerance; not checked: diameters, the tool's length \
+                   (no length offset), head angles, motion beside the holes (no stock)";
     assert_eq!(verdict["summary"], summary);
     assert_eq!(verdict["findings"][0]["code"], "assumption");
     let (text, code) = run(line, place);
@@ -345,7 +345,8 @@ type Made = Vec<[i64; 6]>;
 
 /// Returns true if a run makes this hole, or goes on below it: another block then drills there too.
 fn has_hole(made: &Made, points: &[i64; 6]) -> bool {
-    let is_deeper = |other: &[i64; 6]| points[..3] == other[..3] && other[5] < points[5];
+    let is_deeper =
+        |other: &[i64; 6]| points[..2] == other[..2] && points[2] <= other[2] && other[5] < points[5];
     made.iter().any(|other| points == other || is_deeper(other))
 }
 

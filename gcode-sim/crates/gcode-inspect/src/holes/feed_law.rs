@@ -7,13 +7,11 @@ use super::line::CuttingLine;
 use super::metal::PointInMetal;
 use super::near_metal::{Contact, FeedPart, Judged};
 use super::profile::Profile;
-use super::rapids::{PLUNGE_COSINE, format_point};
+use super::rapids::PLUNGE_COSINE;
 use super::strip::Line;
 use super::swept_tool::{TipPaths, contact, rim};
-use crate::findings::FEED_BESIDE_HOLE;
-use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart, tool_name};
-use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Backtrace, Event, Position};
+use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart};
+use gcode_lang::motion::{Event, Position};
 use gcode_part::Collar;
 
 /// Largest deviation of an arc from the chords by which it removes metal, mm.
@@ -23,13 +21,10 @@ const CHORD_TOLERANCE: f64 = 0.005;
 const COARSE_TOLERANCE: f64 = 5.0;
 
 /// Radius up to which a mill of unknown diameter may remove metal, mm.
-const MAX_RADIUS: f64 = 25.0;
+pub(super) const MAX_RADIUS: f64 = 25.0;
 
 /// Number of chords of an arc beside which the shank and the holder are looked for in the metal first.
 const FEW_CHORDS: usize = 16;
-
-/// Largest radius of a hole of unknown diameter that is milled, mm.
-const MAX_OPEN_RADIUS: f64 = 50.0;
 
 /// Number of feeds with a gouge after which no more are compared.
 const MAX_GOUGES: u32 = 1000;
@@ -46,8 +41,8 @@ const MAX_ASIDE: f64 = 0.2;
 /// Deepest cut of a feed into metal that has to stay.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gouge {
-    at: PointInMetal,
-    part: ToolRegion,
+    pub at: PointInMetal,
+    pub part: ToolRegion,
 }
 
 /// Feeds along the tool, on one line.
@@ -62,7 +57,7 @@ pub(super) struct Plunge {
 
 /// Region of a tool that makes a gouge.
 #[derive(Clone, Copy, Debug)]
-enum ToolRegion {
+pub(super) enum ToolRegion {
     Tip,
     Side,
     Shank,
@@ -404,74 +399,6 @@ impl HoleExtractor<'_> {
             self.plunge = None;
             self.report_gouge(line.backtrace(), gouge);
         }
-    }
-
-    fn report_gouge(&mut self, backtrace: &Backtrace, Gouge { at, part }: Gouge) {
-        let (depth, point) = (at.depth, format_point(&at.point));
-        let level = self.metal.level_at(&at.point);
-        let (message, help) = match (part, self.metal.holes.as_deref()) {
-            (ToolRegion::TipBeyond(hole), Some(holes)) => (
-                format!(
-                    "the tool is fed through hole {} and {depth:.3} mm below its entry, at {point}: limit {:.3}",
-                    holes.id(hole),
-                    holes.collar(hole).max_depth()
-                ),
-                "feed less deep: what is below the part, a table or a vise, is not in the machine file's [stock]",
-            ),
-            (ToolRegion::Shank, _) => {
-                let tool = tool_name(self.setup.tool);
-                let message = format!(
-                    "the shank or the holder of {tool} touches metal, {depth:.3} mm below {level} at {point}"
-                );
-                let number = self.setup.tool.unwrap_or(0);
-                // The tool is the same in all its feeds.
-                self.findings.add_in_program(&FEED_BESIDE_HOLE, backtrace, number, 1, |kind| {
-                    Diagnostic::new(kind, message).help(
-                        "use a tool whose flutes are longer than the metal beside them is high, or cut that metal before",
-                    )
-                });
-                return;
-            }
-            (ToolRegion::Tip | ToolRegion::Side | ToolRegion::TipBeyond(_), _) => {
-                let is_stock = self.surface.is_some();
-                let hole = self.metal.hole_at(&at.point).filter(|_| !is_stock);
-                let reach = self.tool_radius().unwrap_or(MAX_RADIUS);
-                let pocket = self.metal.distance_from_pocket(&at.point).filter(|distance| *distance <= reach);
-                let place = match (hole, pocket, part) {
-                    (Some(id), ..) => format!("beside hole {id}"),
-                    (None, Some(distance), ToolRegion::Tip) => format!("{distance:.3} mm outside its pocket"),
-                    (None, Some(_), _) => "the part beside its pocket".to_owned(),
-                    (None, None, _) => "the part beside its holes".to_owned(),
-                };
-                let what = if matches!(part, ToolRegion::Side) { "the side of the tool" } else { "the feed" };
-                let help = match is_stock {
-                    true => {
-                        "keep the tool's radius away from what has to stay, or state in [[stock.pocket]] what the \
-                         program mills besides the holes"
-                    }
-                    false => "retract above the entry of the hole before a motion beside it",
-                };
-                (format!("{what} cuts {place}, {depth:.3} mm below {level} at {point}"), help)
-            }
-        };
-        // A hole of unknown diameter may be as wide as the circle that mills it.
-        let findings = match self.is_at_open_hole(&at.point) {
-            true => &mut self.engagement.errors,
-            false => &mut self.findings,
-        };
-        findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
-    }
-
-    /// Returns true if a point is beside a nominal hole without a diameter, and no deeper than that.
-    fn is_at_open_hole(&self, p: &Point3<f64>) -> bool {
-        let mut is_open = false;
-        if let Some(holes) = self.metal.holes.as_deref().filter(|_| self.surface.is_some()) {
-            holes.below(p, p, (MAX_OPEN_RADIUS, 0.0), &mut |hole| {
-                let collar = holes.collar(hole);
-                is_open |= !collar.has_diameter && collar.depth(p) <= collar.max_depth() + TOUCH_DEPTH;
-            });
-        }
-        is_open
     }
 }
 

@@ -16,6 +16,7 @@ pub(crate) mod event_script;
 mod extraction;
 mod features_made;
 mod feed_law;
+mod gouge_report;
 mod group;
 mod hole_circles;
 mod length_mismatch;

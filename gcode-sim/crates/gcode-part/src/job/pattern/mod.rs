@@ -214,6 +214,11 @@ impl PatternJob {
             let message = format!("key 'pattern.id': '{}' is used twice", self.patterns[index].id);
             return Err(reader.error_at(&format!("pattern.{index}.id"), message));
         }
+        Ok(())
+    }
+
+    /// Checks that a pattern names each tool.
+    fn check_use(&self, reader: &Reader<'_>) -> Result<(), FileError> {
         let is_used = |tool: &PatternTool| {
             self.patterns.iter().flat_map(|pattern| &pattern.steps).any(|step| step.tool == tool.number)
         };
@@ -255,7 +260,7 @@ impl Family for PatternJob {
                 }
             }
         }
-        Ok(())
+        self.check_use(reader)
     }
 }
 

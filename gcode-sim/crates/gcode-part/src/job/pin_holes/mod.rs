@@ -352,7 +352,7 @@ depth = 15.0
             (
                 "pin-holes",
                 "pinholes",
-                "line 1: family 'pinholes' is unknown: one of pin-holes, honeycomb, burr, alignment",
+                "line 1: family 'pinholes' is unknown: one of pin-holes, honeycomb, burr, alignment, pattern",
             ),
             (
                 "[control]\n",

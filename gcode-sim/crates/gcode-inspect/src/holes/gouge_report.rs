@@ -1,0 +1,84 @@
+//! Messages on feeds that cut what has to stay.
+use nalgebra::Point3;
+
+use super::HoleExtractor;
+use super::feed_law::{Gouge, MAX_RADIUS, ToolRegion};
+use super::rapids::format_point;
+use crate::findings::FEED_BESIDE_HOLE;
+use crate::machine::{TOUCH_DEPTH, tool_name};
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::Backtrace;
+
+/// Largest radius of a hole of unknown diameter that is milled, mm.
+const MAX_OPEN_RADIUS: f64 = 50.0;
+
+impl HoleExtractor<'_> {
+    /// Reports where a feed cuts what has to stay.
+    pub(super) fn report_gouge(&mut self, backtrace: &Backtrace, Gouge { at, part }: Gouge) {
+        let (depth, point) = (at.depth, format_point(&at.point));
+        let level = self.metal.level_at(&at.point);
+        let (message, help) = match (part, self.metal.holes.as_deref()) {
+            (ToolRegion::TipBeyond(hole), Some(holes)) => (
+                format!(
+                    "the tool is fed through hole {} and {depth:.3} mm below its entry, at {point}: limit {:.3}",
+                    holes.id(hole),
+                    holes.collar(hole).max_depth()
+                ),
+                "feed less deep: what is below the part, a table or a vise, is not in the machine file's [stock]",
+            ),
+            (ToolRegion::Shank, _) => {
+                let tool = tool_name(self.setup.tool);
+                let message = format!(
+                    "the shank or the holder of {tool} touches metal, {depth:.3} mm below {level} at {point}"
+                );
+                let number = self.setup.tool.unwrap_or(0);
+                // The tool is the same in all its feeds.
+                self.findings.add_in_program(&FEED_BESIDE_HOLE, backtrace, number, 1, |kind| {
+                    Diagnostic::new(kind, message).help(
+                        "use a tool whose flutes are longer than the metal beside them is high, or cut that metal before",
+                    )
+                });
+                return;
+            }
+            (ToolRegion::Tip | ToolRegion::Side | ToolRegion::TipBeyond(_), _) => {
+                let is_stock = self.surface.is_some();
+                let hole = self.metal.hole_at(&at.point).filter(|_| !is_stock);
+                let reach = self.tool_radius().unwrap_or(MAX_RADIUS);
+                let pocket = self.metal.distance_from_pocket(&at.point).filter(|distance| *distance <= reach);
+                let place = match (hole, pocket, part) {
+                    (Some(id), ..) => format!("beside hole {id}"),
+                    (None, Some(distance), ToolRegion::Tip) => format!("{distance:.3} mm outside its pocket"),
+                    (None, Some(_), _) => "the part beside its pocket".to_owned(),
+                    (None, None, _) => "the part beside its holes".to_owned(),
+                };
+                let what = if matches!(part, ToolRegion::Side) { "the side of the tool" } else { "the feed" };
+                let help = match is_stock {
+                    true => {
+                        "keep the tool's radius away from what has to stay, or state in [[stock.pocket]] what the \
+                         program mills besides the holes"
+                    }
+                    false => "retract above the entry of the hole before a motion beside it",
+                };
+                (format!("{what} cuts {place}, {depth:.3} mm below {level} at {point}"), help)
+            }
+        };
+        // A hole of unknown diameter may be as wide as the circle that mills it.
+        let findings = match self.is_at_open_hole(&at.point) {
+            true => &mut self.engagement.errors,
+            false => &mut self.findings,
+        };
+        findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
+    }
+
+    /// Returns true if a point is beside a nominal hole without a diameter, and no deeper than that.
+    fn is_at_open_hole(&self, p: &Point3<f64>) -> bool {
+        let mut is_open = false;
+        if let Some(holes) = self.metal.holes.as_deref().filter(|_| self.surface.is_some()) {
+            holes.below(p, p, (MAX_OPEN_RADIUS, 0.0), &mut |hole| {
+                let collar = holes.collar(hole);
+                is_open |= !collar.has_diameter && collar.depth(p) <= collar.max_depth() + TOUCH_DEPTH;
+            });
+        }
+        is_open
+    }
+}
