@@ -30,7 +30,7 @@ fn message(from: &str, to: &str) -> String {
 fn a_wrong_key_is_named_with_its_line() {
     for (from, to, expected) in [
         ("holes = 6", "holes = 0", "line 15: key 'pattern.circle.holes' is 0: 1 to 9999"),
-        ("circle = {", "cirle = {", "line 15: key 'pattern.cirle' is unknown (did you mean 'circle'?)"),
+        ("circle = {", "circles = {", "line 15: key 'pattern.circles' is unknown (did you mean 'circle'?)"),
         ("holes = 6", "hole = 6", "line 15: key 'pattern.circle.hole' is unknown (did you mean 'holes'?)"),
         (
             "id = \"A\"\n",
