@@ -136,7 +136,7 @@ impl Feature {
         }
     }
 
-    /// Returns the notation of a CSV cell, which [`Self::parse`] reads.
+    /// Returns the notation of a CSV cell, as the column `features` has it.
     pub fn cell(&self) -> String {
         let depth = self.depth.map(|depth| format!(" {depth}"));
         let to = (self.to == DepthTo::Full).then(|| " to=full".to_owned());
