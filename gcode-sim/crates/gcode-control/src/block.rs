@@ -221,7 +221,8 @@ impl Planner<'_> {
             let drilling = plan.cycle_plan.as_ref().map(|cycle_plan| cycle_plan.axis);
             plan.placed_axes = self.named_axes().chain(drilling).fold(0, |axes, axis| axes | 1 << axis);
             let states = [&self.registers.state, &plan.state];
-            if plan.state.modal.cycle.is_none() && states.iter().all(|state| self.is_tapping_rigid(state)) {
+            let taps = states.iter().any(|state| state.modal.cycle.is_some_and(|cycle| cycle.taps()));
+            if !taps && states.iter().all(|state| self.is_tapping_rigid(state)) {
                 return Err(Alarm::MoveBeforeRigidTapping.located_at(self.block));
             }
             self.check_flow_of_triggering_block(&plan.flow)?;

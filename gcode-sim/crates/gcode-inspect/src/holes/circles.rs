@@ -22,8 +22,11 @@ impl Engagement {
         order.sort_by(|a, b| a.level().total_cmp(&b.level()).then(b.radius.total_cmp(&a.radius)));
         let mut kept: Vec<Ring> = Vec::new();
         for ring in order {
-            if kept.iter().all(|deeper| deeper.radius < ring.radius - 0.01) {
-                kept.push(ring.clone());
+            match kept.iter_mut().find(|deeper| ring.radius - 0.01 <= deeper.radius) {
+                // What has come loose inside a narrower circle is no metal any more.
+                Some(deeper) if deeper.slug < ring.slug => deeper.slug = ring.slug,
+                Some(_) => {}
+                None => kept.push(ring.clone()),
             }
         }
         let top = rings.iter().map(|ring| ring.top).fold(f64::NEG_INFINITY, f64::max) + LEVEL_TOLERANCE;
@@ -78,15 +81,29 @@ impl HoleExtractor<'_> {
         let (threads, rings): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|ring| ring.helix.is_some_and(|helix| helix.is_thread));
         let mut holes = self.bored_holes(rings, cutter);
-        // A turn along a thread cuts no hole.
-        let is_thread = |ring: &&Ring| {
-            let hole = self.strokes.nominal_of_ring(ring, true);
-            hole.is_some_and(|axis| axis.thread.is_some()) && self.is_at_nominal_wall(ring, cutter)
-        };
-        let threads = threads.into_iter().filter(is_thread);
         holes.retain(|circles| !self.is_in_pocket(&circles.widest, cutter));
-        holes.extend(threads.filter_map(|ring| engagement.circles(&[ring], cutter)));
+        holes.extend(self.thread_turns(threads, cutter));
         holes
+    }
+
+    /// Returns the turns at nominal threads; a turn along a thread cuts no hole. Of several at one thread the widest decides how far
+    /// the path leads beyond them.
+    fn thread_turns(&self, turns: Vec<&Ring>, cutter: Option<f64>) -> Vec<HoleCircles> {
+        let entry = |ring: &&Ring| {
+            let axis = self.strokes.nominal_of_ring(ring, true)?;
+            (axis.thread.is_some() && self.is_at_nominal_wall(ring, cutter)).then_some(axis.entry)
+        };
+        let turns: Vec<(Point3<f64>, &Ring)> =
+            turns.into_iter().filter_map(|ring| Some((entry(&ring)?, ring))).collect();
+        let circles = turns.iter().filter_map(|(entry, ring)| {
+            let mut circles = self.engagement.circles(&[ring], cutter)?;
+            let is_wider = |(other, wide): &(Point3<f64>, &Ring)| other == entry && ring.radius < wide.radius;
+            if turns.iter().any(is_wider) {
+                circles.excess = None;
+            }
+            Some(circles)
+        });
+        circles.collect()
     }
 
     /// Returns the circles of each hole among rings that follow no thread.

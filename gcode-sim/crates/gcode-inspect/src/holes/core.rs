@@ -6,6 +6,7 @@ use super::axis_box::directions_across;
 use super::drill_pass::PassCut;
 use super::group::{DrilledHole, ToolPass};
 use crate::machine::TOUCH_DEPTH;
+use gcode_part::exceeds;
 
 /// Largest height of metal on the bottom of a hole that counts as removed, mm.
 const MAX_CORE_HEIGHT: f64 = 0.1;
@@ -65,7 +66,7 @@ impl HoleExtractor<'_> {
         if gaps.is_empty() {
             return None;
         }
-        let left = self.left_inside(&pass.cut.bottom, &pass.axis, &gaps)?;
+        let left = self.left_inside(&pass.cut.bottom, &pass.axis, &gaps, 0.0)?;
         let edge = gaps.iter().find(|gap| gap[0] - WALL_WIDTH <= left && left <= gap[1] + WALL_WIDTH);
         Some(2.0 * edge.map_or(left, |gap| gap[1]))
     }
@@ -108,12 +109,14 @@ impl HoleExtractor<'_> {
         })
     }
 
-    /// Returns the distance from the axis of the farthest metal above the bottom of a hole, within gaps of the radius.
+    /// Returns the distance from the axis of the farthest metal above the bottom of a hole, within gaps of the radius, that is
+    /// higher than `min_height`.
     pub(super) fn left_inside(
         &self,
         bottom: &Point3<f64>,
         axis: &Unit<Vector3<f64>>,
         gaps: &[[f64; 2]],
+        min_height: f64,
     ) -> Option<f64> {
         let out = axis.into_inner();
         let base = bottom + out * MAX_CORE_HEIGHT;
@@ -122,6 +125,7 @@ impl HoleExtractor<'_> {
         let is_left = |offset: Vector3<f64>| {
             let line = [base + offset, base + offset + up];
             self.metal.uncut(&line).is_some()
+                && (min_height == 0.0 || exceeds(self.metal.uncut_length(&line), min_height))
         };
         let radius = gaps.last()?[1];
         let distance = (radius / LINES).max(MIN_DISTANCE);

@@ -81,12 +81,17 @@ impl HoleExtractor<'_> {
     /// and `None` if nothing is known.
     pub(super) fn cuts_known_metal(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let cuts = self.metal.cuts(from, to)?;
-        let rim = || {
-            let diameter = self.machine.diameter_of(self.setup.tool)?;
-            Some(rim(&self.axis_in_motion(from, to)?, &(to - from), diameter / 2.0))
-        };
+        let (axis, along) = (self.axis_in_motion(from, to), to - from);
         let is_cut = |offset: Vector3<f64>| self.metal.cuts(&(from + offset), &(to + offset)) == Some(true);
-        Some(cuts || rim().is_some_and(|rim| rim.into_iter().any(is_cut)))
+        let cuts_at_rim = |axis: Unit<Vector3<f64>>| {
+            // The full diameter is above the point; a tool that moves sideways cuts with the whole point.
+            self.machine.tool_end(self.setup.tool).first().is_some_and(|full| {
+                let height = if is_along(&axis, &along) { full.from } else { 0.0 };
+                let above = axis.into_inner() * height;
+                rim(&axis, &along, full.radius()).into_iter().any(|offset| is_cut(offset + above))
+            })
+        };
+        Some(cuts || axis.is_some_and(cuts_at_rim))
     }
 
     /// Removes the metal that a feed through points sweeps, and reports a gouge where the positions of the axes are known.

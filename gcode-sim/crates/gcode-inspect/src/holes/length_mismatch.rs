@@ -1,9 +1,12 @@
 //! Feeds of a tool whose length differs from its length offset: the tip is off the programmed point.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::HoleExtractor;
 use super::line::CuttingLine;
-use gcode_lang::motion::{Backtrace, LengthCompensation};
+use super::{CONTACT_CLEARANCE, HoleExtractor};
+use crate::findings::RAPID_INTO_PART;
+use crate::machine::{TOUCH_DEPTH, tool_name};
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::{Backtrace, Event, LengthCompensation};
 
 /// Smallest reported difference, mm.
 const MIN_EXCESS: f64 = 0.001;
@@ -43,6 +46,46 @@ impl HoleExtractor<'_> {
         let excess = length - along;
         let is_along_tool = (offset - axis.into_inner() * along).norm() < MIN_EXCESS;
         (is_along_tool && MIN_EXCESS <= excess.abs()).then_some(excess)
+    }
+
+    /// Reports a rapid to the top of the part, or below it, by a tool of unknown length that has lost its offset, as by G49: every
+    /// tool reaches the part there.
+    pub(super) fn check_lost_offset(&mut self, event: &Event<'_>) {
+        let tool = self.setup.tool;
+        let is_lost = self.cutting_state.compensation.number().is_none() && self.offset_tools.contains(&tool);
+        if !is_lost || self.machine.length_of(tool).is_some() {
+            return;
+        }
+        let depth = match self.surface {
+            Some(surface) => self.depth_below_top(&surface, &self.axis_position, 0),
+            None => self.depth_at_entries(),
+        };
+        let Some(depth) = depth.filter(|depth| -CONTACT_CLEARANCE < *depth) else { return };
+        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+            let place = match depth {
+                _ if TOUCH_DEPTH < depth => format!("{depth:.3} mm below the top of the part"),
+                _ => "on the top of the part".to_owned(),
+            };
+            let message = format!(
+                "a rapid without a length offset ends {place}: {} goes into it by its length",
+                tool_name(tool)
+            );
+            Diagnostic::new(kind, message).help("retract with G53 or G28 before G49, or keep G43 in force")
+        });
+    }
+
+    /// Returns the greatest depth of the tip below the entries of the holes at it, negative above them; `None` beside all holes.
+    fn depth_at_entries(&self) -> Option<f64> {
+        let (holes, tip) = (self.metal.holes.as_deref()?, self.pose.tip);
+        let mut depth: Option<f64> = None;
+        let margin = Vector3::repeat(CONTACT_CLEARANCE);
+        holes.around(&(tip - margin), &(tip + margin), &mut |hole| {
+            let collar = holes.collar(hole);
+            if collar.from_axis(&tip) <= collar.rod.radius {
+                depth = Some(depth.map_or(collar.depth(&tip), |most| most.max(collar.depth(&tip))));
+            }
+        });
+        depth
     }
 
     /// Records the feed of a line whose tool length differs; one entry per tool and offset, in order of occurrence.

@@ -390,7 +390,10 @@ impl<'m> HoleExtractor<'m> {
         let free_from = self.update_line(event, kind, before.tip);
         self.follow_bar_shift(event, kind, &before.tip);
         match (kind, free_from) {
-            (MotionKind::Rapid, start) => self.check_rapid_motion(event, (&from, to), start, &before.tip),
+            (MotionKind::Rapid, start) => {
+                self.check_lost_offset(event);
+                self.check_rapid_motion(event, (&from, to), start, &before.tip);
+            }
             (MotionKind::Feed, start) => {
                 // What a feed cuts is recorded before it is removed.
                 if let Some(start) = start {

@@ -54,6 +54,14 @@ impl KnownMetal {
         self.judged_on(travel, Judged::Uncut(None))
     }
 
+    /// Returns the length of a travel in metal that is not removed, mm.
+    pub(super) fn uncut_length(&self, travel: &Line) -> f64 {
+        let line = Strip::line(*travel);
+        let shares = NearMetal::new(self, line.bounds(), Judged::Uncut(None)).shares(&line);
+        let all: f64 = shares.pieces().iter().map(|[first, last]| last - first).sum();
+        all * (travel[1] - travel[0]).norm()
+    }
+
     /// Returns the deepest point of a travel in metal that has to stay.
     pub(super) fn gouge(&self, travel: &Line, part: FeedPart) -> Option<PointInMetal> {
         self.judged_on(travel, Judged::Kept(part, u32::MAX))

@@ -5,7 +5,7 @@ use super::HoleExtractor;
 use super::metal::MAX_OFFSET;
 use crate::machine::TOUCH_DEPTH;
 
-/// Least diameter of a slug, mm; a thinner one breaks up.
+/// Least diameter and height of a slug, mm; a thinner one breaks up.
 const MIN_SLUG: f64 = 1.0;
 
 /// Length below a circle along which metal would hold its slug, mm.
@@ -41,7 +41,7 @@ impl HoleExtractor<'_> {
         if self.metal.is_solid(&[below, below - out.into_inner() * MAX_FLOOR]) {
             return None;
         }
-        self.left_inside(&centre, &out, &[[0.0, inner]]).map(|_| 2.0 * inner)
+        self.left_inside(&centre, &out, &[[0.0, inner]], MIN_SLUG).map(|_| 2.0 * inner)
     }
 
     /// Returns true if a point is on the axis of a nominal through hole, at its far side or below.

@@ -8,7 +8,8 @@ use super::{CONTACT_CLEARANCE, HoleExtractor, MotionKind};
 use crate::findings::START_UNKNOWN;
 use crate::machine::{AxisMotion, Machine, TOUCH_DEPTH};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Axes, AxisIndex, Backtrace, Event, UnknownAxes};
+use gcode_lang::motion::{Axes, AxisIndex, Backtrace, Event, Position, UnknownAxes};
+use gcode_part::Surface;
 
 /// Sine of the largest angle at which an axis moves along a hole.
 const MAX_SINE: f64 = 1e-3;
@@ -18,6 +19,9 @@ const RAPID_DETAIL: u32 = 1 << 8;
 
 /// Detail of the finding about a rapid below the top of the part.
 const LOW_RAPID_DETAIL: u32 = 1 << 9;
+
+/// Step between the angles at which a part of unknown angle is compared, degrees.
+const ANGLE_STEP: u32 = 10;
 
 /// Largest displacement of a hole by an axis that has no effect on it, mm.
 const MAX_DISPLACEMENT: f64 = 1e-6;
@@ -195,32 +199,15 @@ impl HoleExtractor<'_> {
     /// the part.
     fn report_rapid_below_top(&mut self, event: &Event<'_>, is: UnknownAxes) {
         let axes = without_assumed(is, self.machine);
-        let Some((surface, out)) = self.surface.zip(self.tool_direction()) else { return };
+        let Some(surface) = self.surface else { return };
         if axes.uncommanded == 0 || axes.at_machine_position | axes.shifted != 0 {
             return;
         }
-        let mut open = Vec::new();
-        for (axis, _) in self.machine.axes.iter().filter(|(axis, _)| axes.uncommanded >> axis & 1 == 1) {
-            let mut beside = self.axis_position;
-            beside[axis] += 1.0;
-            let by = self.machine.forward(&beside, &self.setup).tip - self.pose.tip;
-            if self.machine.axes.is_rotary(axis) || MAX_SINE < by.dot(&out).abs() {
-                return;
-            }
-            open.push(by);
-        }
-        let (tip, reach) = (self.pose.tip, self.body_radius());
-        let [low, high] = surface.bounds();
-        let is_over = (0..3).all(|i| {
-            let is_open = open.iter().any(|by| MAX_SINE < by[i].abs());
-            let margin = reach * (1.0 - out[i] * out[i]).max(0.0).sqrt();
-            is_open || MAX_SINE < out[i].abs() || (low[i] - margin..=high[i] + margin).contains(&tip[i])
-        });
-        let top: f64 = (0..3).map(|i| (out[i] * low[i]).max(out[i] * high[i])).sum();
-        let below = top - tip.coords.dot(&out);
-        if !is_over || below <= -CONTACT_CLEARANCE {
-            return;
-        }
+        let positions = self.angles_of(axes.uncommanded);
+        let depths = positions.iter().map(|at| self.depth_below_top(&surface, at, axes.uncommanded));
+        // It is below the top at every angle of the part.
+        let least = depths.reduce(|least, depth| Some(least?.min(depth?)));
+        let Some(below) = least.flatten().filter(|below| -CONTACT_CLEARANCE < *below) else { return };
         let letters = self.machine.axes.names(axes.uncommanded);
         self.findings.add_in_program(&START_UNKNOWN, &event.backtrace(), LOW_RAPID_DETAIL, 1, |kind| {
             let place = match below {
@@ -233,6 +220,53 @@ impl HoleExtractor<'_> {
             Diagnostic::new(kind, message)
                 .help(format!("command {letters} in G90 before it, or end it above the part"))
         });
+    }
+
+    /// Returns the position of the axes, with rotaries of unknown position at each of their angles.
+    fn angles_of(&self, unknown: u8) -> Vec<Position> {
+        let mut positions = vec![self.axis_position];
+        let is_unknown = |axis: &AxisIndex| unknown >> axis & 1 == 1 && self.machine.axes.is_rotary(*axis);
+        for axis in (0..self.machine.axes.len()).filter(is_unknown) {
+            let turned = |at: &Position| {
+                let at = *at;
+                (0..360 / ANGLE_STEP).map(move |step| {
+                    let mut beside = at;
+                    beside[axis] = f64::from(step * ANGLE_STEP);
+                    beside
+                })
+            };
+            positions = positions.iter().flat_map(turned).collect();
+        }
+        positions
+    }
+
+    /// Returns the distance of the tip below the top of the body, seen along the tool, with the axes at a position; `None` if it is
+    /// beside the body, or if its height is unknown. Linear axes in `unknown` may be anywhere.
+    pub(super) fn depth_below_top(&self, surface: &Surface, at: &Position, unknown: u8) -> Option<f64> {
+        let pose = self.machine.forward(at, &self.setup);
+        let (tip, out) = (pose.tip, pose.axis.or_else(|| self.tool_direction())?);
+        let mut open = Vec::new();
+        for (axis, _) in self.machine.axes.iter().filter(|(axis, _)| unknown >> axis & 1 == 1) {
+            if self.machine.axes.is_rotary(axis) {
+                continue;
+            }
+            let mut beside = *at;
+            beside[axis] += 1.0;
+            let by = self.machine.forward(&beside, &self.setup).tip - tip;
+            if MAX_SINE < by.dot(&out).abs() {
+                return None;
+            }
+            open.push(by);
+        }
+        let reach = self.body_radius();
+        let [low, high] = surface.bounds();
+        let is_over = (0..3).all(|i| {
+            let is_open = open.iter().any(|by| MAX_SINE < by[i].abs());
+            let margin = reach * (1.0 - out[i] * out[i]).max(0.0).sqrt();
+            is_open || MAX_SINE < out[i].abs() || (low[i] - margin..=high[i] + margin).contains(&tip[i])
+        });
+        let top: f64 = (0..3).map(|i| (out[i] * low[i]).max(out[i] * high[i])).sum();
+        is_over.then(|| top - tip.coords.dot(&out))
     }
 
     /// Reports a rapid to the surface of the body from a place across the tool that nothing has commanded: it may lead through

@@ -125,6 +125,18 @@ impl CutShape {
         self.tip - self.point.length(2.0 * self.radius).unwrap_or(0.0)
     }
 
+    /// Returns true if this cut removes all that another one on the same axis removes below the entry and above `floor`. An
+    /// unknown end of this tool counts as that of a drill.
+    pub(super) fn covers(&self, other: &Self, floor: f64) -> bool {
+        let point = if self.point == PointShape::Unknown { PointShape::DRILL } else { self.point };
+        let own = Self { point, ..*self };
+        let (top, bottom) = (other.start.max(0.0), other.tip.min(floor));
+        let is_whole = own.path <= own.radius && own.start <= top && bottom <= own.tip + NOISE;
+        let ends = [top, bottom, own.full_depth(), other.full_depth()];
+        let mut depths = ends.into_iter().filter(|depth| top <= *depth && *depth <= bottom);
+        is_whole && top < bottom && depths.all(|depth| other.radius_at(depth) <= own.radius_at(depth) + NOISE)
+    }
+
     /// Returns the radius at a depth above the tip.
     fn radius_at(&self, depth: f64) -> f64 {
         let own = match self.point {
@@ -169,6 +181,25 @@ mod tests {
             let margin = outline.margin(&cut);
             assert!((margin - expected).abs() < 1e-12, "{cut:?}: {margin}");
         }
+    }
+
+    /// A point of 118° of Φ10 with its tip at 20 has its full diameter to 20 - 5/tan 59° = 16.996: it covers a flat Φ10 to 16.9, and
+    /// not to 17.1. One of 90°, Φ12, with its tip at 4 has a radius of 4 at the entry. A drill of Φ8 covers it nowhere; one of Φ8.1
+    /// and a deep tip does. Below the far side of a through hole nothing is cut.
+    #[test]
+    fn a_cut_covers_what_lies_within_it() {
+        let drill = cut(10.0, 20.0, PointShape::Pointed(Deg(118.0)));
+        assert!(drill.covers(&cut(10.0, 16.9, PointShape::Flat), f64::INFINITY));
+        assert!(!drill.covers(&cut(10.0, 17.1, PointShape::Flat), f64::INFINITY));
+        assert!(drill.covers(&cut(10.0, 30.0, PointShape::Flat), 16.9));
+        assert!(!cut(10.0, 20.0, PointShape::Unknown).covers(&cut(10.0, 17.1, PointShape::Flat), 20.0));
+        let spot = cut(12.0, 4.0, PointShape::Pointed(Deg(90.0)));
+        assert!(cut(8.1, 20.0, PointShape::Flat).covers(&spot, f64::INFINITY));
+        assert!(!cut(7.9, 20.0, PointShape::Flat).covers(&spot, f64::INFINITY));
+        let ring = CutShape { path: 6.0, ..cut(10.0, 20.0, PointShape::Flat) };
+        assert!(!ring.covers(&spot, f64::INFINITY), "a core is left on its axis");
+        let below = CutShape { start: 5.0, ..cut(10.0, 20.0, PointShape::Flat) };
+        assert!(!below.covers(&spot, f64::INFINITY), "it begins in the hole");
     }
 
     /// A cone of Φ12 at 90° meets Φ6 at 3. A 90° tool with its tip at 6 fits exactly; a 120° tool with its tip at 3 has a

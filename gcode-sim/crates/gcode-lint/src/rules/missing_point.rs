@@ -4,7 +4,7 @@
 //! number of 1 mm or more.
 use gcode_lang::control::Settings;
 use gcode_lang::program::code_facts::Measured;
-use gcode_lang::program::g_codes::{Effect, GCodeRow};
+use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::modes::{Motion, Unit};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 use gcode_lang::syntax::ast::Decimal;
@@ -36,8 +36,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         let codes = BlockCodes::of(words);
         for word in codes.measured_words(settings) {
             let Some(number) = without_point(word) else { continue };
-            let is_count =
-                (word.letter == b'Q' && words.call().is_none()) || codes.measured == Measured::Seconds;
+            let is_peck = word.letter == b'Q' && words.call().is_none() && !codes.mills_pocket();
+            let is_count = is_peck || codes.measured == Measured::Seconds;
             if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
@@ -116,6 +116,16 @@ impl<'w> BlockCodes<'w> {
         self.rows.iter().any(|row| is_one(&row.effect))
     }
 
+    /// Returns true for G12, G13 and G150 of a Haas: their Q is a step or an allowance.
+    fn mills_pocket(&self) -> bool {
+        self.has(|effect| matches!(effect, Effect::OneShot(OneShot::CirclePocket(_) | OneShot::Pocket)))
+    }
+
+    /// Returns true for a tapping cycle. On a Haas its J is the multiple of the speed at which it retracts.
+    fn taps(&self) -> bool {
+        self.has(|effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.taps()))
+    }
+
     /// Iterates over the words that are lengths, angles or seconds.
     fn measured_words(&self, settings: &Settings) -> impl Iterator<Item = &'w LoweredWord> {
         let plain = self.words.list.iter().filter(move |word| self.is_measure(word, settings));
@@ -136,8 +146,11 @@ impl<'w> BlockCodes<'w> {
                 _ => false,
             },
             (Measured::AsInMove, b'Q') => {
-                self.has(|effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.uses_q()))
+                let is_peck =
+                    |effect: &Effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.uses_q());
+                self.mills_pocket() || self.has(is_peck)
             }
+            (Measured::AsInMove, b'J') if self.taps() => false,
             (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => true,
             (Measured::AsInMove, b'C') if word.comma => true,
             (Measured::AsInMove | Measured::Axes, _) => is_axis,

@@ -1,9 +1,10 @@
 //! Cutting conditions of each tool: spindle, speed, feed, pecks and length offset as the reference specifies them.
 use std::collections::BTreeSet;
 
+use super::reach::{deviation_of_tip, explains};
 use super::*;
 use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFSET, SPINDLE_REVERSED};
-use crate::holes::CutConditions;
+use crate::holes::{CutConditions, LengthMismatch};
 use crate::machine::{ToolKind, tool_name};
 use gcode_lang::motion::{LengthCompensation, SpindleDirection};
 use gcode_part::Hand;
@@ -66,8 +67,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         }
     }
     for cut in conditions {
-        if let Some(finding) = without_offset(cut, &offsets, inspection) {
-            report(finding, cut);
+        for finding in [without_offset(cut, &offsets, inspection), with_other_length(cut, inspection)] {
+            finding.into_iter().for_each(|finding| report(finding, cut));
         }
     }
     for (finding, count) in reported {
@@ -289,8 +290,8 @@ pub(in crate::verify) fn severity(actual: f64, nominal: f64) -> Option<Severity>
 /// Reports the number of a length offset that cannot be the tool's. If the machine file gives the tool's length, the
 /// depth of the holes shows whether the offset is right.
 fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
-    if let Some(length) = machine.length_of(cut.tool) {
-        return same_length(cut, length, machine);
+    if machine.length_of(cut.tool).is_some() {
+        return None;
     }
     let specified = limits.tool_process(cut.tool).and_then(|tool| tool.offset);
     let tool = tool_name(cut.tool);
@@ -331,16 +332,26 @@ fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Opt
     Some(Diagnostic::new(&LENGTH_OFFSET, message).with_severity(severity).note(note).help(help))
 }
 
-/// Reports the length offset of another tool that is as long in the machine file: on the machine they differ.
-fn same_length(cut: &CutConditions, length: f64, machine: &Machine) -> Option<Diagnostic> {
+/// Reports the length offset of another tool of known length: one that is as long in the machine file may differ on the machine.
+/// Where the difference explains depths that are wrong, another finding says so.
+fn with_other_length(cut: &CutConditions, inspection: &HoleInspection<'_>) -> Option<Diagnostic> {
+    let HoleInspection { comparison, machine, extraction, .. } = inspection;
+    let length = machine.length_of(cut.tool).filter(|length| 0.0 < *length)?;
     let LengthCompensation::Plus(h) = cut.compensation else { return None };
     let number = cut.tool.filter(|number| *number != h)?;
-    let is_as_long = machine.find_tool(h)?.length == Some(length) && 0.0 < length;
+    let other = machine.find_tool(h)?.length;
+    let is_own = |one: &&LengthMismatch| (one.tool, one.compensation) == (number, cut.compensation);
+    let note = match extraction.length_mismatches.iter().find(is_own) {
+        Some(one) if explains(comparison, one) => return None,
+        Some(one) => format!("its tip is {} than programmed", deviation_of_tip(one.length_excess)),
+        None if other == Some(length) => {
+            format!("both are {length} mm long in the machine file: on the machine they may differ")
+        }
+        None => return None,
+    };
     let message = format!("{} cuts with H{h}, the number of another tool", tool_name(cut.tool));
-    let finding = Diagnostic::new(&LENGTH_OFFSET, message).with_severity(Severity::Warning);
-    let finding = finding
-        .note(format!("both are {length} mm long in the machine file: on the machine they may differ"));
-    is_as_long.then(|| finding.help(format!("command H{number}, if offsets have the numbers of their tools")))
+    let finding = Diagnostic::new(&LENGTH_OFFSET, message).with_severity(Severity::Warning).note(note);
+    Some(finding.help(format!("command H{number}, if offsets have the numbers of their tools")))
 }
 
 /// Reports a tool of unknown length that cuts without a length offset where the program uses lengths: another tool of unknown

@@ -203,13 +203,8 @@ impl Judgement<'_> {
     fn judge_milling(&mut self, feature: &Feature, cut: &Cut<'_>) {
         let Some(milled) = cut.pass.cut.milled else { return };
         let what = format!("hole {}: the {}", self.id, feature.describe());
-        let findings = [
-            roundness::finding(&what, &milled, self.comparison.tolerances.diameter),
-            milled_core::finding(&what, &milled),
-        ];
-        let place = cut.pass.backtrace;
-        self.findings
-            .extend(findings.into_iter().flatten().map(|finding| finding.with_backtrace(place.clone())));
+        let finding = roundness::finding(&what, &milled, self.comparison.tolerances.diameter);
+        self.findings.extend(finding.map(|finding| finding.with_backtrace(cut.pass.backtrace.clone())));
     }
 
     fn report_depth(&mut self, feature: &Feature, cut: &Cut<'_>, actual: f64) {
@@ -257,13 +252,22 @@ impl Judgement<'_> {
         self.findings.push(place.into_iter().fold(finding, Diagnostic::with_backtrace));
     }
 
-    /// Returns the depth of the full diameter of a cut whose tool's end is unknown: a drill has 118°, a tool that cuts before
-    /// all deeper ones counts as a spot drill, any other as flat.
+    /// Returns the depth of the full diameter of a cut whose tool's end is unknown: a drill has 118°, a tool that may make a
+    /// countersink its angle, one that cuts before all deeper ones counts as a spot drill, any other as flat.
     pub(super) fn unknown_full_depth(&self, cut: &Cut<'_>, diameter: f64) -> f64 {
         let is_same = |other: &&Cut<'_>| std::ptr::eq(other.pass.backtrace, cut.pass.backtrace);
         let is_first = self.near.iter().take_while(|other| !is_same(other)).all(|other| other.tip <= cut.tip);
-        let point = match cut.kind {
-            Some(ToolKind::Drill) => PointShape::DRILL,
+        let tolerances = self.comparison.tolerances;
+        let is_made = |feature: &&Feature| {
+            let deep = cut.depth_of(feature).map(|depth| (depth - feature.bottom()).abs());
+            cut.mismatch(feature, tolerances).is_some()
+                && !deep.is_some_and(|off| exceeds(off, tolerances.depth))
+        };
+        let countersinks = self.nominal.features.iter().filter(|f| f.kind == FeatureKind::Countersink);
+        let angle = countersinks.filter(is_made).find_map(|feature| feature.angle);
+        let point = match (cut.kind, angle) {
+            (Some(ToolKind::Drill), _) => PointShape::DRILL,
+            (_, Some(angle)) => PointShape::Pointed(Deg(angle)),
             _ if is_first => PointShape::SPOT_DRILL,
             _ => PointShape::Flat,
         };

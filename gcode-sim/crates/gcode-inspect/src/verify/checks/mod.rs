@@ -29,6 +29,7 @@ pub(super) mod stock;
 mod stopped;
 mod threads;
 mod through;
+mod tool_idle;
 mod tool_kinds;
 mod tool_short;
 mod tools;
@@ -73,6 +74,7 @@ pub(super) const ALL: &[Check] = &[
     row_missing::check,   // row-missing
     air::check,           // hole-in-air
     cycle_in_air::check,  // cycle-in-air
+    tool_idle::check,     // tool-cuts-nothing
     through::check,       // hole-through
     tool_short::check,    // tool-short
     stopped::check,       // hole-missing

@@ -59,10 +59,9 @@ fn finding(mismatch: &LengthMismatch, limits: &ProcessLimits, machine: &Machine)
         }
     };
     let message = format!(
-        "T{tool}, {} mm long, cuts {how}: its tip is {} mm {} than programmed",
+        "T{tool}, {} mm long, cuts {how}: its tip is {} than programmed",
         round_thousandth(length),
-        round_thousandth(excess.abs()),
-        if excess > 0.0 { "deeper" } else { "higher" }
+        deviation_of_tip(excess)
     );
     let help = match limits.tools.first().filter(|_| limits.tool_process(Some(tool)).is_none()) {
         Some(other) => format!("use the job's tool, T{}, or {help}", other.number),
@@ -74,9 +73,14 @@ fn finding(mismatch: &LengthMismatch, limits: &ProcessLimits, machine: &Machine)
         .with_backtrace(mismatch.backtrace.clone())
 }
 
+/// Returns how far the tip of a tool is off, `2 mm higher`, by its length minus its offset.
+pub(super) fn deviation_of_tip(excess: f64) -> String {
+    format!("{} mm {}", round_thousandth(excess.abs()), if excess > 0.0 { "deeper" } else { "higher" })
+}
+
 /// Returns true if the tool's holes miss the nominal depth, and half of them would not with the tip at the programmed
 /// point. A through hole has no nominal depth: there the tip is deeper than programmed.
-fn explains(comparison: &Comparison<'_>, mismatch: &LengthMismatch) -> bool {
+pub(super) fn explains(comparison: &Comparison<'_>, mismatch: &LengthMismatch) -> bool {
     let tolerance = comparison.tolerances.depth;
     let is_right = |(depth, nominal): (f64, &Hole)| match nominal.through {
         true => !exceeds(nominal.depth, depth) && !exceeds(depth, longest_break_through(nominal)),

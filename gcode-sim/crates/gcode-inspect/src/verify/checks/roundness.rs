@@ -3,21 +3,13 @@ use super::*;
 use crate::findings::HOLE_ROUNDNESS;
 use crate::holes::MilledCut;
 
+/// Judges the circle that finishes each milled hole. The check on features covers the holes that have any.
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
-    let limit = inspection.comparison.tolerances.diameter;
-    add_for_circles(inspection, findings, |what, cut| finding(what, cut, limit));
-}
-
-/// Adds the findings on the circle that finishes each milled hole. The check on features covers the holes that have any.
-pub(super) fn add_for_circles(
-    inspection: &HoleInspection<'_>,
-    findings: &mut HoleFindings,
-    finding: impl Fn(&str, &MilledCut) -> Option<Diagnostic>,
-) {
     let comparison = &inspection.comparison;
     for (pair, _, drilled) in comparison.matched().filter(|(_, nominal, _)| nominal.features.is_empty()) {
         let Some(cut) = drilled.finishing_cut.milled else { continue };
-        if let Some(finding) = finding(&format!("hole {}", comparison.id(pair.nominal)), &cut) {
+        let what = format!("hole {}", comparison.id(pair.nominal));
+        if let Some(finding) = finding(&what, &cut, comparison.tolerances.diameter) {
             findings.add(Subject::Nominal(pair.nominal), finding.with_backtrace(drilled.backtrace.clone()));
         }
     }
