@@ -36,6 +36,9 @@ pub(super) struct Case<'a> {
 /// Blocks of the request around those of the macro: the call and M30.
 const OWN_BLOCKS: u64 = 2;
 
+/// Largest coordinate of a start, mm.
+const START: f64 = 10_000.0;
+
 /// Largest number of blocks of a run.
 const MAX_BLOCKS: u64 = 100_000;
 
@@ -83,6 +86,12 @@ impl Case<'_> {
         let place = Quantity::ALL.iter().position(|one| *one == quantity).unwrap_or_default() as u32;
         let first = if (90..=120).contains(&self.job.macros.common) { 130 } else { 101 };
         first + place
+    }
+
+    /// Returns the variables of the start in X and Y.
+    fn start_variables(&self) -> [u32; 2] {
+        let last = self.variable(Quantity::ALL[Quantity::ALL.len() - 1]);
+        [last + 1, last + 2]
     }
 
     /// Returns the macro's call with every quantity as a variable.
@@ -148,7 +157,21 @@ impl Case<'_> {
                 ..ClaimReport::default()
             });
         }
+        claims.push(self.rapids(&bounds));
         Ok(claims)
+    }
+
+    /// Returns the claim on rapid moves.
+    fn rapids(&self, bounds: &CaseBounds) -> ClaimReport {
+        let (clearance, share) = bounds.clearance();
+        let away = clearance.filter(|clearance| *clearance > 0.0);
+        let words = away.map_or_else(
+            || "rapids stay outside the part".to_owned(),
+            |away| format!("rapids go outwards first, then stay {} away from the part", (away * 1e3).floor() / 1e3),
+        );
+        let verdict = if away.is_some() { Verdict::Proved } else { Verdict::Undecided };
+        let proved_share = if away.is_some() { 1.0 } else { share };
+        ClaimReport { claim: words, verdict: verdict.into(), proved_share, bound: away, ..ClaimReport::default() }
     }
 
     /// Bounds the position over all boxes.
@@ -158,14 +181,18 @@ impl Case<'_> {
         // A rotary that rolls over ends whole turns away, in the same place.
         request.settings.rolls_over = [false; MAX_AXES];
         let axes = self.axes(&request.settings)?;
-        let controls = Controls { request, call: controls.call.clone(), programs: controls.programs };
+        let [x, y] = self.start_variables();
+        let call = format!("G90 G00 X#{x} Y#{y}\n{}", controls.call);
+        let controls = Controls { request, call, programs: controls.programs };
         let range = |quantity: Quantity| {
             let (low, high) = self.limits(quantity);
             // A number is a range of two doubles, so that it stays a quantity of the formulas.
             let high = if low == high { high.next_up() } else { high };
             format!("#{}={low}..{high}", self.variable(quantity))
         };
-        let ranges = Quantity::ALL.map(range);
+        let mut ranges = Quantity::ALL.map(range).to_vec();
+        // The tool starts anywhere.
+        ranges.extend([x, y].map(|variable| format!("#{variable}=-{START}..{START}")));
         let limits = Limits { blocks: MAX_BLOCKS };
         let mut trace = trace(&controls, &ranges, limits, &watch).map_err(|error| error.to_string())?;
         let input = |quantity: Quantity| {
@@ -181,6 +208,8 @@ impl Case<'_> {
             depth: input(Quantity::Depth)?,
             axis: self.hole.axis,
             reach: self.job.machine.head.pivot + self.tool.length,
+            tool_radius: self.tool.diameter / 2.0,
+            heights: [self.job.machine.clearance(), self.job.machine.retract()],
             sign: f64::from(self.job.machine.rotary.sign),
         };
         let divided: Vec<usize> = (0..Quantity::ALL.len())

@@ -8,6 +8,7 @@ mod case;
 mod hole_path;
 mod over;
 mod position;
+mod rapids;
 pub mod report;
 mod sample;
 mod statements;

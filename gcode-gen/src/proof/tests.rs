@@ -57,7 +57,9 @@ fn every_pin_hole_is_as_near_as_rounding_allows() {
     let found = claims[1].found.as_ref().unwrap().0;
     assert!(found > 0.01 && found < bound, "{found}");
     assert!((0.000_707..0.000_708).contains(&claims[2].bound.unwrap()), "{:?}", claims[2].bound);
-    assert!(claims[4].claim.contains("at most 91 blocks"), "{verdicts:?}");
+    // The clearance of the job is 2 mm, and the words are off by less than 0.001.
+    assert!((1.998..2.0).contains(&claims[3].bound.unwrap()), "{:?}", claims[3]);
+    assert!(claims[5].claim.contains("at most 91 blocks"), "{verdicts:?}");
 }
 
 #[test]
@@ -97,6 +99,19 @@ fn a_head_that_is_set_wrong_is_refuted() {
     let twin = ("#140=ROUND[#25*1000.]/1000.", "#140=ROUND[#25*1000.]/1000.+0.019");
     let claims = proved(&job(), twin, &over, 0.0025);
     assert_eq!(claims[0].verdict, VerdictName::Refuted, "{:?}", claims[0]);
+}
+
+/// A rapid to the bottom's side of the surface, and one that goes to the retract point at once, through the part.
+#[test]
+fn rapids_through_the_part_are_not_proved() {
+    for (from, to) in [
+        ("\nX[#18+[#17+#3]*#26] Y[#24+[#17+#3]*#27]\nG01", "\nX[#18+[#17-#3]*#26] Y[#24+[#17-#3]*#27]\nG01"),
+        ("X[[#5001+#28+ABS[#5001-#28]]/2] Y[[#5002+#29+ABS[#5002-#29]]/2] Z0.", "X#28 Y#29 Z0."),
+    ] {
+        let claims = proved(&job(), (from, to), &PART, 0.035);
+        let rapids = claims.iter().find(|claim| claim.claim.starts_with("rapids")).unwrap();
+        assert_eq!(rapids.verdict, VerdictName::Undecided, "{to}: {rapids:?}");
+    }
 }
 
 #[test]
