@@ -1,23 +1,23 @@
 //! One case of a proof: the call of the macro for one direction and one tool, with the quantities that are left open.
 use std::time::Duration;
 
-use gcode_control::{Control, Limits};
+use gcode_control::Limits;
 use gcode_inspect::machine::Machine;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::MAX_AXES;
 use gcode_part::job::{AxisDirection, HeadKind, HoleSpec, PinHoles, Tool};
-use gcode_prove::{Ask, Setup, Verdict, Watch, prove, trace};
+use gcode_prove::{Ask, Verdict, Watch, prove, trace};
 use gcode_session::Request;
 
 use super::ProofRequest;
 use super::boxes::CaseBounds;
+use super::controls::Controls;
 use super::hole_path::PinAxes;
 use super::over::{Over, Quantity};
 use super::position::NominalHole;
-use super::report::{CaseReport, ClaimReport, Point, RangeReport, named};
+use super::report::{CaseReport, ClaimReport, Point, RangeReport, named, ranges_of};
 use super::sample::{SampledHole, sampled};
 use super::statements::Statements;
-use crate::check::Programs;
 use crate::families::hole_arguments;
 use crate::nc::number;
 
@@ -42,35 +42,12 @@ const START: f64 = 10_000.0;
 /// Largest number of blocks of a run.
 const MAX_BLOCKS: u64 = 100_000;
 
-/// Source of controls that run the call.
-struct Controls<'a> {
-    request: Request,
-    call: String,
-    programs: &'a crate::package::Package,
-}
-
-impl<'a> Setup for Controls<'a> {
-    type Library = Programs<'a>;
-
-    fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
-        let mut request = self.request.clone();
-        for (key, value) in settings {
-            request.settings.set(key, value).map_err(|error| error.to_string())?;
-        }
-        gcode_session::set_up(&request, Some(&self.call)).map_err(|error| error.to_string())
-    }
-
-    fn library(&self) -> Programs<'a> {
-        Programs(self.programs)
-    }
-}
-
 impl Case<'_> {
     /// Proves the claims of the case.
     pub(super) fn prove(&self) -> Result<CaseReport, String> {
         let machine = Machine::parse(&self.request.package.machine).map_err(|error| error.to_string())?;
         let request = Request::new("O9000.nc", *b"O9000\nM30\n", machine);
-        let controls = Controls { request, call: self.call(), programs: self.request.package };
+        let controls = Controls { request, call: Some(self.call()), programs: self.request.package };
         let mut claims = self.positions(&controls)?;
         claims.extend(self.statements(&controls)?);
         let axis = match self.hole.axis {
@@ -78,7 +55,7 @@ impl Case<'_> {
             AxisDirection::Axial => "axial",
         };
         let tool = format!("T{} {}", self.tool.number, self.tool.name());
-        Ok(CaseReport::new(format!("{axis} holes, {tool}"), controls.call, claims))
+        Ok(CaseReport::new(format!("{axis} holes, {tool}"), self.call(), claims))
     }
 
     /// Returns the variable of a quantity; those of the macros' own are left alone.
@@ -182,7 +159,7 @@ impl Case<'_> {
         request.settings.rolls_over = [false; MAX_AXES];
         let axes = self.axes(&request.settings)?;
         let [x, y] = self.start_variables();
-        let call = format!("G90 G00 X#{x} Y#{y}\n{}", controls.call);
+        let call = Some(format!("G90 G00 X#{x} Y#{y}\n{}", self.call()));
         let controls = Controls { request, call, programs: controls.programs };
         let range = |quantity: Quantity| {
             let (low, high) = self.limits(quantity);
@@ -308,18 +285,6 @@ impl Case<'_> {
     }
 }
 
-/// Returns `MC3001–MC3015, MC3017`.
-fn ranges_of(codes: &[String]) -> String {
-    let numbers: Vec<u32> = codes.iter().filter_map(|code| code[2..].parse().ok()).collect();
-    let runs = numbers.chunk_by(|one, next| next - one == 1);
-    let runs = runs.filter_map(|run| match run {
-        [one] => Some(format!("{one}")),
-        [first, .., last] => Some(format!("{first}–{last}")),
-        [] => None,
-    });
-    runs.collect::<Vec<_>>().join(", ")
-}
-
 /// Returns a bound with four digits, not below it.
 fn rounded_up(bound: f64) -> f64 {
     let scaled = (bound * 1e5).ceil();
@@ -337,11 +302,5 @@ mod tests {
         assert_eq!(rounded_up(0.019_271), 0.01928);
         assert_eq!(rounded_up(0.019_27), 0.01927);
         assert!([1e-9, 0.1 + 1e-17, 0.034_91].into_iter().all(|bound| rounded_up(bound) >= bound));
-    }
-
-    #[test]
-    fn neighbouring_alarms_are_one_range() {
-        let codes = ["MC3001", "MC3002", "MC3003", "MC3017"].map(str::to_owned);
-        assert_eq!(ranges_of(&codes), "3001–3003, 3017");
     }
 }

@@ -57,8 +57,9 @@ fn every_pin_hole_is_as_near_as_rounding_allows() {
     let found = claims[1].found.as_ref().unwrap().0;
     assert!(found > 0.01 && found < bound, "{found}");
     assert!((0.000_707..0.000_708).contains(&claims[2].bound.unwrap()), "{:?}", claims[2].bound);
-    // The clearance of the job is 2 mm, and the words are off by less than 0.001.
-    assert!((1.998..2.0).contains(&claims[3].bound.unwrap()), "{:?}", claims[3]);
+    // The clearance of 2 mm, less the rounding: (0.0005 + 0.0005)·√2 between the two ends, 0.0005·√2 of the nearer one, and 3 mm of
+    // the tool tilted by 0.0005°.
+    assert!((1.9978..1.9979).contains(&claims[3].bound.unwrap()), "{:?}", claims[3]);
     assert!(claims[5].claim.contains("at most 91 blocks"), "{verdicts:?}");
 }
 
@@ -66,8 +67,16 @@ fn every_pin_hole_is_as_near_as_rounding_allows() {
 fn an_axial_hole_needs_no_angle() {
     let Job::PinHoles(mut axial) = job() else { unreachable!() };
     axial.holes[0].axis = AxisDirection::Axial;
-    let claims = proved(&Job::PinHoles(axial), ("", ""), &PART, 0.035);
-    assert!(claims.iter().all(|claim| claim.verdict == VerdictName::Proved), "{claims:?}");
+    let axial = Job::PinHoles(axial);
+    let claims = proved(&axial, ("", ""), &PART, 0.035);
+    let (rapids, others): (Vec<_>, Vec<_>) = claims.iter().partition(|claim| claim.claim.contains("rapids"));
+    assert!(others.iter().all(|claim| claim.verdict == VerdictName::Proved), "{claims:?}");
+    // Near the equator the edge of the tool isn't followed.
+    assert!(rapids[0].verdict == VerdictName::Undecided && rapids[0].proved_share > 0.5, "{rapids:?}");
+    let over = ["hole.radius=0..450", PART[1], PART[2], PART[3]];
+    let claims = proved(&axial, ("", ""), &over, 0.035);
+    // 2 mm, less 1200/√500·√(2·0.0005) = 1.697 by which the surface can rise within half an increment, less 0.0021.
+    assert!((0.300..0.302).contains(&claims[3].bound.unwrap()), "{:?}", claims[3]);
 }
 
 /// The printed height, the angle of the wrong normal, whole degrees of B, its wrong sense, a hole 0.02 mm aside, and a cosine for
