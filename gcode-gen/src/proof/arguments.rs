@@ -32,8 +32,12 @@ impl ArgumentRange {
             let limit = |limit: &str| limit.trim().parse::<f64>().ok().filter(|limit| limit.abs() <= 1e5);
             let mut letters = letter.chars();
             let letter = letters.next().filter(|letter| letter.is_ascii_uppercase() && *letter != 'P')?;
-            let range =
-                Self { program: program.parse().ok()?, letter, low: limit(low)? + 0.0, high: limit(high)? + 0.0 };
+            let range = Self {
+                program: program.parse().ok()?,
+                letter,
+                low: limit(low)? + 0.0,
+                high: limit(high)? + 0.0,
+            };
             letters.next().is_none().then_some(range)
         });
         let range = parsed.ok_or_else(unreadable)?;
@@ -55,7 +59,9 @@ impl ArgumentRange {
 pub(super) fn prove_arguments(request: &ProofRequest<'_>) -> Result<JobProof, String> {
     let overs = request.over.iter().map(|text| ArgumentRange::parse(text)).collect::<Result<Vec<_>, _>>()?;
     if overs.is_empty() {
-        return Err("nothing is left open: give --over, a macro's argument such as 'O8301.A=1..10'".to_owned());
+        return Err(
+            "nothing is left open: give --over, a macro's argument such as 'O8301.A=1..10'".to_owned()
+        );
     }
     if let Some(twice) =
         overs.iter().enumerate().find(|(index, over)| overs[..*index].iter().any(|o| o.key() == over.key()))
@@ -70,7 +76,10 @@ pub(super) fn prove_arguments(request: &ProofRequest<'_>) -> Result<JobProof, St
         let free = free_locals(&main.text);
         let variables: Vec<u32> = overs.iter().zip(free).map(|(_, variable)| variable).collect();
         if variables.len() < overs.len() {
-            return Err(format!("{}: more arguments than free local variables: give fewer --over", stem(main.number)));
+            return Err(format!(
+                "{}: more arguments than free local variables: give fewer --over",
+                stem(main.number)
+            ));
         }
         let (text, used) = opened(&main.text, &overs, &variables);
         if used.contains(&true) {
@@ -105,7 +114,10 @@ fn prove_main(
     let controls = Controls { request: run, call: None, programs: package };
     let alarms = Statements::of(package).alarms;
     let ask = Ask {
-        ranges: ranges.iter().map(|(range, variable)| format!("#{variable}={}..{}", range.low, range.high)).collect(),
+        ranges: ranges
+            .iter()
+            .map(|(range, variable)| format!("#{variable}={}..{}", range.low, range.high))
+            .collect(),
         // The second claim asks whether any run ends: without one the first says nothing.
         claims: vec![format!("alarm {}", alarms.join("|")), "1 EQ 1".to_owned()],
         threads: request.threads,
@@ -118,7 +130,8 @@ fn prove_main(
     let mut verdict = claim.verdict;
     if verdict == Verdict::Proved && answer.never_ends {
         verdict = Verdict::Undecided;
-        reasons.push("every run is stopped by an alarm, so that the rest of the macro isn't reached".to_owned());
+        reasons
+            .push("every run is stopped by an alarm, so that the rest of the macro isn't reached".to_owned());
     }
     let is_open = verdict == Verdict::Undecided;
     let key_of = |variable: u32| {
@@ -133,9 +146,10 @@ fn prove_main(
             (_, true) => 0.0,
             _ => 1.0 - answer.undecided_share,
         },
-        counterexample: claim.counterexample.as_ref().map(|values| {
-            values.iter().map(|(variable, value)| (key_of(*variable), *value)).collect()
-        }),
+        counterexample: claim
+            .counterexample
+            .as_ref()
+            .map(|values| values.iter().map(|(variable, value)| (key_of(*variable), *value)).collect()),
         reasons: if is_open { reasons } else { Vec::new() },
         ..ClaimReport::default()
     };
@@ -173,7 +187,8 @@ fn opened(text: &str, overs: &[ArgumentRange], variables: &[u32]) -> (String, Ve
 
 /// Iterates over local variables that a program doesn't name, the highest first.
 fn free_locals(text: &str) -> impl Iterator<Item = u32> {
-    let number = |rest: &str| rest.split(|c: char| !c.is_ascii_digit()).next().and_then(|digits| digits.parse().ok());
+    let number =
+        |rest: &str| rest.split(|c: char| !c.is_ascii_digit()).next().and_then(|digits| digits.parse().ok());
     let named: BTreeSet<u32> = text.split('#').skip(1).filter_map(number).collect();
     (1..=33).rev().filter(move |variable| !named.contains(variable))
 }
@@ -195,7 +210,8 @@ mod tests {
     #[test]
     fn calls_have_variables_for_what_is_left_open() {
         let text = "O1\n#33=1\nN10 G65 P8301 D500. A5. Z12. (A HOLE)\nG65 P8302 A5.\nX1.\n";
-        let overs = [ArgumentRange::parse("O8301.A=1..2").unwrap(), ArgumentRange::parse("O8301.Q=1..2").unwrap()];
+        let overs =
+            [ArgumentRange::parse("O8301.A=1..2").unwrap(), ArgumentRange::parse("O8301.Q=1..2").unwrap()];
         let variables: Vec<u32> = free_locals(text).take(2).collect();
         assert_eq!(variables, [32, 31]);
         let (opened, used) = opened(text, &overs, &variables);

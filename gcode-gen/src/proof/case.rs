@@ -144,11 +144,22 @@ impl Case<'_> {
         let away = clearance.filter(|clearance| *clearance > 0.0);
         let words = away.map_or_else(
             || "rapids stay outside the part".to_owned(),
-            |away| format!("rapids go outwards first, then stay {} away from the part", (away * 1e3).floor() / 1e3),
+            |away| {
+                format!(
+                    "rapids go outwards first, then stay {} away from the part",
+                    (away * 1e3).floor() / 1e3
+                )
+            },
         );
         let verdict = if away.is_some() { Verdict::Proved } else { Verdict::Undecided };
         let proved_share = if away.is_some() { 1.0 } else { share };
-        ClaimReport { claim: words, verdict: verdict.into(), proved_share, bound: away, ..ClaimReport::default() }
+        ClaimReport {
+            claim: words,
+            verdict: verdict.into(),
+            proved_share,
+            bound: away,
+            ..ClaimReport::default()
+        }
     }
 
     /// Bounds the position over all boxes.

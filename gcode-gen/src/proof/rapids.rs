@@ -60,7 +60,9 @@ pub(super) fn clearance(
     for passage in path.passages.as_ref()? {
         let (from, to) = match *passage {
             Passage::Rapid { from, to } => (from, to),
-            Passage::HeadTurn { at: [_, y] } if is_outward_so_far && is_above(forms, y, tip, conditions) => continue,
+            Passage::HeadTurn { at: [_, y] } if is_outward_so_far && is_above(forms, y, tip, conditions) => {
+                continue;
+            }
             Passage::HeadTurn { .. } => return None,
         };
         let outward = fall(forms, from, to, conditions);
@@ -156,7 +158,8 @@ fn along_hole(forms: &mut ExactForms<'_>, at: [NodeId; 2], tip: &Tip<'_>) -> Opt
 /// Returns the distance of a point above the highest metal under an axial tool, if it is one of those that the macro gives.
 fn above_edge(forms: &mut ExactForms<'_>, at: [NodeId; 2], tip: &Tip<'_>, edge: &Edge) -> Option<f64> {
     let [x, y] = at.map(|coordinate| forms.form(coordinate).real);
-    let (aside, lost) = forms.combine(&[(1.0, &[&x]), (-tip.reach, &[tip.directions[0]]), (-1.0, &[tip.radius])])?;
+    let (aside, lost) =
+        forms.combine(&[(1.0, &[&x]), (-tip.reach, &[tip.directions[0]]), (-1.0, &[tip.radius])])?;
     let aside = forms.magnitude(&aside) + lost + forms.error(at[0]);
     let (height, lost) = forms.combine(&[(1.0, &[&y]), (-tip.reach, &[tip.directions[1]])])?;
     let (height, rest) = forms.without_small(&height, SMALL_PRODUCT);

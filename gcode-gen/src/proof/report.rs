@@ -192,7 +192,13 @@ mod tests {
         let claim = |verdict: Verdict| ClaimReport { verdict: verdict.into(), ..ClaimReport::default() };
         let case = |verdicts: &[Verdict]| {
             let claims = verdicts.iter().map(|verdict| claim(*verdict)).collect();
-            JobProof::new(RangeReport::new(), vec![CaseReport::new(String::new(), String::new(), claims)], Vec::new(), 0.0).verdict
+            JobProof::new(
+                RangeReport::new(),
+                vec![CaseReport::new(String::new(), String::new(), claims)],
+                Vec::new(),
+                0.0,
+            )
+            .verdict
         };
         assert_eq!(case(&[Verdict::Proved, Verdict::Proved]), VerdictName::Proved);
         assert_eq!(case(&[Verdict::Proved, Verdict::Undecided]), VerdictName::Undecided);

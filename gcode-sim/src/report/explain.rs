@@ -169,7 +169,10 @@ mod tests {
             assert_eq!(find(spelling).unwrap().code, "MC3000", "{spelling}");
         }
         assert_eq!(find("SIM1").unwrap().code, "SIM0001");
-        assert!(find("claim").unwrap().text.contains("claims.toml") && !find("claim").unwrap().text.contains("## "));
+        assert!(
+            find("claim").unwrap().text.contains("claims.toml")
+                && !find("claim").unwrap().text.contains("## ")
+        );
         for unknown in ["PS9999", "", "PS", "X", "PS-1", "€1"] {
             assert!(find(unknown).is_none(), "{unknown}");
         }

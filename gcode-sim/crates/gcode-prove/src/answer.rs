@@ -323,7 +323,12 @@ impl<S: Setup> Prover<'_, S> {
         });
         results.into_iter().collect::<Result<(), _>>()?;
         let rest = shared.into_rest();
-        if proves && !question.conditions.is_empty() && !rest.is_included && rest.boxes_left == 0 && rest.refuted == 0 {
+        if proves
+            && !question.conditions.is_empty()
+            && !rest.is_included
+            && rest.boxes_left == 0
+            && rest.refuted == 0
+        {
             return Err(RequestError::NothingLeft.into());
         }
         self.take(&rest, group, &question, settings)

@@ -390,8 +390,7 @@ impl<L: Library> Tree<L> {
     fn block(&mut self, open: &mut Expansion, watch: &Watch) -> Option<Progress> {
         let blocks = self.run.control().blocks();
         let limits = Limits { blocks: self.question.max_blocks };
-        if blocks.is_multiple_of(BLOCKS_PER_LOOK)
-            && (watch.is_over() || blocks - open.blocks > self.patience)
+        if blocks.is_multiple_of(BLOCKS_PER_LOOK) && (watch.is_over() || blocks - open.blocks > self.patience)
         {
             return Some(Progress::Stopped);
         }
