@@ -98,12 +98,29 @@ impl Enclosures {
             let mut enclosures = self.clone();
             let sign = Condition { relation, left: argument, right: Arena::ZERO };
             // A sign that no point has decides nothing.
-            enclosures.assume(arena, sign).then(|| enclosures.decide_with(arena, condition, signs - 1))
+            let is_possible = enclosures.assume(arena, sign);
+            is_possible.then(|| {
+                enclosures.forget_magnitude(arena, argument);
+                enclosures.decide_with(arena, condition, signs - 1)
+            })
         };
         match (of_sign(Relation::Ge), of_sign(Relation::Lt)) {
             (Some(one), Some(other)) => one.filter(|_| one == other),
             (Some(one), None) | (None, Some(one)) => one,
             (None, None) => None,
+        }
+    }
+
+    /// Forgets the forms of a magnitude and of all that is computed of it, so that the sign of its argument counts.
+    fn forget_magnitude(&mut self, arena: &Arena, argument: NodeId) {
+        let Some(magnitude) = arena.find_unary(Unary::Abs, argument) else { return };
+        let mut is_forgotten = vec![false; self.forms.len()];
+        for (index, form) in self.forms.iter_mut().enumerate().skip(magnitude.index()) {
+            let node = NodeId(index as u32);
+            if node == magnitude || arena.operands(node).any(|operand| is_forgotten[operand.index()]) {
+                is_forgotten[index] = true;
+                *form = None;
+            }
         }
     }
 
