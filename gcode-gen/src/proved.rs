@@ -117,10 +117,20 @@ mod tests {
             let (over, limit) = (texts(entry, "over"), Duration::from_secs(300));
             let (over, tolerances, clock) = (&over[..], &tolerances[..], &clock);
             let proof = prove_job(&ProofRequest { job, package, over, tolerances, threads, clock, limit });
-            return proof.unwrap().verdict == VerdictName::Proved;
+            let wanted = texts(entry, "claims");
+            let proof = proof.unwrap();
+            let claims = proof.cases.iter().flat_map(|case| &case.claims);
+            let mut own = claims.filter(|claim| wanted.iter().any(|wanted| claim.claim.starts_with(wanted)));
+            assert!(own.clone().count() >= wanted.len() * proof.cases.len());
+            return own.all(|claim| claim.verdict == VerdictName::Proved);
         }
         let machine = Machine::parse(&package.machine).unwrap();
-        let request = Request::new("O9000.nc", *b"O9000\nM30\n", machine);
+        let mut request = Request::new("O9000.nc", *b"O9000\nM30\n", machine);
+        request.variables = texts(entry, "set")
+            .iter()
+            .map(|text| text.trim_start_matches('#').split_once('=').unwrap())
+            .map(|(variable, value)| (variable.parse().unwrap(), value.parse().unwrap()))
+            .collect();
         let controls = Controls(request, entry.way["call"].as_str().unwrap(), package);
         let ask = Ask {
             ranges: texts(entry, "range"),

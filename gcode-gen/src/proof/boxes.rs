@@ -1,7 +1,8 @@
 //! Bounds over all boxes of a case: where none is found, or a tolerance isn't kept, a box is divided.
 use std::collections::BinaryHeap;
 
-use gcode_enclosure::{Domain, Enclosures, Interval};
+use gcode_enclosure::{Domain, Enclosures, Interval, Node};
+use gcode_part::job::AxisDirection;
 use gcode_prove::{Trace, TracedEnd, TracedWay};
 
 use super::hole_path::{HolePath, PinAxes};
@@ -19,6 +20,9 @@ pub(super) struct CaseBounds {
 
 /// Largest number of boxes.
 const MAX_BOXES: usize = 3000;
+
+/// Number of boxes at which none is divided any more for the rapid moves alone.
+const MAX_BOXES_FOR_RAPIDS: usize = 400;
 
 /// Relative width of a range that isn't divided.
 const LEAST_WIDTH: f64 = 1e-9;
@@ -80,10 +84,16 @@ impl CaseBounds {
             let order = all.share(&domain) * found.map_or(f64::MAX, |found| found.phi);
             Pending { order, domain, found }
         };
-        pending.push(examine(whole, &mut all));
-        let mut count = 1;
+        let mut count = 0;
+        for part in at_tool_radius(trace, hole, &whole) {
+            count += 1;
+            pending.push(examine(part, &mut all));
+        }
         while let Some(Pending { domain, found, .. }) = pending.pop() {
-            let is_kept = found.is_some_and(|found| found.phi <= tolerance);
+            let is_clear = |found: PositionBound| {
+                found.clearance.is_some_and(|clearance| clearance > 0.0) || count >= MAX_BOXES_FOR_RAPIDS
+            };
+            let is_kept = found.is_some_and(|found| found.phi <= tolerance && is_clear(found));
             let parts =
                 if is_kept || count >= MAX_BOXES || is_over() { None } else { divide(&domain, divided) };
             let Some(parts) = parts else {
@@ -107,7 +117,7 @@ impl CaseBounds {
         domain: &Domain,
     ) -> Option<PositionBound> {
         let arena = trace.arena();
-        let mut worst = PositionBound { phi: 0.0, depth: 0.0 };
+        let mut worst = PositionBound { phi: 0.0, depth: 0.0, clearance: Some(f64::INFINITY) };
         for (way, path) in followed {
             let mut enclosures = Enclosures::with_degree(domain.clone(), 0);
             if !way.conditions.iter().all(|condition| enclosures.assume(arena, *condition)) {
@@ -115,9 +125,11 @@ impl CaseBounds {
             }
             match path {
                 Ok(path) => {
-                    let found = bound(arena, &mut enclosures, path, hole, arena.semantics().zeroes_residues)?;
+                    let zeroes = arena.semantics().zeroes_residues;
+                    let found = bound(arena, &mut enclosures, path, hole, zeroes, &way.conditions)?;
                     worst.phi = worst.phi.max(found.phi);
                     worst.depth = worst.depth.max(found.depth);
+                    worst.clearance = worst.clearance.zip(found.clearance).map(|(a, b)| a.min(b));
                 }
                 Err(what) => {
                     if !self.unfollowed.contains(what) {
@@ -160,6 +172,16 @@ impl CaseBounds {
         all?.into_iter().max_by(|a, b| a.1.phi.total_cmp(&b.1.phi))
     }
 
+    /// Returns the least clearance of rapids, and the share of the ranges in which one is known.
+    pub(super) fn clearance(&self) -> (Option<f64>, f64) {
+        let of = |found: &Option<PositionBound>| found.and_then(|found| found.clearance);
+        let known = self.boxes.iter().filter_map(|(domain, found)| Some((domain, of(found)?)));
+        let share = known.clone().fold(0.0, |sum, (domain, _)| sum + self.share(domain)).min(1.0);
+        let is_known = self.boxes.iter().all(|(_, found)| of(found).is_some());
+        let least = known.map(|(_, clearance)| clearance).fold(f64::INFINITY, f64::min);
+        (Some(least).filter(|least| is_known && least.is_finite()), share)
+    }
+
     /// Returns the largest box without a bound within a tolerance.
     pub(super) fn largest_left(&self, tolerance: f64) -> Option<&Domain> {
         let left = self.boxes.iter().filter(|(_, found)| !found.is_some_and(|found| found.phi <= tolerance));
@@ -170,6 +192,20 @@ impl CaseBounds {
 /// Returns true for a range of more than a few doubles.
 pub(super) fn is_range(range: Interval) -> bool {
     range.width() > range.magnitude() * 1e-12 + 1e-300
+}
+
+/// Returns the whole, divided where an axial tool reaches the axis.
+fn at_tool_radius(trace: &Trace, hole: &NominalHole, whole: &Domain) -> Vec<Domain> {
+    match (hole.axis, trace.arena().node(hole.radius)) {
+        (AxisDirection::Axial, Node::Input(input)) => {
+            let range = whole.range(input);
+            let inside = Interval::new(range.lo(), range.hi().min(hole.tool_radius));
+            let outside = Interval::new(range.lo().max(hole.tool_radius.next_up()), range.hi());
+            let parts = [inside, outside].into_iter().filter(|part| !part.is_empty());
+            parts.map(|part| whole.with(input, part)).collect()
+        }
+        _ => vec![whole.clone()],
+    }
 }
 
 /// Divides a box at the input with the largest ratio of its ends.
@@ -221,7 +257,7 @@ mod tests {
     fn shares_count_only_ranges() {
         let whole = Domain::new(vec![Interval::new(0.0, 8.0), Interval::new(5.0, 5.0_f64.next_up())]);
         let half = whole.with(0, Interval::new(0.0, 4.0));
-        let found = |phi| Some(PositionBound { phi, depth: 0.0 });
+        let found = |phi| Some(PositionBound { phi, depth: 0.0, clearance: None });
         let boxes = vec![(half, found(0.01)), (whole.with(0, Interval::new(4.0, 8.0)), found(0.02))];
         let mut all = CaseBounds { boxes, unfollowed: Vec::new(), whole };
         assert_eq!((all.share_within(0.015), all.is_within(0.015)), (0.5, false));

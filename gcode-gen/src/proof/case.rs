@@ -1,23 +1,23 @@
 //! One case of a proof: the call of the macro for one direction and one tool, with the quantities that are left open.
 use std::time::Duration;
 
-use gcode_control::{Control, Limits};
+use gcode_control::Limits;
 use gcode_inspect::machine::Machine;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::MAX_AXES;
 use gcode_part::job::{AxisDirection, HeadKind, HoleSpec, PinHoles, Tool};
-use gcode_prove::{Ask, Setup, Verdict, Watch, prove, trace};
+use gcode_prove::{Ask, Verdict, Watch, prove, trace};
 use gcode_session::Request;
 
 use super::ProofRequest;
 use super::boxes::CaseBounds;
+use super::controls::Controls;
 use super::hole_path::PinAxes;
 use super::over::{Over, Quantity};
 use super::position::NominalHole;
-use super::report::{CaseReport, ClaimReport, Point, RangeReport, named};
+use super::report::{CaseReport, ClaimReport, Point, RangeReport, named, ranges_of};
 use super::sample::{SampledHole, sampled};
 use super::statements::Statements;
-use crate::check::Programs;
 use crate::families::hole_arguments;
 use crate::nc::number;
 
@@ -36,38 +36,18 @@ pub(super) struct Case<'a> {
 /// Blocks of the request around those of the macro: the call and M30.
 const OWN_BLOCKS: u64 = 2;
 
+/// Largest coordinate of a start, mm.
+const START: f64 = 10_000.0;
+
 /// Largest number of blocks of a run.
 const MAX_BLOCKS: u64 = 100_000;
-
-/// Source of controls that run the call.
-struct Controls<'a> {
-    request: Request,
-    call: String,
-    programs: &'a crate::package::Package,
-}
-
-impl<'a> Setup for Controls<'a> {
-    type Library = Programs<'a>;
-
-    fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
-        let mut request = self.request.clone();
-        for (key, value) in settings {
-            request.settings.set(key, value).map_err(|error| error.to_string())?;
-        }
-        gcode_session::set_up(&request, Some(&self.call)).map_err(|error| error.to_string())
-    }
-
-    fn library(&self) -> Programs<'a> {
-        Programs(self.programs)
-    }
-}
 
 impl Case<'_> {
     /// Proves the claims of the case.
     pub(super) fn prove(&self) -> Result<CaseReport, String> {
         let machine = Machine::parse(&self.request.package.machine).map_err(|error| error.to_string())?;
         let request = Request::new("O9000.nc", *b"O9000\nM30\n", machine);
-        let controls = Controls { request, call: self.call(), programs: self.request.package };
+        let controls = Controls { request, call: Some(self.call()), programs: self.request.package };
         let mut claims = self.positions(&controls)?;
         claims.extend(self.statements(&controls)?);
         let axis = match self.hole.axis {
@@ -75,7 +55,7 @@ impl Case<'_> {
             AxisDirection::Axial => "axial",
         };
         let tool = format!("T{} {}", self.tool.number, self.tool.name());
-        Ok(CaseReport::new(format!("{axis} holes, {tool}"), controls.call, claims))
+        Ok(CaseReport::new(format!("{axis} holes, {tool}"), self.call(), claims))
     }
 
     /// Returns the variable of a quantity; those of the macros' own are left alone.
@@ -83,6 +63,12 @@ impl Case<'_> {
         let place = Quantity::ALL.iter().position(|one| *one == quantity).unwrap_or_default() as u32;
         let first = if (90..=120).contains(&self.job.macros.common) { 130 } else { 101 };
         first + place
+    }
+
+    /// Returns the variables of the start in X and Y.
+    fn start_variables(&self) -> [u32; 2] {
+        let last = self.variable(Quantity::ALL[Quantity::ALL.len() - 1]);
+        [last + 1, last + 2]
     }
 
     /// Returns the macro's call with every quantity as a variable.
@@ -148,7 +134,32 @@ impl Case<'_> {
                 ..ClaimReport::default()
             });
         }
+        claims.push(self.rapids(&bounds));
         Ok(claims)
+    }
+
+    /// Returns the claim on rapid moves.
+    fn rapids(&self, bounds: &CaseBounds) -> ClaimReport {
+        let (clearance, share) = bounds.clearance();
+        let away = clearance.filter(|clearance| *clearance > 0.0);
+        let words = away.map_or_else(
+            || "rapids stay outside the part".to_owned(),
+            |away| {
+                format!(
+                    "rapids go outwards first, then stay {} away from the part",
+                    (away * 1e3).floor() / 1e3
+                )
+            },
+        );
+        let verdict = if away.is_some() { Verdict::Proved } else { Verdict::Undecided };
+        let proved_share = if away.is_some() { 1.0 } else { share };
+        ClaimReport {
+            claim: words,
+            verdict: verdict.into(),
+            proved_share,
+            bound: away,
+            ..ClaimReport::default()
+        }
     }
 
     /// Bounds the position over all boxes.
@@ -158,14 +169,18 @@ impl Case<'_> {
         // A rotary that rolls over ends whole turns away, in the same place.
         request.settings.rolls_over = [false; MAX_AXES];
         let axes = self.axes(&request.settings)?;
-        let controls = Controls { request, call: controls.call.clone(), programs: controls.programs };
+        let [x, y] = self.start_variables();
+        let call = Some(format!("G90 G00 X#{x} Y#{y}\n{}", self.call()));
+        let controls = Controls { request, call, programs: controls.programs };
         let range = |quantity: Quantity| {
             let (low, high) = self.limits(quantity);
             // A number is a range of two doubles, so that it stays a quantity of the formulas.
             let high = if low == high { high.next_up() } else { high };
             format!("#{}={low}..{high}", self.variable(quantity))
         };
-        let ranges = Quantity::ALL.map(range);
+        let mut ranges = Quantity::ALL.map(range).to_vec();
+        // The tool starts anywhere.
+        ranges.extend([x, y].map(|variable| format!("#{variable}=-{START}..{START}")));
         let limits = Limits { blocks: MAX_BLOCKS };
         let mut trace = trace(&controls, &ranges, limits, &watch).map_err(|error| error.to_string())?;
         let input = |quantity: Quantity| {
@@ -181,6 +196,8 @@ impl Case<'_> {
             depth: input(Quantity::Depth)?,
             axis: self.hole.axis,
             reach: self.job.machine.head.pivot + self.tool.length,
+            tool_radius: self.tool.diameter / 2.0,
+            heights: [self.job.machine.clearance(), self.job.machine.retract()],
             sign: f64::from(self.job.machine.rotary.sign),
         };
         let divided: Vec<usize> = (0..Quantity::ALL.len())
@@ -279,18 +296,6 @@ impl Case<'_> {
     }
 }
 
-/// Returns `MC3001–MC3015, MC3017`.
-fn ranges_of(codes: &[String]) -> String {
-    let numbers: Vec<u32> = codes.iter().filter_map(|code| code[2..].parse().ok()).collect();
-    let runs = numbers.chunk_by(|one, next| next - one == 1);
-    let runs = runs.filter_map(|run| match run {
-        [one] => Some(format!("{one}")),
-        [first, .., last] => Some(format!("{first}–{last}")),
-        [] => None,
-    });
-    runs.collect::<Vec<_>>().join(", ")
-}
-
 /// Returns a bound with four digits, not below it.
 fn rounded_up(bound: f64) -> f64 {
     let scaled = (bound * 1e5).ceil();
@@ -308,11 +313,5 @@ mod tests {
         assert_eq!(rounded_up(0.019_271), 0.01928);
         assert_eq!(rounded_up(0.019_27), 0.01927);
         assert!([1e-9, 0.1 + 1e-17, 0.034_91].into_iter().all(|bound| rounded_up(bound) >= bound));
-    }
-
-    #[test]
-    fn neighbouring_alarms_are_one_range() {
-        let codes = ["MC3001", "MC3002", "MC3003", "MC3017"].map(str::to_owned);
-        assert_eq!(ranges_of(&codes), "3001–3003, 3017");
     }
 }

@@ -1,7 +1,7 @@
 //! The hole that a way of a program drills: the moves into it, the rotary, and the head's angle.
 use gcode_enclosure::{NodeId, Unary};
 use gcode_lang::motion::AxisIndex;
-use gcode_prove::{MoveKind, Trace, TracedMove, TracedWay};
+use gcode_prove::{MoveKind, Trace, TracedMove, TracedStop, TracedWay};
 
 /// Axes of the machine of a pin-hole job.
 #[derive(Clone, Copy, Debug)]
@@ -14,9 +14,20 @@ pub(super) struct PinAxes {
     pub(super) head: Option<AxisIndex>,
 }
 
-/// Hole of a way, in machine coordinates.
+/// Part of a way before or after the hole, in which the tool isn't in the part's material.
 #[derive(Clone, Copy, Debug)]
+pub(super) enum Passage {
+    /// Rapid move of the head's pivot in X and Y.
+    Rapid { from: [NodeId; 2], to: [NodeId; 2] },
+    /// Turn of the head while its pivot stands.
+    HeadTurn { at: [NodeId; 2] },
+}
+
+/// Hole of a way, in machine coordinates.
+#[derive(Clone, Debug)]
 pub(super) struct HolePath {
+    /// What the tool does before and after the hole, from the macro's start; `None` if it isn't followed.
+    pub(super) passages: Option<Vec<Passage>>,
     /// Head's pivot at the bottom of the hole.
     pub(super) x: NodeId,
     pub(super) y: NodeId,
@@ -71,9 +82,48 @@ impl HolePath {
             }
         };
         let (x, y, rotary) = (position(axes.x)?, position(axes.y)?, position(axes.rotary)?);
+        let passages = passages(trace, way, axes, first);
         let (cosine, sine) = (trace.function(Unary::Cos, angle), trace.function(Unary::Sin, angle));
-        Ok(Self { x, y, rotary, angle, cosine, sine })
+        Ok(Self { passages, x, y, rotary, angle, cosine, sine })
     }
+}
+
+/// Returns what the tool does outside the hole, whose feeds are a move and the next; `None` if Z leaves 0, or if something isn't
+/// followed.
+fn passages(trace: &Trace, way: &TracedWay, axes: PinAxes, hole: usize) -> Option<Vec<Passage>> {
+    let at = |positions: &[Option<NodeId>], axis: AxisIndex| positions.get(axis).copied().flatten();
+    let pivot = |positions: &[Option<NodeId>]| Some([at(positions, axes.x)?, at(positions, axes.y)?]);
+    let mut passages = Vec::new();
+    for (index, one) in way.moves.iter().enumerate() {
+        for _ in way.stops.iter().filter(|stop| stop.moves == index && names_head(&stop.text)) {
+            passages.push(Passage::HeadTurn { at: pivot(&one.from)? });
+        }
+        if index == hole || index == hole + 1 || is_of_request(one) {
+            continue;
+        }
+        let is_in_plane = |positions: &[Option<NodeId>]| {
+            at(positions, axes.z).and_then(|z| trace.arena().as_constant(z)) == Some(0.0)
+        };
+        if !is_in_plane(&one.from) || !is_in_plane(&one.to) {
+            return None;
+        }
+        let (from, to) = (pivot(&one.from)?, pivot(&one.to)?);
+        let turns_head = axes.head.is_some_and(|head| at(&one.from, head) != at(&one.to, head));
+        match (turns_head, from == to) {
+            (true, true) => passages.push(Passage::HeadTurn { at: from }),
+            (true, false) => return None,
+            (false, true) => {}
+            (false, false) => passages.push(Passage::Rapid { from, to }),
+        }
+    }
+    // A stop behind the last move is one after the hole.
+    let is_last = |stop: &TracedStop| stop.moves >= way.moves.len() && names_head(&stop.text);
+    (!way.stops.iter().any(is_last)).then_some(passages)
+}
+
+/// Returns true for a move of the request's own block, which has no number, and not of a macro.
+fn is_of_request(one: &TracedMove) -> bool {
+    one.place.starts_with("MAIN ")
 }
 
 /// Returns true for a message to the operator that has the word HEAD.

@@ -3,11 +3,14 @@
 //! The macro is followed as `gcode-sim prove` follows it; the hole that it drills is compared with the implicit surface and its
 //! gradient, of which the macro's formulas know nothing. Single holes are verified besides: they show how close the bounds are,
 //! and refute what is wrong.
+mod arguments;
 mod boxes;
 mod case;
+mod controls;
 mod hole_path;
 mod over;
 mod position;
+mod rapids;
 pub mod report;
 mod sample;
 mod statements;
@@ -48,7 +51,7 @@ pub struct ProofRequest<'a> {
 /// The reason why the request can't be used.
 pub fn prove_job(request: &ProofRequest<'_>) -> Result<JobProof, String> {
     let Job::PinHoles(job) = request.job else {
-        return Err("prove knows the geometry of pin holes alone: prove the claims of other macros with gcode-sim prove".to_owned());
+        return arguments::prove_arguments(request);
     };
     let overs = Over::parse_all(request.over)?;
     if overs.is_empty() {
@@ -66,7 +69,8 @@ pub fn prove_job(request: &ProofRequest<'_>) -> Result<JobProof, String> {
         case.prove()
     });
     let reports: Vec<CaseReport> = reports.collect::<Result<_, _>>()?;
-    Ok(JobProof::new(&overs, reports, (request.clock)().as_secs_f64()))
+    let over = overs.iter().map(|over| (over.quantity.key().to_owned(), [over.low, over.high])).collect();
+    Ok(JobProof::new(over, reports, Vec::new(), (request.clock)().as_secs_f64()))
 }
 
 /// Returns a hole and a tool for each call that differs in more than the quantities left open.

@@ -111,11 +111,6 @@ impl Over {
         }
         Ok(Self { quantity, low, high })
     }
-
-    /// Returns `hole.radius 0..1100`.
-    pub(crate) fn words(&self) -> String {
-        format!("{} {}..{}", self.quantity.key(), self.low, self.high)
-    }
 }
 
 #[cfg(test)]
@@ -127,7 +122,6 @@ mod tests {
         let texts = ["hole.radius=0..1100", "hole.azimuth = -180 .. 180"].map(str::to_owned);
         let all = Over::parse_all(&texts).unwrap();
         assert_eq!(all[1], Over { quantity: Quantity::Azimuth, low: -180.0, high: 180.0 });
-        assert_eq!(all[0].words(), "hole.radius 0..1100");
         for (text, why) in [
             ("hole.radius", "write a key"),
             ("hole.colour=0..1", "is none of"),

@@ -6,11 +6,12 @@
 //! |C − E|·(1 + tan τ) + D·tan τ, τ the angle between d and n. C − E is the rounding of the words and what the formulas differ
 //! by; τ that of the head's angle. The rotary turns both about y by its own error β: up to β·max(r, D) out of the plane, and
 //! less than its square times that in it.
-use gcode_enclosure::{Binary, Enclosures, Node, NodeId};
+use gcode_enclosure::{Binary, Condition, Enclosures, Node, NodeId};
 use gcode_part::job::AxisDirection;
 use gcode_prove::{ExactForms, Polynomial};
 
 use super::hole_path::HolePath;
+use super::rapids::{self, Edge, Tip};
 
 /// Bound of the error of a computed sine or cosine: the function's, and that of the conversion to radians of up to 720°.
 const TRIGONOMETRY: f64 = 1e-13;
@@ -23,6 +24,9 @@ const DIRECTION: f64 = 1e-11;
 
 /// Magnitude of products that are errors, mm.
 const SMALL: f64 = 1e-8;
+
+/// Distance for the arithmetic of a clearance's bound, mm.
+const SMALL_DISTANCE: f64 = 1e-5;
 
 /// Margin for the rounding of a bound's own arithmetic.
 const MARGIN: f64 = 1.0 + 1e-9;
@@ -38,6 +42,10 @@ pub(super) struct NominalHole {
     pub(super) axis: AxisDirection,
     /// From the pivot to the tip.
     pub(super) reach: f64,
+    /// Half the diameter of the tool.
+    pub(super) tool_radius: f64,
+    /// Clearance and retract above the hole.
+    pub(super) heights: [f64; 2],
     /// Sign of the rotary.
     pub(super) sign: f64,
 }
@@ -49,6 +57,8 @@ pub(super) struct PositionBound {
     pub(super) phi: f64,
     /// Error of the depth, mm.
     pub(super) depth: f64,
+    /// Distance of the tip from the surface at the nearest end of a rapid, mm; `None` if the rapids aren't known to stay outside.
+    pub(super) clearance: Option<f64>,
 }
 
 /// Returns the bounds of a hole over the box of enclosures; `None` if none is found.
@@ -58,6 +68,7 @@ pub(super) fn bound(
     path: &HolePath,
     hole: &NominalHole,
     zeroes_residues: bool,
+    conditions: &[Condition],
 ) -> Option<PositionBound> {
     let [radius, depth, polar_radius] =
         [hole.radius, hole.depth, hole.b].map(|node| enclosures.enclose(arena, node).magnitude());
@@ -148,5 +159,33 @@ pub(super) fn bound(
     let off = libm::hypot(in_plane + second_order, lever * turn) + second_order;
     let phi = 2.0 * off * MARGIN;
     let depth_error = (across + depth * tilt * tilt / 2.0 + second_order) * MARGIN;
-    phi.is_finite().then_some(PositionBound { phi, depth: depth_error })
+    let edge = match hole.axis {
+        AxisDirection::Normal => Some(None),
+        AxisDirection::Axial => edge(&mut forms, hole).map(Some),
+    };
+    let clearance = edge.and_then(|edge| {
+        let (directions, inverses) = ([&cosine, &sine], [&over_a, &over_b]);
+        let tip = Tip { radius: &r, height: &height, top: &b, inverses, edge, directions, reach };
+        let along = rapids::clearance(&mut forms, path, &tip, conditions)?;
+        // The tool's end is a disc, which dips where the tool is tilted.
+        Some(along * (1.0 - tilt * tilt) - hole.tool_radius * tangent - levers - SMALL_DISTANCE)
+    });
+    phi.is_finite().then_some(PositionBound { phi, depth: depth_error, clearance })
+}
+
+/// Returns the edge of an axial tool next to the axis; `None` where a box has radii on both sides of the tool's.
+fn edge(forms: &mut ExactForms<'_>, hole: &NominalHole) -> Option<Edge> {
+    let (least, most) = forms.magnitudes(hole.radius);
+    let radius = if least >= hole.tool_radius {
+        let radius = Polynomial::atom(gcode_prove::Atom::Node(hole.radius));
+        let (edge, lost) = forms.combine(&[(1.0, &[&radius]), (-hole.tool_radius, &[])])?;
+        (lost == 0.0).then_some(edge)?
+    } else if most <= hole.tool_radius {
+        Polynomial::default()
+    } else {
+        return None;
+    };
+    let (_, b) = forms.magnitudes(hole.b);
+    let (a, _) = forms.magnitudes(hole.a);
+    Some(Edge { radius, heights: hole.heights, steepness: b / libm::sqrt(a) * MARGIN, top: b })
 }

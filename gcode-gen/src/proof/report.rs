@@ -23,10 +23,10 @@ pub struct JobProof {
     pub over: BTreeMap<String, [f64; 2]>,
     /// One case for each direction and tool of the job's holes.
     pub cases: Vec<CaseReport>,
+    /// What this family's proofs leave out; empty if its geometry is proved.
+    pub not_proved: Vec<String>,
     /// Duration, seconds.
     pub seconds: f64,
-    #[serde(skip)]
-    all: String,
 }
 
 /// Verdict on a claim.
@@ -85,25 +85,26 @@ pub struct ClaimReport {
 }
 
 impl JobProof {
-    pub(super) fn new(overs: &[Over], cases: Vec<CaseReport>, seconds: f64) -> Self {
+    pub(super) fn new(
+        over: RangeReport,
+        cases: Vec<CaseReport>,
+        not_proved: Vec<String>,
+        seconds: f64,
+    ) -> Self {
         let verdicts = cases.iter().flat_map(|case| case.claims.iter().map(|claim| claim.verdict));
-        let words: Vec<_> = overs.iter().map(Over::words).collect();
-        let over = overs.iter().map(|over| (over.quantity.key().to_owned(), [over.low, over.high]));
-        Self {
-            verdict: verdicts.max().unwrap_or_default(),
-            over: over.collect(),
-            cases,
-            seconds,
-            all: words.join(", "),
-        }
+        Self { verdict: verdicts.max().unwrap_or_default(), over, cases, not_proved, seconds }
     }
 
     /// Formats the result for a terminal.
     pub(crate) fn text(&self) -> String {
-        let mut text = format!("for all {}\n", self.all);
+        let ranges = self.over.iter().map(|(key, [low, high])| format!("{key} {low}..{high}"));
+        let mut text = format!("for all {}\n", ranges.collect::<Vec<_>>().join(", "));
         for case in &self.cases {
             let _ = writeln!(text, "\n{}\n{}", case.holes, case.call);
             case.claims.iter().for_each(|claim| claim.write(&mut text));
+        }
+        for what in &self.not_proved {
+            let _ = writeln!(text, "\nnot proved: {what}");
         }
         let _ = writeln!(text, "\n{:.1} s; proved of the simulated control: see docs/prove.md", self.seconds);
         text
@@ -158,6 +159,18 @@ pub(super) fn named(overs: &[Over], values: &[f64]) -> String {
     all.collect::<Vec<_>>().join(", ")
 }
 
+/// Returns `MC3001–MC3015, MC3017`.
+pub(super) fn ranges_of(codes: &[String]) -> String {
+    let numbers: Vec<u32> = codes.iter().filter_map(|code| code[2..].parse().ok()).collect();
+    let runs = numbers.chunk_by(|one, next| next - one == 1);
+    let runs = runs.filter_map(|run| match run {
+        [one] => Some(format!("{one}")),
+        [first, .., last] => Some(format!("{first}–{last}")),
+        [] => None,
+    });
+    runs.collect::<Vec<_>>().join(", ")
+}
+
 /// Returns a share in percent, never rounded up to all.
 fn percent(share: f64) -> String {
     let percent = (share * 1e5).floor() / 1e3;
@@ -179,10 +192,22 @@ mod tests {
         let claim = |verdict: Verdict| ClaimReport { verdict: verdict.into(), ..ClaimReport::default() };
         let case = |verdicts: &[Verdict]| {
             let claims = verdicts.iter().map(|verdict| claim(*verdict)).collect();
-            JobProof::new(&[], vec![CaseReport::new(String::new(), String::new(), claims)], 0.0).verdict
+            JobProof::new(
+                RangeReport::new(),
+                vec![CaseReport::new(String::new(), String::new(), claims)],
+                Vec::new(),
+                0.0,
+            )
+            .verdict
         };
         assert_eq!(case(&[Verdict::Proved, Verdict::Proved]), VerdictName::Proved);
         assert_eq!(case(&[Verdict::Proved, Verdict::Undecided]), VerdictName::Undecided);
         assert_eq!(case(&[Verdict::Undecided, Verdict::Refuted, Verdict::Proved]), VerdictName::Refuted);
+    }
+
+    #[test]
+    fn neighbouring_alarms_are_one_range() {
+        let codes = ["MC3001", "MC3002", "MC3003", "MC3017"].map(str::to_owned);
+        assert_eq!(ranges_of(&codes), "3001–3003, 3017");
     }
 }

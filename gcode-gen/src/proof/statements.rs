@@ -25,13 +25,19 @@ impl Statements {
 
 /// Returns the numbers of `(ALARMS 3001-3015 3017 3019 BEFORE ANYTHING MOVES, 3016)`.
 fn alarms(text: &str) -> Vec<u32> {
-    let remarks = text.lines().filter_map(|line| line.trim().strip_prefix("(ALARMS"));
+    // A remark goes on in lines that begin with spaces.
+    let mut is_open = false;
+    let remarks = text.lines().filter_map(move |line| {
+        let line = line.trim();
+        is_open = line.starts_with("(ALARMS") || is_open && line.starts_with("(   ");
+        is_open.then(|| line.trim_start_matches("(ALARMS"))
+    });
     let number = |text: &str| text.parse::<u32>().ok().filter(|_| text.len() == 4);
     let range = |word: &str| match word.split_once('-') {
         Some((first, last)) => Some(number(first)?..=number(last)?),
         None => number(word).map(|number| number..=number),
     };
-    remarks.flat_map(|line| line.split([' ', ',', ')'])).filter_map(range).flatten().collect()
+    remarks.flat_map(|line| line.split([' ', ',', ')', '.'])).filter_map(range).flatten().collect()
 }
 
 /// Returns the number of `BLOCKS A HOLE: 62`.
@@ -49,6 +55,8 @@ mod tests {
         let text = "O1(A)\nGOTO 10 (OVER THE REMARKS. BLOCKS A HOLE: 62)\n(ALARMS 3001-3003 3017 BEFORE ANYTHING MOVES, 3016)\n";
         assert_eq!(alarms(text), [3001, 3002, 3003, 3017, 3016]);
         assert_eq!((blocks(text), blocks("O1\nM99")), (Some(62), None));
+        let text = "(ALARMS 3138-3139 BEFORE ANYTHING MOVES, THEN)\n(       3154-3155. TEXTS)\nN10 #1=3000\n(   3001)\n";
+        assert_eq!(alarms(text), [3138, 3139, 3154, 3155]);
         assert!(alarms("(ALARMS OF 12 HOLES)").is_empty());
     }
 }

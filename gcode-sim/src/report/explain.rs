@@ -90,7 +90,14 @@ pub fn changes() -> impl Iterator<Item = Page> {
 
 /// Returns every page, in the order in which they are listed.
 pub fn all() -> impl Iterator<Item = Page> {
-    findings().into_iter().chain(rules()).chain(changes())
+    findings().into_iter().chain(rules()).chain(changes()).chain([claim()])
+}
+
+/// Returns the page of a claim of `test` that isn't proved, a section of the page on proofs.
+fn claim() -> Page {
+    const PROOFS: &str = include_str!("../../../docs/prove.md");
+    let section = PROOFS.split("\n## ").find(|section| section.starts_with("Claims in a repository"));
+    Page { code: "claim", title: "a claim of a case isn't proved", text: section.unwrap_or(PROOFS) }
 }
 
 /// Returns all pages of a code: two for `hole-depth`, a code of `verify` and of `diff`.
@@ -162,6 +169,10 @@ mod tests {
             assert_eq!(find(spelling).unwrap().code, "MC3000", "{spelling}");
         }
         assert_eq!(find("SIM1").unwrap().code, "SIM0001");
+        assert!(
+            find("claim").unwrap().text.contains("claims.toml")
+                && !find("claim").unwrap().text.contains("## ")
+        );
         for unknown in ["PS9999", "", "PS", "X", "PS-1", "€1"] {
             assert!(find(unknown).is_none(), "{unknown}");
         }

@@ -182,6 +182,12 @@ impl Arena {
             Binary::Mul if a == Self::ZERO || b == Self::ZERO => Self::ZERO,
             Binary::Mul if a == Self::ONE => b,
             Binary::Mul | Binary::Div if b == Self::ONE => a,
+            Binary::Mul if self.as_constant(a) == Some(-1.0) && self.widening() == 0.0 => {
+                self.unary(Unary::Neg, b)
+            }
+            Binary::Mul | Binary::Div if self.as_constant(b) == Some(-1.0) && self.widening() == 0.0 => {
+                self.unary(Unary::Neg, a)
+            }
             // Their value doesn't depend on the order.
             Binary::Add | Binary::Mul if b < a => self.insert(Node::Binary(operator, b, a)),
             Binary::Compare(relation) if b < a => {

@@ -262,23 +262,34 @@ impl<S: Setup> Prover<'_, S> {
     fn prove_claims(&mut self, claims: &[Claim]) -> Result<(), ProveError> {
         let is_travel = |index: &usize| matches!(claims[*index], Claim::Travel(_));
         let (travels, others): (Vec<usize>, Vec<usize>) = (0..claims.len()).partition(is_travel);
+        let is_blocks = |index: &usize| matches!(claims[*index], Claim::Blocks(_));
+        let blocks: Vec<usize> = others.iter().copied().filter(is_blocks).collect();
+        let mut others = others;
+        if blocks.len() < others.len() {
+            // A run that is too long need not be followed to its end.
+            for group in blocks.chunks(MAX_CLAIMS) {
+                self.work_on(claims, group, &[], false)?;
+            }
+            others.retain(|index| self.answer.claims[*index].verdict != Verdict::Refuted);
+        }
         for group in others.chunks(MAX_CLAIMS) {
-            self.prove_group(claims, group, &[])?;
+            self.work_on(claims, group, &[], true)?;
         }
         for index in travels {
             if let Claim::Travel(settings) = &claims[index] {
-                self.prove_group(claims, &[index], settings)?;
+                self.work_on(claims, &[index], settings, true)?;
             }
         }
         Ok(())
     }
 
-    /// Proves claims together.
-    fn prove_group(
+    /// Refutes claims, and proves them where `proves`.
+    fn work_on(
         &mut self,
         claims: &[Claim],
         group: &[usize],
         settings: &[(String, String)],
+        proves: bool,
     ) -> Result<(), ProveError> {
         let asked = group.iter().map(|index| claims[*index].clone()).collect();
         let question = Arc::new(Question { claims: asked, bounds: Vec::new(), ..self.question.clone() });
@@ -288,7 +299,9 @@ impl<S: Setup> Prover<'_, S> {
         let starts = starting_boxes(&mut self.tree(&question, settings)?, &whole);
         let share = 1.0 / starts.len() as f64;
         let start = |domain| Pending { volume: share, ..pending_box(domain, &whole, all) };
-        shared.push(starts.into_iter().map(start));
+        if proves {
+            shared.push(starts.into_iter().map(start));
+        }
         let shares = self.threads as u32;
         let results = std::thread::scope(|scope| {
             let work = |share: u32| {
@@ -296,7 +309,9 @@ impl<S: Setup> Prover<'_, S> {
                 scope.spawn(move || -> Result<(), ProveError> {
                     let mut prober = this.prober(question, shared, settings)?;
                     prober.search(share, shares);
-                    prober.work();
+                    if proves {
+                        prober.work();
+                    }
                     Ok(())
                 })
             };
@@ -308,7 +323,12 @@ impl<S: Setup> Prover<'_, S> {
         });
         results.into_iter().collect::<Result<(), _>>()?;
         let rest = shared.into_rest();
-        if !question.conditions.is_empty() && !rest.is_included && rest.boxes_left == 0 && rest.refuted == 0 {
+        if proves
+            && !question.conditions.is_empty()
+            && !rest.is_included
+            && rest.boxes_left == 0
+            && rest.refuted == 0
+        {
             return Err(RequestError::NothingLeft.into());
         }
         self.take(&rest, group, &question, settings)
@@ -410,7 +430,9 @@ impl<S: Setup> Prover<'_, S> {
                 }
                 (Bound::Value(low), Bound::Value(high)) => Some((low, high)),
                 (Bound::Unfollowed(what), _) | (_, Bound::Unfollowed(what)) => {
-                    self.answer.unfollowed.push(what);
+                    if !self.answer.unfollowed.contains(&what) {
+                        self.answer.unfollowed.push(what);
+                    }
                     None
                 }
                 (Bound::None | Bound::Excluded, _) | (_, Bound::None | Bound::Excluded) => None,

@@ -38,6 +38,9 @@ const SPREAD: u32 = 6000;
 /// Largest number of special points.
 const SPECIAL: usize = 6000;
 
+/// Number of blocks without a question after which the search leaves a point alone: one that never ends has many neighbours.
+const PATIENCE: u64 = 200_000;
+
 /// Largest part of the time that the search takes.
 const PART: f64 = 0.15;
 
@@ -101,6 +104,12 @@ impl<'s, L: Library> Prober<'s, L> {
 
     /// Searches; `share` of `shares` is this thread's part of the points.
     pub(crate) fn search(&mut self, share: u32, shares: u32) {
+        self.tree.patience = PATIENCE;
+        self.search_all(share, shares);
+        self.tree.patience = u64::MAX;
+    }
+
+    fn search_all(&mut self, share: u32, shares: u32) {
         let domain = self.question.domain();
         self.try_point(&domain.midpoint());
         let values = self.special_values(&domain);

@@ -159,6 +159,8 @@ pub(crate) struct Tree<L> {
     pub(crate) nodes: Nodes,
     segments: Vec<Segment>,
     question: Arc<Question>,
+    /// Number of blocks without a question after which a way is left alone for now.
+    pub(crate) patience: u64,
 }
 
 impl<L: Library> Tree<L> {
@@ -174,7 +176,7 @@ impl<L: Library> Tree<L> {
         let snapshot = Rc::new(run.snapshot());
         let open = Open { snapshot, phase: Phase::Conditions(0), answers: Vec::new() };
         let root = Segment { parent: None, state: SegmentState::Open(open) };
-        Self { run, library, nodes, segments: vec![root], question }
+        Self { run, library, nodes, segments: vec![root], question, patience: u64::MAX }
     }
 
     /// Returns the number of variables whose bounds are wanted.
@@ -388,7 +390,8 @@ impl<L: Library> Tree<L> {
     fn block(&mut self, open: &mut Expansion, watch: &Watch) -> Option<Progress> {
         let blocks = self.run.control().blocks();
         let limits = Limits { blocks: self.question.max_blocks };
-        if blocks.is_multiple_of(BLOCKS_PER_LOOK) && watch.is_over() {
+        if blocks.is_multiple_of(BLOCKS_PER_LOOK) && (watch.is_over() || blocks - open.blocks > self.patience)
+        {
             return Some(Progress::Stopped);
         }
         if blocks > self.question.enough_blocks()

@@ -117,6 +117,9 @@ impl<'a> ExactForms<'a> {
 
     fn sum(&mut self, a: NodeId, b: NodeId, is_difference: bool) -> Option<ExactForm> {
         let (left, right) = (self.form(a), self.form(b));
+        if self.arena.as_constant(b) == Some(0.0) {
+            return Some(left);
+        }
         let (of_left, of_right) =
             (self.enclosures.enclose(self.arena, a), self.enclosures.enclose(self.arena, b));
         let mut lost = Lost::new();
@@ -133,6 +136,10 @@ impl<'a> ExactForms<'a> {
             }
         };
         if is_exact(&left) && is_exact(&right) && lost == 0.0 {
+            if !is_difference && left.real == right.real {
+                // Twice a double is a double.
+                return Some(exact(real));
+            }
             return Some(ExactForm { real, relative: ROUNDING, absolute: 0.0 });
         }
         // Without absolute errors the real numbers have the signs of the doubles.
@@ -192,7 +199,8 @@ impl<'a> ExactForms<'a> {
         if right.absolute > 0.0 {
             of_right += 1.01 * right.absolute / (of_divisor.mignitude() - right.absolute).max(0.0);
         }
-        let relative = grown(left.relative + of_right + ROUNDING);
+        let is_halved = self.arena.as_constant(b).is_some_and(is_power_of_two);
+        let relative = grown(left.relative + of_right + if is_halved { 0.0 } else { ROUNDING });
         let absolute = if left.absolute == 0.0 { 0.0 } else { left.absolute / least };
         let underflow =
             if self.least_magnitude(a) / of_divisor.magnitude() >= NORMAL { 0.0 } else { UNDERFLOW };
@@ -305,6 +313,63 @@ impl<'a> ExactForms<'a> {
         let terms: Vec<_> =
             polynomial.terms.iter().map(|(powers, factor)| (powers.clone(), *factor)).collect();
         self.lost(&terms.into_iter().map(|(powers, factor)| (powers, factor.abs())).collect())
+    }
+
+    /// Returns a bound below a polynomial; of a magnitude it uses that it isn't below its argument, of either sign.
+    pub fn least(&mut self, polynomial: &Polynomial) -> f64 {
+        let mut least = self.least_by_terms(polynomial);
+        for (powers, factor) in polynomial.terms.clone() {
+            let [(Atom::Node(node), 1)] = powers.as_slice() else { continue };
+            let Node::Unary(Unary::Abs, argument) = self.arena.node(*node) else { continue };
+            if factor <= 0.0 {
+                continue;
+            }
+            let mut rest = polynomial.clone();
+            rest.terms.remove(&powers);
+            let (argument, error) = (self.form(argument).real, self.error(argument));
+            for sign in [factor, -factor] {
+                let mut lost = Lost::new();
+                let scaled = argument.times(&Polynomial::constant(sign), &mut lost);
+                let other = rest.plus(&scaled, &mut lost);
+                let lost = self.lost(&lost);
+                least = least.max(self.least_by_terms(&other) - (lost + factor * error) * MARGIN);
+            }
+        }
+        least
+    }
+
+    /// Returns the sum of bounds below each product.
+    fn least_by_terms(&mut self, polynomial: &Polynomial) -> f64 {
+        let (mut sum, mut magnitude) = (0.0, 0.0);
+        for (powers, factor) in &polynomial.terms {
+            let (mut low, mut high) = (1.0, 1.0);
+            for (atom, exponent) in powers {
+                let (from, to) = match atom {
+                    Atom::Node(node) => {
+                        let range = self.enclosures.enclose(self.arena, *node);
+                        (range.lo(), range.hi())
+                    }
+                    Atom::Root(root) => {
+                        let radicand = self.roots[*root].clone();
+                        (0.0, libm::sqrt(self.magnitude(&radicand)) * MARGIN)
+                    }
+                };
+                if *exponent < 0 && from <= 0.0 {
+                    return f64::NEG_INFINITY;
+                }
+                for _ in 0..exponent.abs() {
+                    let (from, to) = if *exponent < 0 { (1.0 / to, 1.0 / from) } else { (from, to) };
+                    let ends: [f64; 4] = [low * from, low * to, high * from, high * to];
+                    low = ends.into_iter().fold(f64::INFINITY, f64::min);
+                    high = ends.into_iter().fold(f64::NEG_INFINITY, f64::max);
+                }
+            }
+            let end = if *factor >= 0.0 { low * factor } else { high * factor };
+            sum += end;
+            magnitude += end.abs();
+        }
+        let least = sum - magnitude * (MARGIN - 1.0);
+        if least.is_nan() { f64::NEG_INFINITY } else { least }
     }
 
     /// Returns the products whose magnitudes are above a limit, and the sum of the magnitudes of the others.

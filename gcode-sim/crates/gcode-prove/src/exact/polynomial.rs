@@ -57,7 +57,7 @@ impl Polynomial {
     }
 
     /// Returns the only product and its factor.
-    pub(super) fn only_term(&self) -> Option<(&Powers, f64)> {
+    pub fn only_term(&self) -> Option<(&Powers, f64)> {
         let mut terms = self.terms.iter();
         let (powers, factor) = terms.next()?;
         terms.next().is_none().then_some((powers, *factor))

@@ -101,6 +101,30 @@ fn a_rounded_word_is_off_by_half_an_increment() {
     assert!((0.0005..0.000_500_001).contains(&error), "{error}");
 }
 
+/// [x + y + ABS[x − y]]/2 is the larger of both.
+#[test]
+fn the_larger_of_two_is_not_below_either() {
+    let mut arena = Arena::default();
+    let (x, y, two) = (arena.input(0), arena.input(1), arena.constant(2.0));
+    let difference = arena.binary(Binary::Sub, x, y);
+    let magnitude = arena.unary(Unary::Abs, difference);
+    let sum = arena.binary(Binary::Add, x, y);
+    let sum = arena.binary(Binary::Add, sum, magnitude);
+    let larger = arena.binary(Binary::Div, sum, two);
+    let ranges = vec![Interval::new(-5000.0, 5000.0), Interval::new(0.0, 900.0)];
+    let mut enclosures = Enclosures::with_degree(Domain::new(ranges), 0);
+    let mut forms = ExactForms::new(&arena, &mut enclosures);
+    let real = forms.form(larger).real;
+    for one in [x, y] {
+        let one = forms.form(one).real;
+        let (above, _) = forms.combine(&[(1.0, &[&real]), (-1.0, &[&one])]).unwrap();
+        let least = forms.least(&above);
+        assert!((-1e-9..=0.0).contains(&least), "{least}");
+        let (below, _) = forms.combine(&[(-1.0, &[&real]), (1.0, &[&one])]).unwrap();
+        assert!(forms.least(&below) < -1000.0, "it is above the smaller one");
+    }
+}
+
 proptest! {
     /// Two formulas for one height differ by their error bounds at most.
     #[test]
