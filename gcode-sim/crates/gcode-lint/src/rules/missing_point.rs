@@ -116,6 +116,10 @@ impl<'w> BlockCodes<'w> {
         self.rows.iter().any(|row| is_one(&row.effect))
     }
 
+    fn taps(&self) -> bool {
+        self.has(|effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.taps()))
+    }
+
     /// Iterates over the words that are lengths, angles or seconds.
     fn measured_words(&self, settings: &Settings) -> impl Iterator<Item = &'w LoweredWord> {
         let plain = self.words.list.iter().filter(move |word| self.is_measure(word, settings));
@@ -138,6 +142,8 @@ impl<'w> BlockCodes<'w> {
             (Measured::AsInMove, b'Q') => {
                 self.has(|effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.uses_q()))
             }
+            // J of a tapping cycle of a Haas multiplies the speed of the retract.
+            (Measured::AsInMove, b'J') if self.taps() => false,
             (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => true,
             (Measured::AsInMove, b'C') if word.comma => true,
             (Measured::AsInMove | Measured::Axes, _) => is_axis,
@@ -224,6 +230,7 @@ mod tests {
             "O1\nG0 X0 Y0.5\nG43 H1 Z100.\nM98 P2 L3\nG4 P500\nM30\nO2\nM99\n",
             "O1\nG0 X45000 Y500\nG1 Z-3000 F200\nM30\n",
             "O1\nG83 X1. Y1. Z-20. R2. Q500 K3 F100\nM30\n",
+            "O1\nS500\nG84 X1. Z-9. R2. J4 F500.\nM30\n",
             "O1\n#1=3\nG4 X500\nG0 X#1 Y[5]\nG10 L2 P1 X1.\nG51 X0 Y0 I2000 J2000\nM30\n",
             "O1\nG65 P2 A5. D3 H2 T1 S5\nM30\nO2\nM99\n",
             "O1\nG0 X1.\nG10 L52\nN6004 Q0 R1\nN1241 P1 R5.\nG11\nM30\n",
