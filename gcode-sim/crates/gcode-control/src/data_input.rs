@@ -177,7 +177,9 @@ impl Planner<'_> {
             Err(ParameterError::ReadOnly) => {
                 return Err(self.not_simulated(format!("a change of parameter {}", id.number)));
             }
-            Err(ParameterError::Unknown) if changes_motion(id.number) && (id.bit.is_none() || value != 0.0) => {
+            Err(ParameterError::Unknown)
+                if changes_motion(id.number) && (id.bit.is_none() || value != 0.0) =>
+            {
                 return Err(self.not_simulated(format!("a change of parameter {}", id.number)));
             }
             Err(ParameterError::Unknown | ParameterError::MissingBit) => {

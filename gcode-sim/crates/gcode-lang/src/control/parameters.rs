@@ -132,8 +132,16 @@ pub fn is_without_effect(number: u16) -> bool {
 
 /// Ranges of parameters of which any may change where a program moves: units, axes, coordinates and limits, servo, the reading
 /// of programs, compensation, cycles and coordinate systems, macros, axis control, five axes.
-const OF_MOTION: &[std::ops::RangeInclusive<u16>] =
-    &[0..=19, 1000..=1399, 1800..=1899, 3400..=3499, 5000..=6099, 7000..=8299, 11_200..=12_399, 19_600..=19_799];
+const OF_MOTION: &[std::ops::RangeInclusive<u16>] = &[
+    0..=19,
+    1000..=1399,
+    1800..=1899,
+    3400..=3499,
+    5000..=6099,
+    7000..=8299,
+    11_200..=12_399,
+    19_600..=19_799,
+];
 
 /// Returns true if an unknown parameter may change where a program moves.
 pub fn changes_motion(number: u16) -> bool {

@@ -234,7 +234,7 @@ pub(super) const CONTOUR_CONTROL: CodeFacts =
 pub(super) const SMOOTH_CONTOUR_CONTROL: CodeFacts =
     CodeFacts { words: CodeWords { measured: Measured::Nothing, ..WITHOUT_EFFECT.words }, ..CONTOUR_CONTROL };
 /// Accuracy mode of some machine builders, with the values of its words.
-pub(super) const ACCURACY_MODE: CodeFacts = CodeFacts { is_of_builder: true, ..CONTOUR_CONTROL };
+pub(super) const ACCURACY_MODE: CodeFacts = CodeFacts { is_of_builder: true, ..SMOOTH_CONTOUR_CONTROL };
 pub(super) const LOOK_AHEAD: CodeFacts = CodeFacts { unsimulated: Unsimulated::Path(VALUES), ..MODAL };
 pub(super) const SMOOTHNESS: CodeFacts = CodeFacts {
     words: CodeWords { own: Letters::of(b"E"), without_effect: Letters::of(b"EP"), ..CodeWords::NONE },

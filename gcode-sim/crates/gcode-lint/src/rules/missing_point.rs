@@ -34,6 +34,10 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
         let codes = BlockCodes::of(words);
+        // What a macro that is not here makes of its arguments is unknown.
+        let calls_unknown = words.call().is_some_and(|call| !call.arguments.is_empty())
+            && unit.call_in(block).is_none_or(|call| context.called_unit(call).is_none());
+        let severity = if calls_unknown { Severity::Note } else { RULE.kind.severity };
         for word in codes.measured_words(settings) {
             let Some(number) = without_point(word) else { continue };
             let is_count =
@@ -44,7 +48,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             let written = spelled(word.letter, number);
             let message = format!("{written} is {}", codes.meaning(word.letter, number, settings, is_inch));
             let finding = unit.finding(&RULE.kind, block, message).with_span(word.span);
-            found.push(finding.help(format!("write {written}.")));
+            found.push(finding.with_severity(severity).help(format!("write {written}.")));
         }
     }
     if found.len() < MANY_NUMBERS || numbers(unit, settings).any(|number| number.places.is_some()) {
@@ -193,6 +197,10 @@ fn spelled(letter: u8, number: Decimal) -> String {
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
     use super::RULE;
+    use crate::check;
+    use gcode_lang::control::Settings;
+    use gcode_lang::diag::Severity;
+    use gcode_lang::program::NoLibrary;
 
     #[test]
     fn a_missing_point_is_reported() {
@@ -202,6 +210,17 @@ mod tests {
             found,
             ["Z-3 is -0.003 mm", "X2 is 0.002 seconds", "B90 is 0.09 degrees", "A5 is 0.005 for the macro"]
         );
+    }
+
+    #[test]
+    fn an_argument_of_a_macro_that_is_not_here_is_a_note() {
+        let severity = |text: &str| {
+            let found = check("O1.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary).findings;
+            found.into_iter().find(|finding| finding.code() == "missing-point").unwrap().severity
+        };
+        assert_eq!(severity("O1\nG65 P9810 A5 Z1.\nM30\n"), Severity::Note);
+        assert_eq!(severity("O1\nG65 P2 A5 Z1.\nM30\nO2\n#100=#1\nM99\n"), Severity::Warning);
+        assert_eq!(severity("O1\nG65 P9810 Z1.\nG00 X5\nM30\n"), Severity::Warning);
     }
 
     #[test]
