@@ -251,7 +251,7 @@ impl Planner<'_> {
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
         match plan.builder_m_codes.last() {
-            _ if moves_straight && matches!(letter, 'P' | 'Q') => {
+            None if moves_straight && matches!(letter, 'P' | 'Q') => {
                 plan.notes.push(Note::WordIgnored(letter));
                 Ok(())
             }
