@@ -7,10 +7,16 @@ pub(super) enum AxisWordUse {
     OneShot(OneShot),
     AdditionalWork,
     Scale,
-    Mirror { is_on: bool },
+    Mirror {
+        is_on: bool,
+    },
     Rotate,
     Tilt,
-    PolarInterpolation { is_on: bool },
+    PolarInterpolation {
+        is_on: bool,
+    },
+    /// Limits of G22, which move nothing.
+    Limits,
 }
 
 impl AxisWordUse {
@@ -32,7 +38,11 @@ impl AxisWordUse {
                     | OneShot::CheckReference
                     | OneShot::FromReference
             ),
-            Self::AdditionalWork | Self::Scale | Self::Tilt | Self::PolarInterpolation { .. } => false,
+            Self::AdditionalWork
+            | Self::Scale
+            | Self::Tilt
+            | Self::PolarInterpolation { .. }
+            | Self::Limits => false,
         }
     }
 }

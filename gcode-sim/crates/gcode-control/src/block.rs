@@ -24,7 +24,7 @@ use super::planner::Planner;
 use super::words::{BlockWords, CallingWord};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::EventSink;
-use gcode_lang::program::modes::CutterSide;
+use gcode_lang::program::modes::{CutterSide, Motion};
 use gcode_lang::program::{
     CallCode, DialectSyntax, GuardedOp, Library, Memory, Op, OpBody, OpIndex, OpKind, Program, Words,
 };
@@ -221,26 +221,40 @@ impl Planner<'_> {
             let drilling = plan.cycle_plan.as_ref().map(|cycle_plan| cycle_plan.axis);
             plan.placed_axes = self.named_axes().chain(drilling).fold(0, |axes, axis| axes | 1 << axis);
             let states = [&self.registers.state, &plan.state];
-            let taps = states.iter().any(|state| state.modal.cycle.is_some_and(|cycle| cycle.taps()));
-            if !taps && states.iter().all(|state| self.is_tapping_rigid(state)) {
-                return Err(Alarm::MoveBeforeRigidTapping.located_at(self.block));
+            if !states.iter().any(|state| state.modal.cycle.is_some_and(|cycle| cycle.taps())) {
+                if states.iter().all(|state| self.checks_rigid_tapping(state)) {
+                    return Err(Alarm::MoveBeforeRigidTapping.located_at(self.block));
+                }
+                plan.state.rigid_tapping.record_move();
             }
             self.check_flow_of_triggering_block(&plan.flow)?;
         }
         if self.needs_lookahead(&plan.state) {
             self.plan_lookahead(axis_word_use, plan)?;
         }
+        let is_straight = axis_word_use.is_none()
+            && plan.state.modal.cycle.is_none()
+            && matches!(plan.state.modal.motion, Motion::Rapid | Motion::Linear);
         if let Some(unread) = self.words.first_unused_word() {
-            self.pass_to_machine_builder(unread, plan)?;
+            self.pass_to_machine_builder(unread, is_straight && plan.commands_axes, plan)?;
         }
         self.check_stroke(plan)
     }
 
     /// Handles a word that nothing has read: with an M code of the machine builder and without axes it goes to that code's
-    /// logic, otherwise it raises an alarm.
+    /// logic; P and Q of a straight move have no effect; any other raises an alarm.
     #[inline(never)]
-    fn pass_to_machine_builder(&self, (letter, span): (char, Span), plan: &mut BlockPlan) -> ExecResult<()> {
+    fn pass_to_machine_builder(
+        &self,
+        (letter, span): (char, Span),
+        moves_straight: bool,
+        plan: &mut BlockPlan,
+    ) -> ExecResult<()> {
         match plan.builder_m_codes.last() {
+            None if moves_straight && matches!(letter, 'P' | 'Q') => {
+                plan.notes.push(Note::WordIgnored(letter));
+                Ok(())
+            }
             Some(code) if !self.names_axis() => {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });
                 Ok(())

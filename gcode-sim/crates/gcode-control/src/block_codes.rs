@@ -4,19 +4,18 @@ use super::functions::{ExecResult, locate};
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan, TableWrite};
 use super::planner::Planner;
-use super::state::{CycleState, Modal, PolarPoint, State};
+use super::state::{CycleState, Modal, PolarPoint, RigidTapping, State};
 use super::variables::Value;
 use super::words::{WordNumber, count};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Dialect;
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
 use gcode_lang::program::code_facts::{CoordinateUse, Letters, LookaheadUse};
+use gcode_lang::program::cycles::Cycle;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::m_codes::MCodeEffect;
-use gcode_lang::program::modes::{
-    CutterSide, Distance, DynamicOffset, Polar, Rotation, Scaling, StrokeCheck,
-};
+use gcode_lang::program::modes::{CutterSide, Distance, DynamicOffset, Motion, Polar, Rotation, Scaling};
 use gcode_lang::units::Rpm;
 
 /// Variable of output 0 of a Haas, and the number of the last output.
@@ -52,6 +51,8 @@ impl Planner<'_> {
         let state = &mut plan.state;
         let before = state.modal;
         let (axis_use, is_cycle_active) = self.apply_each_code(state)?;
+        let of_builder = self.words.g_codes().filter(|row| row.facts.is_of_builder);
+        plan.notes.extend(of_builder.map(|row| Note::BuilderCode(row.code)));
         for group in self.words.g_codes().filter_map(|row| row.effect.group()) {
             plan.commanded_groups.insert(group);
         }
@@ -109,7 +110,7 @@ impl Planner<'_> {
             }
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
-                state.is_tapping_rigid = false;
+                state.rigid_tapping = RigidTapping::Off;
                 is_cycle_active = false;
             }
         }
@@ -150,7 +151,7 @@ impl Planner<'_> {
         if modal.plane != before.plane && self.registers.lookahead.is_offset() {
             return Err(Alarm::PlaneInCompensation.located_at(self.block));
         }
-        if modal.plane != before.plane && self.is_tapping_rigid(state) {
+        if modal.plane != before.plane && self.checks_rigid_tapping(state) {
             return Err(Alarm::PlaneInRigidTapping.located_at(self.block));
         }
         if modal.plane != before.plane && state.transform.rotation.is_some() {
@@ -165,9 +166,15 @@ impl Planner<'_> {
         self.check_transform_order(before, state)
     }
 
-    /// Returns true after M29 on a Fanuc, which checks rigid tapping: PS0200, PS0204 and PS0206.
-    pub(super) fn is_tapping_rigid(&self, state: &State) -> bool {
-        state.is_tapping_rigid && Dialect::FANUC.contains(&self.data.settings.codes)
+    /// Returns true in rigid tapping on a Fanuc, which checks it: PS0200, PS0204 and PS0206. M29 without S counts from its
+    /// tapping cycle on.
+    pub(super) fn checks_rigid_tapping(&self, state: &State) -> bool {
+        let is_rigid = match state.rigid_tapping {
+            RigidTapping::Off => false,
+            RigidTapping::Possible { .. } => state.modal.cycle.is_some_and(Cycle::taps),
+            RigidTapping::Certain => true,
+        };
+        is_rigid && Dialect::FANUC.contains(&self.data.settings.codes)
     }
 
     /// Ends transforms whose modes are off, and recomputes the position if the coordinates have changed.
@@ -258,7 +265,14 @@ impl Planner<'_> {
 
     /// Raises the alarm of a word that needs a code which the block lacks, or excludes one that it has.
     fn check_misplaced_words(&self, plan: &BlockPlan) -> ExecResult<()> {
-        let owned = self.words.letters_of_codes();
+        let mut owned = self.words.letters_of_codes();
+        // E of a Haas: a percentage of the rapid rate, or the speed that throws off chips after a hole.
+        if self.data.settings.codes == Dialect::HaasNgc
+            && (plan.state.modal.cycle.is_some() || plan.state.modal.motion == Motion::Rapid)
+        {
+            self.words.mark_read(Letters::of(b"E"));
+            owned |= Letters::of(b"E").bits();
+        }
         if let Some(letter) = self.words.first_present(Letters::of(b"ENO").bits() & !owned) {
             return Err(self.improper_address(letter));
         }
@@ -266,12 +280,6 @@ impl Planner<'_> {
             && self.words.count(b'P')?.is_none_or(|p| p > 1)
         {
             return Err(Alarm::LookAheadFormat.located_at(self.block));
-        }
-        // The axis words of G22 are limits, no move.
-        let has_limits =
-            self.words.has_non_motion_code(|effect| effect == Effect::StrokeCheck(StrokeCheck::On));
-        if has_limits && (self.names_axis() || self.words.has_any(b"IJK")) {
-            return Err(self.not_simulated("G22 with limits"));
         }
         if self.words.has(b'T') && self.words.g_codes().any(|row| row.facts.words.refuses_tool) {
             return Err(Alarm::TNotAllowed.located_at(self.words.span(b'T')));
@@ -299,6 +307,9 @@ impl Planner<'_> {
         for (code, span) in self.words.m_codes.iter().copied() {
             plan.state.modal_words.m = code;
             let speed = Rpm(plan.state.modal_words.s);
+            if matches!(code, 3..=6) {
+                plan.state.rigid_tapping.end_if_possible();
+            }
             let is_declared = || self.data.settings.declared_codes.find(b'M', 10 * code).is_some();
             let Some(effect) = m_codes::find(code, self.data.settings.codes) else {
                 if is_declared() {
@@ -341,7 +352,13 @@ impl Planner<'_> {
                     plan.state.tool = plan.state.modal_words.t;
                     plan.push_event(EventKind::ToolChange { number: plan.state.modal_words.t });
                 }
-                MCodeEffect::RigidTapping => plan.state.is_tapping_rigid = true,
+                MCodeEffect::RigidTapping => {
+                    plan.state.rigid_tapping = if self.words.has(b'S') {
+                        RigidTapping::Certain
+                    } else {
+                        RigidTapping::Possible { has_moved: false }
+                    };
+                }
                 MCodeEffect::CoolantOn => {
                     plan.state.is_coolant_on = true;
                     plan.push_event(EventKind::Coolant { is_on: true, code });

@@ -1,7 +1,7 @@
 //! Expands a checked block of a canned cycle: its holes, and the steps of the cycle at each of them.
 use super::data::ControlData;
 use super::kinematics::remove_noise;
-use super::state::{CycleState, PeckSchedule, State};
+use super::state::{CycleState, PeckSchedule, RigidTapping, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind, UnknownAxes};
 use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::ReturnTo;
@@ -16,7 +16,7 @@ pub(super) struct CyclePlan {
     /// Holes as programmed, at the initial level.
     pub(super) holes: Vec<Position>,
     pub(super) axis: AxisIndex,
-    pub(super) bore_shift: (AxisIndex, f64),
+    pub(super) bore_shift: [(AxisIndex, f64); 2],
     pub(super) rate: MmPerMin,
     /// Dwell, seconds.
     pub(super) dwell: f64,
@@ -72,7 +72,8 @@ impl CyclePlan {
     ) {
         let state = &self.start_state;
         let initial = state.cycle.initial;
-        let is_rigid = state.is_tapping_rigid || data.settings.taps_rigidly || self.cycle.is_rigid;
+        let is_rigid =
+            state.rigid_tapping != RigidTapping::Off || data.settings.taps_rigidly || self.cycle.is_rigid;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
         let speed = Rpm(state.modal_words.s);
         let spindle = |direction| EventKind::Spindle { direction, speed, is_rigid };
@@ -114,17 +115,19 @@ impl CyclePlan {
             CycleStep::RapidToInitial => motion.rapid_along_axis(point_at(initial), self.axis),
             CycleStep::RapidToR => motion.rapid_along_axis(point_at(r), self.axis),
             CycleStep::Shift | CycleStep::ShiftBack => {
-                let (axis, distance) = self.bore_shift;
-                let distance = if step == CycleStep::Shift { distance } else { -distance };
                 let mut to = motion.position;
-                match &state.transform.tilt {
-                    Some(tilt) => {
-                        let direction = state.transform.direction_in_plane(tilt, axis);
-                        for (axis, part) in tilt.axes.into_iter().zip(direction) {
-                            to[axis] = remove_noise(to[axis] + part * distance);
+                for (axis, distance) in self.bore_shift {
+                    let distance = if step == CycleStep::Shift { distance } else { -distance };
+                    match &state.transform.tilt {
+                        _ if distance == 0.0 => {}
+                        Some(tilt) => {
+                            let direction = state.transform.direction_in_plane(tilt, axis);
+                            for (axis, part) in tilt.axes.into_iter().zip(direction) {
+                                to[axis] = remove_noise(to[axis] + part * distance);
+                            }
                         }
+                        None => to[axis] = data.remove_residue(to[axis] + distance),
                     }
-                    None => to[axis] = data.remove_residue(to[axis] + distance),
                 }
                 motion.rapid(to);
             }
@@ -179,16 +182,20 @@ impl CyclePlan {
         motion: &mut CycleMotion<'_, T>,
     ) {
         let retract = (motion.data.settings.g73_retract / self.scale_factor).copysign(r - z);
-        for_each_peck(
-            (r, z),
-            &self.start_state.cycle.with_unscaled_pecks(self.scale_factor),
-            |_, to, is_last| {
-                motion.feed(point_at(to));
-                if !is_last {
-                    motion.rapid(point_at(to + retract));
-                }
-            },
-        );
+        let cycle = &self.start_state.cycle.with_unscaled_pecks(self.scale_factor);
+        let mut retracted_at = r;
+        for_each_peck((r, z), cycle, |_, to, is_last| {
+            motion.feed(point_at(to));
+            let is_deep =
+                cycle.depth_to_retract.is_some_and(|depth| (to - retracted_at).abs() >= depth - 1e-9);
+            if is_deep && !is_last {
+                retracted_at = to;
+                motion.rapid(point_at(r));
+            }
+            if !is_last {
+                motion.rapid(point_at(to + retract));
+            }
+        });
     }
 }
 
@@ -348,7 +355,7 @@ mod tests {
             start_state: from,
             holes: vec![at(10.0, 50.0)],
             axis: 2,
-            bore_shift: (0, 0.0),
+            bore_shift: [(0, 0.0); 2],
             rate: MmPerMin(100.0),
             dwell: 0.0,
             scale_factor: 1.0,

@@ -5,7 +5,7 @@ use super::linear_motion::Endpoint;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::state::{CycleLevel, PeckSchedule, State};
+use super::state::{CycleLevel, PeckSchedule, RigidTapping, State};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Dialect;
 use gcode_lang::motion::{AxisIndex, Position};
@@ -84,8 +84,13 @@ impl Planner<'_> {
             self.check_peck_words(plan, pattern)?;
         }
         let (rate, _) = self.locate(self.data.path_time(&plan.state, 1.0, self.words.has(b'F')))?;
-        if plan.state.modal_words.s == 0.0 && cycle.taps() && self.is_tapping_rigid(&plan.state) {
-            return Err(Alarm::NoSpeedInRigidTapping.located_at(self.block));
+        if cycle.taps() && self.checks_rigid_tapping(&plan.state) {
+            if plan.state.modal_words.s == 0.0 {
+                return Err(Alarm::NoSpeedInRigidTapping.located_at(self.block));
+            }
+            if plan.state.rigid_tapping == (RigidTapping::Possible { has_moved: true }) {
+                return Err(Alarm::MoveBeforeRigidTapping.located_at(self.block));
+            }
         }
         plan.commands_axes = true;
         if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.with_unscaled_pecks(scale_factor), repeats) {
@@ -96,7 +101,7 @@ impl Planner<'_> {
             plan.state.unknown = from.unknown;
             return Ok(());
         }
-        let first = self.data.active_plane(&plan.state).map_or(0, |(first, _)| first);
+        let (first, second) = self.data.active_plane(&plan.state).unwrap_or((0, 1));
         let other = self.data.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default();
         let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
         let start_state = State { machine_position: from.machine_position, ..*plan.state };
@@ -125,7 +130,10 @@ impl Planner<'_> {
             start_state,
             holes,
             axis,
-            bore_shift: (if first == axis { other } else { first }, shift),
+            bore_shift: match plan.state.cycle.shift {
+                Some([along_first, along_second]) => [(first, along_first), (second, along_second)],
+                None => [(if first == axis { other } else { first }, shift), (second, 0.0)],
+            },
             rate,
             dwell: plan.state.cycle.p,
             scale_factor,
@@ -249,6 +257,15 @@ impl Planner<'_> {
         }
         if let Some(value) = self.dimension(b'Q', state)? {
             data.q = Some(value.abs());
+            data.shift = None;
+        }
+        let shifts = state.modal.cycle.is_some_and(|cycle| cycle.steps.contains(&CycleStep::Shift));
+        if self.data.settings.codes == Dialect::HaasNgc && shifts && self.words.has_any(b"IJ") {
+            if self.words.has(b'Q') || state.modal.plane != Plane::Xy {
+                return Err(self.not_simulated("G76 and G77 with I, J and Q, or outside plane G17"));
+            }
+            let [i, j] = [self.dimension(b'I', state)?, self.dimension(b'J', state)?];
+            data.shift = Some([i.unwrap_or(0.0), j.unwrap_or(0.0)]);
         }
         if let Some(seconds) = self.dwell_seconds()? {
             data.p = seconds;
@@ -279,6 +296,15 @@ impl Planner<'_> {
         let first = self.dimension(b'I', state)?;
         let decrement = self.dimension(b'J', state)?;
         let minimum = self.dimension(b'K', state)?;
+        if let (None, None, Some(depth), true) = (first, decrement, minimum, self.words.has(b'Q'))
+            && state.modal.cycle.is_some_and(|cycle| cycle.steps.contains(&CycleStep::HighSpeedPeck))
+        {
+            if depth <= 0.0 {
+                return Err(Alarm::NoPeckDepth.located_at(self.block));
+            }
+            plan.state.cycle.depth_to_retract = Some(depth);
+            return Ok(());
+        }
         let pecks = match (first, decrement, minimum) {
             (None, None, None) => return Ok(()),
             (Some(first), None, None) => PeckSchedule { first, decrement: 0.0, minimum: first },

@@ -174,13 +174,14 @@ impl ControlData {
         }
     }
 
-    /// Returns the value of `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]` or `PRM[n,bit]/[axis]`.
+    /// Returns the value of `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]` or `PRM[n,bit]/[axis]`; the number of the parameter if
+    /// nothing states it.
     pub(super) fn read_parameter(
         &self,
         number: f64,
         bit: Option<f64>,
         axis: Option<f64>,
-    ) -> Result<f64, Alarm> {
+    ) -> Result<Result<f64, u16>, Alarm> {
         let format = || Alarm::ArgumentFormat { function: "PRM".into() };
         let known = integer(number)?;
         let unknown = || Alarm::NotSimulated { what: format!("PRM[{known}]") };
@@ -190,14 +191,16 @@ impl ControlData {
             axis: axis.map(|axis| self.axis_of(axis).map_err(|_| format())).transpose()?,
         };
         if let Some(written) = self.parameters.get(&id) {
-            return Ok(*written);
+            return Ok(Ok(*written));
         }
-        self.settings.parameter(id).map_err(|error| match error {
-            ParameterError::MissingAxis | ParameterError::UnexpectedAxis | ParameterError::UnexpectedBit => {
-                format()
-            }
-            _ => unknown(),
-        })
+        match self.settings.parameter(id) {
+            Ok(value) => Ok(Ok(value)),
+            Err(
+                ParameterError::MissingAxis | ParameterError::UnexpectedAxis | ParameterError::UnexpectedBit,
+            ) => Err(format()),
+            Err(ParameterError::Unknown) if id.number != 0 => Ok(Err(id.number)),
+            Err(_) => Err(unknown()),
+        }
     }
 
     /// Returns an axis by its number, counted from 1.

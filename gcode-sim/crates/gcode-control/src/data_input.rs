@@ -7,7 +7,9 @@ use super::planner::Planner;
 use super::variables::{Value, VariableClass};
 use super::words::WordNumber;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
-use gcode_lang::control::{Dialect, OffsetMemory, ParameterError, ParameterId, Settings, is_without_effect};
+use gcode_lang::control::{
+    Dialect, OffsetMemory, ParameterError, ParameterId, Settings, changes_motion, is_without_effect,
+};
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{Distance, WorkSystem};
 
@@ -150,25 +152,53 @@ impl Planner<'_> {
             return Err(Alarm::NotSimulated { what }.located_at(self.words.span(b'R')));
         }
         let value = raw.value();
-        let result = self.data.settings.clone().set_parameter(id, value);
-        let has_no_effect = result == Err(ParameterError::Unknown) && is_without_effect(number);
-        if has_no_effect {
-            plan.notes.push(Note::ParameterWithoutEffect(number));
-        } else if let Err(error) = result {
-            return Err(match error {
-                ParameterError::MissingAxis => format_alarm("P, the axis, is missing"),
-                ParameterError::UnexpectedAxis => format_alarm("the parameter has no axis P"),
-                ParameterError::UnexpectedBit => format_alarm("the parameter has no bit Q"),
-                ParameterError::InvalidValue => format_alarm("the value is not allowed for this parameter"),
-                ParameterError::MissingBit => {
-                    self.not_simulated(format!("parameter {number} without Q, as a whole byte"))
-                }
-                ParameterError::Unknown | ParameterError::ReadOnly => {
-                    self.not_simulated(format!("a change of parameter {number}"))
-                }
-            });
+        if self.data.settings.clone().set_parameter(id, value) != Err(ParameterError::MissingBit) {
+            return self.write_parameter(id, value, plan);
         }
-        plan.writes.push(TableWrite::Parameter { id, value, has_no_effect });
+        // A byte: the digits of R are its bits, bit 0 the last.
+        let mut bits = value;
+        for bit in 0..8 {
+            self.write_parameter(ParameterId { bit: Some(bit), ..id }, bits % 10.0, plan)?;
+            bits = (bits / 10.0).trunc();
+        }
+        if bits != 0.0 {
+            return Err(format_alarm("the parameter has eight bits"));
+        }
         Ok(())
+    }
+
+    /// Plans the value of a parameter; one that the simulator does not know is stored for PRM.
+    fn write_parameter(&self, id: ParameterId, value: f64, plan: &mut BlockPlan) -> ExecResult<()> {
+        let fault = match self.data.settings.clone().set_parameter(id, value) {
+            Ok(()) => {
+                plan.writes.push(TableWrite::Parameter { id, value, has_no_effect: false });
+                return Ok(());
+            }
+            Err(ParameterError::ReadOnly) => {
+                return Err(self.not_simulated(format!("a change of parameter {}", id.number)));
+            }
+            Err(ParameterError::Unknown)
+                if changes_motion(id.number) && (id.bit.is_none() || value != 0.0) =>
+            {
+                return Err(self.not_simulated(format!("a change of parameter {}", id.number)));
+            }
+            Err(ParameterError::Unknown | ParameterError::MissingBit) => {
+                let note = if is_without_effect(id.number) {
+                    Note::ParameterWithoutEffect(id.number)
+                } else {
+                    Note::ParameterUnsimulated(id.number)
+                };
+                if !plan.notes.contains(&note) {
+                    plan.notes.push(note);
+                }
+                plan.writes.push(TableWrite::Parameter { id, value, has_no_effect: true });
+                return Ok(());
+            }
+            Err(ParameterError::MissingAxis) => "P, the axis, is missing",
+            Err(ParameterError::UnexpectedAxis) => "the parameter has no axis P",
+            Err(ParameterError::UnexpectedBit) => "the parameter has no bit Q",
+            Err(ParameterError::InvalidValue) => "the value is not allowed for this parameter",
+        };
+        Err(Alarm::ParameterFormat { what: fault.to_owned() }.located_at(self.block))
     }
 }

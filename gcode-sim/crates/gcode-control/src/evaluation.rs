@@ -272,7 +272,11 @@ impl Registers {
             is_there.then(|| std::mem::replace(&mut part, self.operand_stack.pop()).number())
         };
         let (axis, bit) = (take(has_axis), take(has_bit));
-        self.data.read_parameter(part.number(), bit, axis)
+        let stated = self.data.read_parameter(part.number(), bit, axis)?;
+        Ok(stated.unwrap_or_else(|number| {
+            self.block_effects.record_note(Note::ParameterUnknown(number));
+            0.0
+        }))
     }
 
     /// Returns the number of a named system variable with its suffix.

@@ -107,8 +107,12 @@ impl Planner<'_> {
         if !(is_arc || takes_vector || overrules_cycle || points_tool)
             && let Some(letter) = self.words.first_present(Letters::of(b"IJKR").bits())
         {
-            let what = format!("{} in a block with a straight move", char::from(letter));
-            return Err(Alarm::NotSimulated { what }.located_at(self.words.span(letter)));
+            if plan.state.modal.cutter != CutterSide::Off {
+                let what = format!("{} in a block with a straight move and compensation", char::from(letter));
+                return Err(Alarm::NotSimulated { what }.located_at(self.words.span(letter)));
+            }
+            self.words.mark_read(Letters::of(b"IJKR"));
+            plan.notes.push(Note::WordIgnored(char::from(letter)));
         }
         if self.words.has(b'L') {
             self.plan_repeated_moves(plan)?;

@@ -8,6 +8,7 @@ gcode_lang::finding_kinds! {
     ATAN_OF_0 = "atan-of-0", Warning, "ATAN of 0 and 0";
     AXIS_LEFT_OUT = "axis-left-out", Warning, "a first move that omits an axis";
     BLOCK_SKIP = "block-skip", Note, "the result holds for one position of the block skip switch";
+    BUILDER_CODE = "builder-code", Warning, "a code of some machine builders is taken as an accuracy mode";
     CENTRE_HERE = "centre-here", Note, "a centre at the current point";
     CORNER_IGNORED = "corner-ignored", Warning, ",R or ,C without effect";
     CYCLE_DATA_LOST = "cycle-data-lost", Warning, "P or Q in a block that does not drill";
@@ -37,11 +38,15 @@ gcode_lang::finding_kinds! {
     NO_SIGNAL = "no-signal", Warning, "G31 goes to its end";
     OTHER_FOLDER = "other-folder", Warning, "a called program in a folder that a control does not search";
     PARAMETER_WITHOUT_EFFECT = "parameter-without-effect", Warning, "a written parameter has no effect here";
+    PARAMETER_UNSIMULATED = "parameter-unsimulated", Warning, "a written parameter may change what is not simulated";
+    PARAMETER_VALUE = "parameter-value", Warning, "a parameter that nothing states";
     POCKET_CLEARING = "pocket-clearing", Warning, "the passes that clear a pocket are unknown";
     PROGRAM_ZERO = "program-zero", Note, "a program with the number 0";
     RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41, G42 or G45 to G48 without D";
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
     UNCLOSED_COMMENT = "unclosed-comment", Note, "a comment without its closing bracket";
+    STROKE_AREA = "stroke-area", Warning, "the area of G22 is not checked";
+    WORD_IGNORED = "word-ignored", Warning, "a word without effect in a straight move";
     WORDS_PASSED_ON = "words-passed-on", Warning, "a word beside an M code of the machine builder";
 }
 
@@ -65,6 +70,12 @@ pub enum Note {
         /// Letter of the word.
         letter: char,
     },
+    /// I, J, K, P, Q or R in a block with a straight move has no effect.
+    WordIgnored(char),
+    /// A code × 10 that some machine builders add counts as an accuracy mode.
+    BuilderCode(u32),
+    /// G22 sets an area that the tool must not enter, which is not checked.
+    AreaUnchecked,
     /// `,R` or `,C` in a block that is no cutting move is ignored.
     CornerIgnored,
     /// A canned cycle with K0 stores its data and drills nothing, as K0 should; whether it moves to its X and Y differs
@@ -90,6 +101,10 @@ pub enum Note {
     AtanOf0,
     /// G10 L52 has written this parameter, which has no effect in the simulator.
     ParameterWithoutEffect(u16),
+    /// G10 L52 has written this parameter, whose effect is not simulated.
+    ParameterUnsimulated(u16),
+    /// PRM has read this parameter as 0, because nothing states it.
+    ParameterUnknown(u16),
     /// The program has letters in lower case, which some controls refuse.
     LowerCase,
     /// An M code of more than four digits for the machine builder; M981000 was M98 P1000 on older controls.
@@ -163,6 +178,9 @@ impl Note {
             Self::InterruptNotSimulated => (&NO_INTERRUPT, "the macro of M96 is never called: a run has no UINT signal".into(), "call the macro with G65 to simulate it"),
             Self::NoSkipSignal => (&NO_SIGNAL, "no skip signal is simulated: G31 moves to its end point".into(), "give the part with --part, or --control SKIP=0.5 for a signal after half of the path"),
             Self::WordsPassedOn { code, letter } => (&WORDS_PASSED_ON, format!("{letter} is passed to the machine builder's logic with M{code:02}"), "see the machine's manual for the words of this M code"),
+            Self::WordIgnored(letter) => (&WORD_IGNORED, format!("{letter} has no effect in a straight move"), "remove it, or write the code that uses it"),
+            Self::BuilderCode(code) => (&BUILDER_CODE, format!("{} is a code of some machine builders: it counts as an accuracy mode, without effect on the path", name(code)), "declare what the machine does with it in [codes] of the control file"),
+            Self::AreaUnchecked => (&STROKE_AREA, "not checked: the area of G22, which the tool must not enter".into(), "check the area on the control; 1320 and 1321 are checked"),
             Self::CornerIgnored => (&CORNER_IGNORED, ",R and ,C are ignored: the block is not a cutting move".into(), "write them in a block of G01, G02 or G03"),
             Self::CycleRepeatsZero => (&NO_REPEATS, "K0 stores the cycle without a move to the block's X and Y".into(), "give --control K0-MOVES=1 for a control that moves there"),
             Self::CallRepeatsZero => (&NO_PASS, "L0: the program is not called".into(), "omit L to call it once"),
@@ -175,6 +193,8 @@ impl Note {
             Self::TangentOf90 => (&TANGENT_OF_90, "TAN of 90 degrees is undefined: some controls raise an alarm, here the result is a large number".into(), "test the angle first; give --control TAN-90-ALARM=1 for a control that raises the alarm"),
             Self::AtanOf0 => (&ATAN_OF_0, "ATAN of 0 and 0 is undefined: some controls raise an alarm, here the result is 0".into(), "test both values first; give --control ATAN-0-ALARM=1 for a control that raises the alarm"),
             Self::ParameterWithoutEffect(number) => (&PARAMETER_WITHOUT_EFFECT, format!("parameter {number} is stored for PRM and has no other effect here"), "see docs/control.md for what is not simulated"),
+            Self::ParameterUnsimulated(number) => (&PARAMETER_UNSIMULATED, format!("not checked: what a change of parameter {number} does: it is stored for PRM only"), "see docs/control.md for the parameters that count"),
+            Self::ParameterUnknown(number) => (&PARAMETER_VALUE, format!("PRM[{number}] reads as 0: nothing states the parameter"), "write it with G10 L52 in a program that this one calls, or compare with the control"),
             Self::LowerCase => (&LOWER_CASE, "lower case is read as capitals; some controls refuse it".into(), "write capitals; give --control LOWER-CASE=0 for a control that refuses lower case"),
             Self::LongMCode(code) => (&LONG_M_CODE, format!("M{code} calls no program: it is one M code, left to the machine builder"), "write P before the program number: M98 P1000"),
             Self::EndPointBeforeTransform => (&END_BEFORE_SWITCH, "#5001 and following are the end point of the last move as programmed, before the change of G51.1, G51 or G68".into(), "read them after the next move, or before the change"),

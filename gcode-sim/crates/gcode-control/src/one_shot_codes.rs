@@ -31,6 +31,13 @@ impl Planner<'_> {
                 self.data.recompute_position(&mut plan.state);
                 self.plan_motion(plan, false)
             }
+            AxisWordUse::Limits => {
+                if self.names_axis() || self.words.has_any(b"IJK") {
+                    plan.notes.push(Note::AreaUnchecked);
+                }
+                self.words.mark_read(Letters::of(b"ABCIJKUVWXYZ"));
+                Ok(())
+            }
             AxisWordUse::Scale => self.plan_scaling(plan),
             AxisWordUse::Rotate => self.plan_rotation(plan),
             AxisWordUse::Tilt => self.plan_tilt(plan),
@@ -71,6 +78,7 @@ impl Planner<'_> {
         let is_on_path = matches!(
             one,
             OneShot::Skip
+                | OneShot::StraightRapid
                 | OneShot::Measure(_)
                 | OneShot::SingleDirection
                 | OneShot::CirclePocket(_)
@@ -87,6 +95,10 @@ impl Planner<'_> {
             OneShot::Dwell => self.plan_dwell(plan),
             OneShot::DataInput => self.plan_data_input(plan),
             OneShot::DataInputEnd => Ok(()),
+            OneShot::RetractPoint => {
+                self.words.mark_read(Letters::of(b"ABCRUVWXYZ"));
+                Ok(())
+            }
             OneShot::CheckReference
             | OneShot::Reference
             | OneShot::FromReference
@@ -108,6 +120,13 @@ impl Planner<'_> {
                 p => Err(Alarm::ReferenceReturnP { p: i64::from(p) }.located_at(self.block)),
             },
             OneShot::FromReference => self.plan_return_from_reference(plan),
+            OneShot::StraightRapid => {
+                let endpoint = self.resolve_endpoint(plan)?;
+                self.push_rapid(plan, &endpoint.machine);
+                plan.state.programmed_position = endpoint.programmed;
+                plan.commands_axes = self.names_axis();
+                Ok(())
+            }
             OneShot::Skip => self.plan_skip(plan),
             OneShot::Measure(code) => self.plan_measuring(code, plan),
             OneShot::SetLocalCoordinateSystem => {

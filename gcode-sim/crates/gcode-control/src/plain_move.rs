@@ -5,6 +5,7 @@ use std::hint::cold_path;
 use super::executor::Executor;
 use super::linear_motion::{CoordinateBasis, SquaredTravel};
 use super::registers::Registers;
+use super::state::RigidTapping;
 use super::variables::Value;
 use super::words::MAX_G_CODES;
 use gcode_lang::motion::{AxisIndex, EventKind, EventSink, MAX_AXES, Position};
@@ -211,7 +212,7 @@ impl Registers {
         let modal = &self.state.modal;
         modal.cycle.is_none()
             && !self.state.is_in_parameter_input
-            && !self.state.is_tapping_rigid
+            && self.state.rigid_tapping == RigidTapping::Off
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
             && !self.state.is_turned()

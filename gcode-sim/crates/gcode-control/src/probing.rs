@@ -17,7 +17,9 @@ impl Planner<'_> {
     /// is known to be in order.
     pub(super) fn plan_skip(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         // P selects the skip signals, but beside G54.1 or G154 the work coordinate system.
-        if !self.words.has_non_motion_code(|effect| effect == Effect::AdditionalWork) {
+        let selects_work = self.words.has_non_motion_code(|effect| effect == Effect::AdditionalWork);
+        let skips_by_torque = !selects_work && self.words.count(b'P')?.is_some_and(|p| matches!(p, 98 | 99));
+        if !selects_work && !skips_by_torque {
             self.check_skip_signal_set(b'P')?;
         }
         if self.data.settings.undocumented.skip_takes_r {
@@ -26,7 +28,7 @@ impl Planner<'_> {
         if self.words.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
             return Err(Alarm::SkipTorque.located_at(self.words.span(b'Q')));
         }
-        if self.words.has(b'Q') {
+        if self.words.has(b'Q') && !skips_by_torque {
             return Err(self.not_simulated("G31 (torque limit skip)"));
         }
         let endpoint = self.resolve_endpoint(plan)?;

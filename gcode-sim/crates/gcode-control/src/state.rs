@@ -65,8 +65,8 @@ pub struct State {
     pub(super) is_coolant_on: bool,
     /// Between G10 L52 and G11.
     pub(super) is_in_parameter_input: bool,
-    /// M29: G84 and G74 turn the spindle themselves until the cycle ends.
-    pub(super) is_tapping_rigid: bool,
+    /// M29.
+    pub(super) rigid_tapping: RigidTapping,
     /// Number of the tool in the spindle.
     pub tool: u32,
 }
@@ -78,7 +78,7 @@ impl State {
         self.modal.motion = motion;
         if self.modal.cycle.take().is_some() {
             self.cycle = CycleState::default();
-            self.is_tapping_rigid = false;
+            self.rigid_tapping = RigidTapping::Off;
         }
     }
 
@@ -90,6 +90,37 @@ impl State {
                 LengthCompensation::Plus(self.modal_words.h)
             }
             Length::Minus => LengthCompensation::Minus(self.modal_words.h),
+        }
+    }
+}
+
+/// Rigid tapping: after M29 G84 and G74 turn the spindle themselves until the cycle ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum RigidTapping {
+    /// No M29.
+    #[default]
+    Off,
+    /// M29 without S, which may be a code of the machine builder. Only a tapping cycle shows that it isn't.
+    Possible {
+        /// An axis has moved since.
+        has_moved: bool,
+    },
+    /// M29 with S in its block.
+    Certain,
+}
+
+impl RigidTapping {
+    /// Takes note of a move, or of a code that a control does not accept between M29 and its cycle.
+    pub(super) fn record_move(&mut self) {
+        if let Self::Possible { has_moved } = self {
+            *has_moved = true;
+        }
+    }
+
+    /// Ends a possible rigid tapping at a code that starts or stops the spindle or changes the tool.
+    pub(super) fn end_if_possible(&mut self) {
+        if let Self::Possible { .. } = self {
+            *self = Self::Off;
         }
     }
 }
@@ -152,6 +183,10 @@ pub struct CycleState {
     pub q: Option<f64>,
     /// I, J and K of a Haas.
     pub(super) pecks: Option<PeckSchedule>,
+    /// K beside Q in G73 of a Haas: the depth of the pecks between two retracts to R.
+    pub(super) depth_to_retract: Option<f64>,
+    /// I and J of G76 and G77 of a Haas: the shift off the wall.
+    pub(super) shift: Option<[f64; 2]>,
 }
 
 /// Pecks that become shorter, mm.
@@ -179,7 +214,8 @@ impl CycleState {
             decrement: pecks.decrement / scale_factor,
             minimum: pecks.minimum / scale_factor,
         });
-        Self { q: self.q.map(|q| q / scale_factor), pecks, ..self }
+        let depth_to_retract = self.depth_to_retract.map(|depth| depth / scale_factor);
+        Self { q: self.q.map(|q| q / scale_factor), pecks, depth_to_retract, ..self }
     }
 
     /// Returns the axes that are unknown at the R point level; `absolute` are those in G90.
@@ -231,7 +267,10 @@ impl Modal {
         match effect {
             Effect::Plane(plane) => self.plane = plane,
             Effect::Distance(distance) => self.distance = distance,
-            Effect::StrokeCheck(check) => self.stroke_check = check,
+            Effect::StrokeCheck(check) => {
+                self.stroke_check = check;
+                return (check == StrokeCheck::On).then_some(AxisWordUse::Limits);
+            }
             Effect::FeedMode(mode) => self.feed_mode = mode,
             Effect::Unit(unit) => self.unit = unit,
             Effect::Cutter(side) => self.cutter = side,

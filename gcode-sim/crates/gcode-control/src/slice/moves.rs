@@ -89,9 +89,12 @@ impl Slice {
             Some(OneShot::DataInput) => {
                 return self.follow_data_input(block, list, modes.distance, others | control);
             }
-            Some(OneShot::Dwell | OneShot::DataInputEnd | OneShot::CheckReference) => return,
+            Some(
+                OneShot::Dwell | OneShot::RetractPoint | OneShot::DataInputEnd | OneShot::CheckReference,
+            ) => return,
             Some(
                 OneShot::FromReference
+                | OneShot::StraightRapid
                 | OneShot::ToolAxis { .. }
                 | OneShot::CornerArc
                 | OneShot::Cylinder

@@ -17,7 +17,7 @@ pub use code_calls::{
 pub use declared_codes::{DeclaredCodes, DeclaredEffect};
 pub use kinematics::{Kinematics, RotaryAxis};
 pub use machine_values::{MachineValue, MachineValues, has_items};
-pub use parameters::{ParameterError, ParameterId, is_without_effect};
+pub use parameters::{ParameterError, ParameterId, changes_motion, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
 
 /// Least input increment (parameter 1013).

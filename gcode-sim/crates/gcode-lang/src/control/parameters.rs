@@ -114,9 +114,7 @@ const ROWS: &[ParameterRow] = &[
     bit_row(19696, 5, ParameterAccess::Key("WKP", |s| f64::from(s.tip_in_work_system))),
 ];
 
-/// Parameters that can be written and read back but have no effect on a run.
-///
-/// Only parameters known to be so are listed; any other one may change the motion.
+/// Parameters that can be written and read back but are known to have no effect on a run.
 #[rustfmt::skip]
 const WITHOUT_EFFECT: &[u16] = &[
     // Input and output devices: the channel, and for each channel its bits, device and baud rate.
@@ -130,6 +128,24 @@ const WITHOUT_EFFECT: &[u16] = &[
 /// Returns true if a parameter has no effect on a run.
 pub fn is_without_effect(number: u16) -> bool {
     WITHOUT_EFFECT.contains(&number)
+}
+
+/// Ranges of parameters of which any may change where a program moves: units, axes, coordinates and limits, servo, the reading
+/// of programs, compensation, cycles and coordinate systems, macros, axis control, five axes.
+const OF_MOTION: &[std::ops::RangeInclusive<u16>] = &[
+    0..=19,
+    1000..=1399,
+    1800..=1899,
+    3400..=3499,
+    5000..=6099,
+    7000..=8299,
+    11_200..=12_399,
+    19_600..=19_799,
+];
+
+/// Returns true if an unknown parameter may change where a program moves.
+pub fn changes_motion(number: u16) -> bool {
+    OF_MOTION.iter().any(|range| range.contains(&number))
 }
 
 fn set_roll_over(settings: &mut Settings, axis: AxisIndex, value: f64) -> Option<()> {

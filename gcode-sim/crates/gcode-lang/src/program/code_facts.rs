@@ -174,6 +174,8 @@ pub struct CodeFacts {
     pub timing: Timing,
     /// Effect on a machine that the events do not show.
     pub unsimulated: Unsimulated,
+    /// True for a code that some machine builders add.
+    pub is_of_builder: bool,
 }
 
 use AxisWords::{Hole, Move, Other, Position, PositionInAbsolute, Tables};
@@ -194,6 +196,7 @@ pub(super) const MODAL: CodeFacts = CodeFacts {
     coordinates: Free,
     timing: ReadAhead,
     unsimulated: Unsimulated::No,
+    is_of_builder: false,
 };
 
 pub(super) const CYCLE: CodeFacts = CodeFacts { axis_words: Hole, ..MODAL };
@@ -230,6 +233,8 @@ pub(super) const CONTOUR_CONTROL: CodeFacts =
     CodeFacts { unsimulated: Unsimulated::Path(VALUES), ..WITHOUT_EFFECT };
 pub(super) const SMOOTH_CONTOUR_CONTROL: CodeFacts =
     CodeFacts { words: CodeWords { measured: Measured::Nothing, ..WITHOUT_EFFECT.words }, ..CONTOUR_CONTROL };
+/// Accuracy mode of some machine builders, with the values of its words.
+pub(super) const ACCURACY_MODE: CodeFacts = CodeFacts { is_of_builder: true, ..SMOOTH_CONTOUR_CONTROL };
 pub(super) const LOOK_AHEAD: CodeFacts = CodeFacts { unsimulated: Unsimulated::Path(VALUES), ..MODAL };
 pub(super) const SMOOTHNESS: CodeFacts = CodeFacts {
     words: CodeWords { own: Letters::of(b"E"), without_effect: Letters::of(b"EP"), ..CodeWords::NONE },
@@ -276,6 +281,8 @@ pub(super) const DATA_INPUT: CodeFacts = CodeFacts {
     unsimulated: Unsimulated::Writes,
     ..ONE_SHOT
 };
+/// G10.6.
+pub(super) const RETRACT_POINT: CodeFacts = CodeFacts { axis_words: Tables, ..ONE_SHOT };
 pub(super) const DATA_INPUT_END: CodeFacts = ONE_SHOT;
 
 /// G30.
@@ -298,6 +305,14 @@ pub(super) const SKIP: CodeFacts = CodeFacts {
     words: CodeWords { measured: Measured::Axes, ..CodeWords::NONE },
     lookahead: Suspends,
     timing: Waits,
+    ..ONE_SHOT
+};
+/// G266 of a Haas.
+pub(super) const STRAIGHT_RAPID: CodeFacts = CodeFacts {
+    axis_words: PositionInAbsolute,
+    without_axes: Nothing,
+    words: CodeWords { own: Letters::of(b"E"), without_effect: Letters::of(b"E"), ..CodeWords::NONE },
+    lookahead: Refused,
     ..ONE_SHOT
 };
 /// G35, G36, G37 and G136 of a Haas.

@@ -146,6 +146,8 @@ pub enum OneShot {
     Dwell,
     /// G10: data input.
     DataInput,
+    /// G10.6: point to which the tool retracts at the operator's signal.
+    RetractPoint,
     /// G11: end of data input.
     DataInputEnd,
     /// G27: reference position check.
@@ -156,6 +158,8 @@ pub enum OneShot {
     FromReference,
     /// G30: move to the second, third or fourth reference position.
     SecondReference,
+    /// G266 of a Haas: rapid in a straight line, E the percentage of the rapid rate.
+    StraightRapid,
     /// G31: skip.
     Skip,
     /// G35, G36, G37 and G136 of a Haas: a skip whose signal sets an offset.

@@ -34,6 +34,10 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
         let codes = BlockCodes::of(words);
+        // What a macro that is not here makes of its arguments is unknown.
+        let calls_unknown = words.call().is_some_and(|call| !call.arguments.is_empty())
+            && unit.call_in(block).is_none_or(|call| context.called_unit(call).is_none());
+        let severity = if calls_unknown { Severity::Note } else { RULE.kind.severity };
         for word in codes.measured_words(settings) {
             let Some(number) = without_point(word) else { continue };
             let is_peck = word.letter == b'Q' && words.call().is_none() && !codes.mills_pocket();
@@ -44,7 +48,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             let written = spelled(word.letter, number);
             let message = format!("{written} is {}", codes.meaning(word.letter, number, settings, is_inch));
             let finding = unit.finding(&RULE.kind, block, message).with_span(word.span);
-            found.push(finding.help(format!("write {written}.")));
+            found.push(finding.with_severity(severity).help(format!("write {written}.")));
         }
     }
     if found.len() < MANY_NUMBERS || numbers(unit, settings).any(|number| number.places.is_some()) {
@@ -121,7 +125,7 @@ impl<'w> BlockCodes<'w> {
         self.has(|effect| matches!(effect, Effect::OneShot(OneShot::CirclePocket(_) | OneShot::Pocket)))
     }
 
-    /// Returns true for a tapping cycle. On a Haas its J is the multiple of the speed at which it retracts.
+    /// Returns true for a tapping cycle.
     fn taps(&self) -> bool {
         self.has(|effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.taps()))
     }
@@ -150,6 +154,7 @@ impl<'w> BlockCodes<'w> {
                     |effect: &Effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.uses_q());
                 self.mills_pocket() || self.has(is_peck)
             }
+            // J of a tapping cycle of a Haas multiplies the speed of the retract.
             (Measured::AsInMove, b'J') if self.taps() => false,
             (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => true,
             (Measured::AsInMove, b'C') if word.comma => true,
@@ -200,6 +205,10 @@ fn spelled(letter: u8, number: Decimal) -> String {
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
     use super::RULE;
+    use crate::check;
+    use gcode_lang::control::Settings;
+    use gcode_lang::diag::Severity;
+    use gcode_lang::program::NoLibrary;
 
     #[test]
     fn a_missing_point_is_reported() {
@@ -209,6 +218,17 @@ mod tests {
             found,
             ["Z-3 is -0.003 mm", "X2 is 0.002 seconds", "B90 is 0.09 degrees", "A5 is 0.005 for the macro"]
         );
+    }
+
+    #[test]
+    fn an_argument_of_a_macro_that_is_not_here_is_a_note() {
+        let severity = |text: &str| {
+            let found = check("O1.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary).findings;
+            found.into_iter().find(|finding| finding.code() == "missing-point").unwrap().severity
+        };
+        assert_eq!(severity("O1\nG65 P9810 A5 Z1.\nM30\n"), Severity::Note);
+        assert_eq!(severity("O1\nG65 P2 A5 Z1.\nM30\nO2\n#100=#1\nM99\n"), Severity::Warning);
+        assert_eq!(severity("O1\nG65 P9810 Z1.\nG00 X5\nM30\n"), Severity::Warning);
     }
 
     #[test]
@@ -237,6 +257,7 @@ mod tests {
             "O1\nG0 X0 Y0.5\nG43 H1 Z100.\nM98 P2 L3\nG4 P500\nM30\nO2\nM99\n",
             "O1\nG0 X45000 Y500\nG1 Z-3000 F200\nM30\n",
             "O1\nG83 X1. Y1. Z-20. R2. Q500 K3 F100\nM30\n",
+            "O1\nS500\nG84 X1. Z-9. R2. J4 F500.\nM30\n",
             "O1\n#1=3\nG4 X500\nG0 X#1 Y[5]\nG10 L2 P1 X1.\nG51 X0 Y0 I2000 J2000\nM30\n",
             "O1\nG65 P2 A5. D3 H2 T1 S5\nM30\nO2\nM99\n",
             "O1\nG0 X1.\nG10 L52\nN6004 Q0 R1\nN1241 P1 R5.\nG11\nM30\n",

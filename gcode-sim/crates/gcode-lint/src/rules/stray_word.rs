@@ -1,5 +1,8 @@
 //! Rule: a word that no block of this control accepts: `X10., Y5.` (PS0053), `X1E3` and missing axes
 //! (PS0009).
+use gcode_lang::control::Dialect;
+use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::modes::Motion;
 use gcode_lang::program::{LoweredWord, Words};
 
 use crate::prelude::*;
@@ -36,6 +39,9 @@ fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Optio
         return (!matches!(word.letter, b'R' | b'C' | b'A')).then_some(Alarm::CornerWords);
     }
     let is_refused = match word.letter {
+        // A Haas takes E in rapids and cycles, whose mode another block may set.
+        b'E' if context.settings.codes == Dialect::HaasNgc => context
+            .has_effect(words, |effect| matches!(effect, Effect::Motion(motion) if motion != Motion::Rapid)),
         b'E' => true,
         b'A'..=b'C' | b'U'..=b'Z' => axes.find(word.letter).is_none(),
         _ => false,
