@@ -107,7 +107,7 @@ impl KnownMetal {
             return body.touches(&Frustum { base: *from, axis: *axis, length, taper }, &(to - from));
         }
         let Some(holes) = &self.holes else { return false };
-        let margin = Vector3::repeat(radius);
+        let margin = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt());
         let up = axis.into_inner() * self.removed.height_of_metal(from, axis);
         let (low, high) = (from.inf(to) - margin, from.sup(to) + margin);
         let mut is_touched = false;

@@ -70,7 +70,8 @@ impl KnownMetal {
     pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let travel = [*from, *to];
         let is_in_known = self.body.is_some() || self.is_solid(&travel);
-        is_in_known.then(|| self.uncut(&travel).is_some())
+        let line = Strip::line(travel);
+        is_in_known.then(|| !NearMetal::new(self, line.bounds(), Judged::Uncut(None)).is_clear(&line))
     }
 }
 
