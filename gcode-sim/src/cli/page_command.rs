@@ -5,6 +5,7 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::{ExitStatus, UsageError, options, output, page};
+use gcode_part::NominalPart;
 use gcode_session::Criteria;
 
 #[derive(Debug, Args)]
@@ -27,8 +28,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let reference = arguments.reference.clone().or_else(|| project.reference());
     let (mut request, mut folders) =
         options::checked_request(&program, reference.as_deref(), None, Some(&arguments.output))?;
-    let refusal = "a page shows holes, and the reference is a burr: omit the reference";
-    let nominal = options::read_holes(reference.as_deref(), &request, &mut folders, refusal)?;
+    let nominal =
+        reference.as_deref().map(|path| options::read_nominal(path, &request, &mut folders)).transpose()?;
+    if let (Some(NominalPart::Flutes(_)), Some(path)) = (&nominal, &reference) {
+        if arguments.reference.is_some() {
+            return Err(UsageError::new(
+                "a page shows holes, and the reference is a burr: omit the reference",
+            ));
+        }
+        let note = "the reference of the program in gcode.toml is a burr: the page has no verdict";
+        output::print_message(&format!("note: {}: {note}\n", path.display()));
+    }
+    let nominal = nominal.and_then(NominalPart::into_holes);
     let traced = page::judge_traced(&mut request, &mut folders, nominal.as_ref().map(Criteria::of))?;
     let judged = reference.as_deref().zip(nominal.as_ref());
     page::write_alone(&request, &traced, judged, &program.conditions, &arguments.output)?;
