@@ -185,7 +185,7 @@ impl<'m> NearMetal<'m> {
         let Some(holes) = self.metal.holes.as_deref() else { return Shares::default() };
         // Without a diameter the wall of a hole is unknown.
         let mut shares = self.solid(strip, |hole| holes.collar(hole).has_diameter);
-        for pocket in &self.metal.pockets {
+        for pocket in self.metal.pockets_near(&strip.bounds()) {
             if shares.is_empty() {
                 return shares;
             }
