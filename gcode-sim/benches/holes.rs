@@ -168,3 +168,55 @@ fn rapids_in_a_pocket(bencher: divan::Bencher<'_, '_>, count: u32) {
         .counter(ItemsCount::new(count))
         .bench_local(|| simulate(&request, &mut NoLibrary, metal.clone()).expect("there is a program"));
 }
+
+/// Turns of a helix in solid metal.
+const TURNS: [u32; 3] = [50, 100, 200];
+
+/// Returns a program with a helix of radius 8 down to 50 mm, wider than the hole by 2 mm.
+fn helix(turns: u32) -> String {
+    let mut text = "O1\nG21 G17 G40 G49 G54 G80 G90 G94\nT2 M06\nS6000 M03\nG43 H2 Z50.\nG0 X60. Y40.\nZ1.\nG1 Z0. F500.\nX68.\n"
+        .to_owned();
+    for turn in 1..=turns {
+        let depth = 50.0 * f64::from(turn) / f64::from(turns);
+        writeln!(text, "G3 I-8. Z-{depth:.4}").expect("a string can be written to");
+    }
+    text + "G3 I-8.\nG1 X60.\nG0 Z50.\nM30\n"
+}
+
+/// Judges each turn by what the turns above it have removed.
+#[divan::bench(args = TURNS, sample_count = 5, sample_size = 1)]
+fn turns_of_a_helix(bencher: divan::Bencher<'_, '_>, count: u32) {
+    bencher.counter(ItemsCount::new(count)).bench_local(|| simulate_in_block(helix(count)));
+}
+
+/// Holes drilled in pecks of 0.1 mm.
+const PECKED: [u32; 3] = [50, 100, 200];
+
+/// Drills holes of 500 pecks each in solid metal.
+#[divan::bench(args = PECKED, sample_count = 5, sample_size = 1)]
+fn pecks(bencher: divan::Bencher<'_, '_>, count: u32) {
+    let mut text =
+        "O1\nG21 G17 G40 G49 G54 G80 G90 G94\nT2 M06\nS6000 M03\nG43 H2 Z50.\nG0 X60. Y40.\n".to_owned();
+    for _ in 0..count {
+        text.push_str("G83 X60. Y40. Z-50. R2. Q0.1 F200.\nG83 X61.\n");
+    }
+    text.push_str("G80\nM30\n");
+    bencher.counter(ItemsCount::new(count)).bench_local(|| simulate_in_block(text.clone()));
+}
+
+/// Runs a program on a block of 120 × 80 × 60 with one hole of Φ22 in it.
+fn simulate_in_block(program: String) -> Simulation {
+    let hole = Hole {
+        entry: [60.0, 40.0, 0.0],
+        axis: [0.0, 0.0, 1.0],
+        depth: 50.0,
+        diameter: Some(22.0),
+        ..Hole::default()
+    };
+    let body = Surface::Block { min: [0.0, 0.0, -60.0].into(), max: [120.0, 80.0, 0.0].into() };
+    let entries = Some(Arc::new(EntryPlanes::of(&[hole], 0.1)));
+    let machine = Machine::parse(MILL).expect("the machine file is valid");
+    let request = Request::new("O1.nc", program.into_bytes(), machine);
+    simulate(&request, &mut NoLibrary, Metal { body: Some(body), entries, pockets: Vec::new() })
+        .expect("there is a program")
+}

@@ -250,3 +250,25 @@ fn a_verdict_on_flutes_is_the_same_everywhere() {
         compare(place.path(), &arguments, &expected);
     }
 }
+
+/// A page shows holes. A burr that is named is refused; one that the project names for the program is left out, and said.
+#[test]
+fn a_page_leaves_out_the_burr_of_a_project() {
+    let place = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(place.path().join(name), text).unwrap();
+    let burr = std::fs::read_to_string(workspace().join("tests/suite/verify/burr.toml")).unwrap();
+    write("burr.toml", &burr);
+    write("O1.nc", &program("S1000 M03", "X10.", ""));
+    let page = |arguments: &str| {
+        let done = run_line(&format!("gcode-sim page O1.nc -o O1.html {arguments}"), place.path());
+        (String::from_utf8(done.stderr).unwrap(), done.status.code().unwrap())
+    };
+    let (text, code) = page("--reference burr.toml");
+    assert_eq!(code, 2);
+    assert!(text.contains("the reference is a burr: omit the reference"), "{text}");
+    write("gcode.toml", "[references]\n\"O1.nc\" = \"burr.toml\"\n");
+    let (text, code) = page("");
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("is a burr: the page has no verdict"), "{text}");
+    assert!(!std::fs::read_to_string(place.path().join("O1.html")).unwrap().contains("class=\"answer"));
+}

@@ -5,13 +5,13 @@ mod alignment;
 use gcode_draw::Picture;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::flutes::FluteVerdict;
-use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_inspect::verify::{Answer, Verdict};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
 use gcode_part::job::Job;
 use gcode_part::{Flutes, NominalPart, Reference, exceeds, overlaps};
-use gcode_session::{Request, Run, grind, simulate};
+use gcode_session::{Criteria, Request, Run, judge_flutes, judge_holes};
 use gcode_sim::report::verdict_table::{Layout, table};
 use gcode_sim::report::{diagnostic, flute_table, flute_view, top};
 use schemars::JsonSchema;
@@ -104,14 +104,12 @@ pub fn check(job: &Job, package: &Package) -> Result<CheckedPackage, CheckError>
 fn check_holes(
     job: &Job,
     package: &Package,
-    mut request: Request,
+    request: Request,
     stem: &str,
     reference: &Reference,
 ) -> Result<CheckedPackage, CheckError> {
-    request.process_limits = reference.process_limits.clone();
-    let simulation = simulate(&request, &mut Programs(package), request.metal(reference))
-        .map_err(|e| broken_package("the main program", &e))?;
-    let verdict = simulation.verify(reference, Tolerances::of(reference, None), &request);
+    let judged = judge_holes(&request, &mut Programs(package), Criteria::of(reference), &mut (), &mut ());
+    let (simulation, verdict) = judged.map_err(|e| broken_package("the main program", &e))?;
     let top = top::of_verdict(&request.name, &simulation, reference, &verdict, &request.machine);
     let mut also = Vec::new();
     // A pattern checks for overlaps before it computes any holes.
@@ -150,9 +148,8 @@ fn check_flutes(
     stem: &str,
     nominal: &Flutes,
 ) -> Result<CheckedPackage, CheckError> {
-    let grinding = grind(request, &mut Programs(package), nominal)
+    let (grinding, verdict) = judge_flutes(request, &mut Programs(package), nominal)
         .map_err(|e| broken_package("the main program", &e))?;
-    let verdict = grinding.verify(request);
     let view = flute_view::of(&request.name, &grinding, &verdict);
     let (refusals, warnings) = messages(&verdict.diagnostics, &grinding.run, Vec::new(), verdict.verdict);
     Ok(CheckedPackage {

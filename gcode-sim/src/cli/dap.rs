@@ -126,7 +126,7 @@ fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
     };
     let program = ProgramArguments { program: PathBuf::from(&arguments.program), conditions };
     let (program, project) = program.completed()?;
-    let (request, mut folders) = options::request(&program)?;
+    let (mut request, mut folders) = options::request(&program)?;
     let given = arguments.reference.as_ref().map(PathBuf::from);
     let is_given = given.is_some();
     let nominal = match given.or_else(|| project.reference()) {
@@ -135,6 +135,7 @@ fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
     };
     let reference = match nominal {
         Some(NominalPart::Holes(reference)) => {
+            request = request.for_reference(&reference);
             let tolerances = Tolerances::of(&reference, None);
             Some((reference, tolerances))
         }

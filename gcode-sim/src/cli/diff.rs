@@ -5,7 +5,6 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
-use super::library::Folders;
 use super::picture_file::PictureFile;
 use super::project::{self, Project};
 use super::{ExitStatus, UsageError, options, output, page, progress, render, unused_machine};
@@ -13,11 +12,8 @@ use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
 use crate::report::sarif::{FileLocation, Finding};
-use gcode_inspect::verify::Tolerances;
-use gcode_part::NominalPart;
-use gcode_part::Reference;
 use gcode_review::{Revision, RevisionDiff, unexecuted};
-use gcode_session::{Request, Trace};
+use gcode_session::{Criteria, Trace};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -81,21 +77,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut old_request, mut old_folders) = options::request(&before.of(&arguments.old))?;
     let (mut new_request, mut new_folders) = options::request(&after.of(&arguments.new))?;
     unused_machine::warn_unused_machine(&after.of(&arguments.new), &new_request);
-    let read = |path: &Path| read_reference_holes(path, &new_request, &mut new_folders);
-    let reference = arguments.reference.as_deref().map(read).transpose()?;
-    let metal =
-        |request: &Request| reference.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
-    for request in [&mut old_request, &mut new_request] {
-        request.process_limits =
-            reference.as_ref().map(|reference| reference.process_limits.clone()).unwrap_or_default();
-    }
+    let path = arguments.reference.as_deref();
+    let named = path.unwrap_or(Path::new("")).display();
+    let refusal =
+        format!("--reference {named}: a page verifies holes, and this is a burr: omit the reference");
+    let reference = options::read_holes(path, &new_request, &mut new_folders, &refusal)?;
+    let criteria = reference.as_ref().map(Criteria::of);
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
     let old = progress::of_run(&mut old_request, |request| {
-        Revision::observed(request, &mut old_folders, metal(request), &mut old_trace)
+        Revision::observed(request, &mut old_folders, criteria, &mut old_trace)
     })?;
     let new = progress::of_run(&mut new_request, |request| {
-        Revision::observed(request, &mut new_folders, metal(request), &mut new_trace)
+        Revision::observed(request, &mut new_folders, criteria, &mut new_trace)
     })?;
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let unexecuted = unexecuted(&old, &new);
@@ -127,21 +121,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         output::written("picture", file.path(), arguments.format == FindingFormat::Text)?;
     }
     if let (Some(path), Some(old_trace), Some(new_trace)) = (&arguments.page, &old_trace, &new_trace) {
-        let judged = |revision: &Revision, request: &Request| {
-            let verify = |reference: &Reference| {
-                let tolerances = Tolerances::of(reference, None);
-                revision.simulation.verify(reference, tolerances, request)
-            };
-            reference.as_ref().map(verify)
-        };
-        let (old_verdict, new_verdict) = (judged(&old, &old_request), judged(&new, &new_request));
-        let seen = |request, revision, trace, verdict| ObservedProgram { request, revision, trace, verdict };
         let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
         let of_old = arguments.old_libraries.iter().map(|folder| format!("--old-lib {}", folder.display()));
         let flags: Vec<String> = page::flags(&after).into_iter().chain(of_old).collect();
         let review = Page {
-            old: Some((seen(&old_request, &old, old_trace, old_verdict.as_ref()), difference)),
-            new: seen(&new_request, &new, new_trace, new_verdict.as_ref()),
+            old: Some((ObservedProgram::of(&old_request, &old, old_trace), difference)),
+            new: ObservedProgram::of(&new_request, &new, new_trace),
             machine: &new_request.machine,
             reference: reference.as_ref(),
             conditions: &flags,
@@ -169,19 +154,4 @@ fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding>
     };
     let changes = compared.changes.iter().map(found);
     changes.chain(new.stopped().map(|stopped| Finding::of(stopped, sources))).collect()
-}
-
-/// Reads the page's reference.
-fn read_reference_holes(
-    path: &Path,
-    request: &Request,
-    folders: &mut Folders,
-) -> Result<Reference, UsageError> {
-    match options::read_nominal(path, request, folders)? {
-        NominalPart::Holes(reference) => Ok(reference),
-        NominalPart::Flutes(_) => Err(UsageError::new(format!(
-            "--reference {}: a page verifies holes, and this is a burr: omit the reference",
-            path.display()
-        ))),
-    }
 }

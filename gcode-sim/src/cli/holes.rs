@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) =
         options::checked_request(&program, None, None, arguments.page.as_deref())?;
     if let Some(path) = &arguments.page {
-        let traced = page::simulate_traced(&mut request, &mut folders, None)?;
+        let traced = page::judge_traced(&mut request, &mut folders, None)?;
         page::write_alone(&request, &traced, None, &program.conditions, path)?;
         let status = print_result(arguments, &request, &traced.0.simulation)?;
         output::written("page", path, arguments.format == ListFormat::Text)?;

@@ -19,7 +19,6 @@ use super::{ExitStatus, UsageError, framing, input, options, output, page};
 use crate::report::proof::ProofReport;
 use crate::report::run::RunReport;
 use gcode_control::Control;
-use gcode_inspect::verify::Tolerances;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
 use gcode_lsp::{Ending, Host, LibrarySource, serve};
@@ -27,7 +26,7 @@ use gcode_part::{NominalPart, Total};
 use gcode_prove::{Ask, Setup, Watch, prove};
 use gcode_review::Revision;
 use gcode_session::files::FileAccess;
-use gcode_session::{Request, Trace};
+use gcode_session::{Criteria, Request, Trace};
 
 /// Exit code of a server that a signal ends.
 const SIGNALLED: i32 = 1;
@@ -151,14 +150,12 @@ impl Host for EditorHost {
     ) -> Result<Value, String> {
         match sentence(options::read_nominal(reference, request, &mut library))? {
             NominalPart::Holes(nominal) => {
-                let request = Request { process_limits: nominal.process_limits.clone(), ..request.clone() };
-                let metal = request.metal(&nominal);
-                let simulation = sentence(gcode_session::simulate(&request, &mut library, metal))?;
-                json(&simulation.verify(&nominal, Tolerances::of(&nominal, None), &request))
+                let criteria = Criteria::of(&nominal);
+                let judged = gcode_session::judge_holes(request, &mut library, criteria, &mut (), &mut ());
+                json(&sentence(judged)?.1)
             }
             NominalPart::Flutes(nominal) => {
-                let grinding = sentence(gcode_session::grind(request, &mut library, &nominal))?;
-                json(&grinding.verify(request))
+                json(&sentence(gcode_session::judge_flutes(request, &mut library, &nominal))?.1)
             }
         }
     }
@@ -206,16 +203,10 @@ impl Host for EditorHost {
     ) -> Result<String, String> {
         let nominal = reference.map(|path| options::read_nominal(path, request, &mut library)).transpose();
         let nominal = sentence(nominal)?.and_then(NominalPart::into_holes);
-        let metal = nominal.as_ref().map(|nominal| request.metal(nominal)).unwrap_or_default();
-        let limits = nominal.as_ref().map(|nominal| nominal.process_limits.clone()).unwrap_or_default();
-        let request = Request { process_limits: limits, ..request.clone() };
         let mut trace = Trace::default();
-        let revision = sentence(Revision::observed(&request, &mut library, metal, &mut trace))?;
-        let verdict = nominal
-            .as_ref()
-            .map(|nominal| revision.simulation.verify(nominal, Tolerances::of(nominal, None), &request));
-        let judged = reference.zip(nominal.as_ref()).zip(verdict.as_ref());
-        let judged = judged.map(|((path, nominal), verdict)| (path, nominal, verdict));
+        let criteria = nominal.as_ref().map(Criteria::of);
+        let revision = sentence(Revision::observed(request, &mut library, criteria, &mut trace))?;
+        let judged = reference.zip(nominal.as_ref());
         let program = Path::new(&request.name);
         let given = RunConditions {
             main_program: request.main.as_ref().map(|main| main.name.label()),
@@ -223,7 +214,7 @@ impl Host for EditorHost {
             ..RunConditions::default()
         };
         let (conditions, _) = sentence(Project::of(program))?.complete(program, &given);
-        sentence(page::alone(&request, &(revision, trace), judged, &conditions))
+        sentence(page::alone(request, &(revision, trace), judged, &conditions))
     }
 }
 

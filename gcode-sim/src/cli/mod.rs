@@ -48,10 +48,10 @@ use args::{Arguments, Command};
 
 use crate::report::diagnostic;
 use gcode_draw::PictureError;
-use gcode_inspect::verify::{Answer, Conclusion, Ending};
+use gcode_inspect::verify::{Answer, Conclusion, Ending, Verdict};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_part::reader::FileError;
-use gcode_session::{GrindingError, Run, SessionError};
+use gcode_session::{GrindingError, Run, SessionError, Simulation};
 
 /// Outcome of a request, the same for both programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -166,6 +166,14 @@ fn execute(arguments: Arguments) -> Result<ExitStatus, UsageError> {
 fn concluded(conclusion: Conclusion<'_>, all: &[Diagnostic], run: &Run) -> ExitStatus {
     findings(all, run);
     conclusion.into()
+}
+
+/// Prints the findings of a run or of the verdict on it, and returns the exit status.
+fn judged(simulation: &Simulation, verdict: Option<&Verdict>) -> ExitStatus {
+    match verdict {
+        Some(verdict) => concluded(verdict.conclusion(), &verdict.diagnostics, &simulation.run),
+        None => findings(&simulation.extracted.findings, &simulation.run),
+    }
 }
 
 /// Prints the findings and returns the exit status of the most severe one.

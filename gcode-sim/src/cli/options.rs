@@ -11,6 +11,7 @@ use gcode_lang::program::Library;
 use gcode_lang::syntax::ast::ProgramPath;
 use gcode_part::NominalPart;
 use gcode_part::ProbedPart;
+use gcode_part::Reference;
 use gcode_part::job::{Rotary, control_file};
 use gcode_session::Request;
 
@@ -172,6 +173,18 @@ pub(super) fn read_nominal(
         gcode_session::complete_depths(request, library, reference)?;
     }
     Ok(nominal)
+}
+
+/// Reads the reference of a command that shows holes; a burr is refused with this sentence.
+pub(super) fn read_holes(
+    path: Option<&Path>,
+    request: &Request,
+    library: &mut impl Library,
+    refusal: &str,
+) -> Result<Option<Reference>, UsageError> {
+    let nominal = path.map(|path| read_nominal(path, request, library)).transpose()?;
+    let refused = |nominal: NominalPart| nominal.into_holes().ok_or_else(|| UsageError::new(refusal));
+    nominal.map(refused).transpose()
 }
 
 /// Checks the value of a tolerance flag.

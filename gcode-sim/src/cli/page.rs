@@ -5,21 +5,21 @@ use super::conditions::RunConditions;
 use super::library::Folders;
 use super::{UsageError, input, output, progress};
 use crate::report::page::{Document, ObservedProgram, Page};
-use gcode_inspect::verify::Verdict;
-use gcode_part::Metal;
 use gcode_part::Reference;
 use gcode_review::Revision;
-use gcode_session::{Request, Trace};
+use gcode_session::{Criteria, Request, Trace};
 
-/// Runs a program and records the trace that the page shows.
-pub(super) fn simulate_traced(
+/// Runs and judges a program, and records the trace that the page shows.
+pub(super) fn judge_traced(
     request: &mut Request,
     folders: &mut Folders,
-    metal: impl Into<Metal>,
+    criteria: Option<Criteria<'_>>,
 ) -> Result<(Revision, Trace), UsageError> {
     let mut trace = Trace::default();
     let revision =
-        progress::of_run(request, |request| Revision::observed(request, folders, metal, &mut trace))?;
+        progress::of_run(request, |request| Revision::observed(request, folders, criteria, &mut trace))?;
+    // The page is then not complete, and the result is.
+    super::findings(&revision.truncation, &revision.simulation.run);
     Ok((revision, trace))
 }
 
@@ -27,27 +27,27 @@ pub(super) fn simulate_traced(
 pub(super) fn write_alone(
     request: &Request,
     traced: &(Revision, Trace),
-    judged: Option<(&Path, &Reference, &Verdict)>,
+    reference: Option<(&Path, &Reference)>,
     conditions: &RunConditions,
     path: &Path,
 ) -> Result<(), UsageError> {
-    output::write(path, alone(request, traced, judged, conditions)?.as_bytes())
+    output::write(path, alone(request, traced, reference, conditions)?.as_bytes())
 }
 
 /// Returns the page of one program as HTML.
 pub(super) fn alone(
     request: &Request,
     (revision, trace): &(Revision, Trace),
-    judged: Option<(&Path, &Reference, &Verdict)>,
+    reference: Option<(&Path, &Reference)>,
     conditions: &RunConditions,
 ) -> Result<String, UsageError> {
     let page = Page {
         old: None,
-        new: ObservedProgram { request, revision, trace, verdict: judged.map(|(_, _, verdict)| verdict) },
+        new: ObservedProgram::of(request, revision, trace),
         machine: &request.machine,
-        reference: judged.map(|(_, reference, _)| reference),
+        reference: reference.map(|(_, reference)| reference),
         conditions: &flags(conditions),
-        documents: &documents(conditions, judged.map(|(path, ..)| path))?,
+        documents: &documents(conditions, reference.map(|(path, _)| path))?,
     };
     html(&page)
 }

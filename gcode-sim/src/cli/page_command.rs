@@ -5,8 +5,8 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::{ExitStatus, UsageError, options, output, page};
-use gcode_inspect::verify::Tolerances;
 use gcode_part::NominalPart;
+use gcode_session::Criteria;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -30,25 +30,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         options::checked_request(&program, reference.as_deref(), None, Some(&arguments.output))?;
     let nominal =
         reference.as_deref().map(|path| options::read_nominal(path, &request, &mut folders)).transpose()?;
-    if let Some(NominalPart::Flutes(_)) = nominal {
-        return Err(UsageError::new("a page shows holes, and the reference is a burr: omit the reference"));
+    if let (Some(NominalPart::Flutes(_)), Some(path)) = (&nominal, &reference) {
+        if arguments.reference.is_some() {
+            return Err(UsageError::new(
+                "a page shows holes, and the reference is a burr: omit the reference",
+            ));
+        }
+        let note = "the reference of the program in gcode.toml is a burr: the page has no verdict";
+        output::print_message(&format!("note: {}: {note}\n", path.display()));
     }
     let nominal = nominal.and_then(NominalPart::into_holes);
-    let metal = nominal.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
-    request.process_limits =
-        nominal.as_ref().map(|nominal| nominal.process_limits.clone()).unwrap_or_default();
-    let traced = page::simulate_traced(&mut request, &mut folders, metal)?;
-    let simulation = &traced.0.simulation;
-    let verdict = nominal
-        .as_ref()
-        .map(|reference| simulation.verify(reference, Tolerances::of(reference, None), &request));
-    let judged = reference.as_deref().zip(nominal.as_ref()).zip(verdict.as_ref());
-    let judged = judged.map(|((path, reference), verdict)| (path, reference, verdict));
+    let traced = page::judge_traced(&mut request, &mut folders, nominal.as_ref().map(Criteria::of))?;
+    let judged = reference.as_deref().zip(nominal.as_ref());
     page::write_alone(&request, &traced, judged, &program.conditions, &arguments.output)?;
     output::written("page", &arguments.output, true)?;
-    let run = &traced.0.simulation.run;
-    Ok(match &verdict {
-        Some(verdict) => super::concluded(verdict.conclusion(), &verdict.diagnostics, run),
-        None => super::findings(&traced.0.simulation.extracted.findings, run),
-    })
+    Ok(super::judged(&traced.0.simulation, traced.0.verdict.as_ref()))
 }

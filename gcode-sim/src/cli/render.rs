@@ -17,7 +17,7 @@ use gcode_inspect::verify::{Answer, Tolerances, denied_words};
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_part::{Assumption, NominalPart, Reference, Stock, Total};
-use gcode_session::{Request, Run, Simulation};
+use gcode_session::{Criteria, HoleJudgement, Request, Run, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -138,9 +138,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         }
         Some(NominalPart::Flutes(mut flutes)) => {
             flutes.surface_tolerance = tolerance.unwrap_or(flutes.surface_tolerance);
-            let grind = |request: &Request| gcode_session::grind(request, &mut folders, &flutes);
-            let grinding = progress::of_run(&mut request, grind)?;
-            let verdict = grinding.verify(&request);
+            let judge = |request: &Request| gcode_session::judge_flutes(request, &mut folders, &flutes);
+            let (grinding, verdict) = progress::of_run(&mut request, judge)?;
             let view = views.first().copied().unwrap_or(View::Side);
             let picture = flute_picture(view, &flute_view::of(&name(&request), &grinding, &verdict))?;
             Drawn {
@@ -155,9 +154,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         None | Some(NominalPart::Holes(_)) => {
             let reference = nominal.and_then(NominalPart::into_holes);
             let style = Style { views, projection: arguments.projection, color_by: arguments.color_by };
-            let nominal =
-                reference.as_ref().map(|reference| (reference, Tolerances::of(reference, tolerance)));
-            of_path(&style, arguments.deny, &mut request, &mut folders, nominal)?
+            let criteria = reference
+                .as_ref()
+                .map(|reference| Criteria { reference, tolerances: Tolerances::of(reference, tolerance) });
+            of_path(&style, arguments.deny, &mut request, &mut folders, criteria)?
         }
     };
     arguments.output.draw(&drawn.picture, arguments.size.parse()?)?;
@@ -213,26 +213,23 @@ fn of_path(
     deny: DenyArguments,
     request: &mut Request,
     folders: &mut Folders,
-    nominal: Option<(&Reference, Tolerances)>,
+    criteria: Option<Criteria<'_>>,
 ) -> Result<Drawn, UsageError> {
-    let reference = nominal.map(|(reference, _)| reference);
-    let metal = reference.map(|reference| request.metal(reference)).unwrap_or_default();
-    request.process_limits = reference.map(|r| r.process_limits.clone()).unwrap_or_default();
+    let reference = criteria.map(|criteria| criteria.reference);
     let machine = request.machine.clone();
     let mut recorder = PathRecorder::new(&machine);
-    let simulate = |request: &Request| {
-        gcode_session::simulate_observed(request, folders, metal.clone(), &mut recorder, &mut ())
+    let judge = |request: &Request| {
+        gcode_session::simulate_judged(request, folders, criteria, &mut recorder, &mut ())
     };
-    let simulation = progress::of_run(request, simulate)?;
+    let HoleJudgement { simulation, verdict } = progress::of_run(request, judge)?;
     let path = recorder.finish();
-    let (holes, verdict, status, findings) = match nominal {
-        Some((reference, tolerances)) => {
-            let verdict = simulation.verify(reference, tolerances, request);
+    let (holes, verdict, status, findings) = match (reference, verdict) {
+        (Some(reference), Some(verdict)) => {
             let holes = top::of_verdict(&name(request), &simulation, reference, &verdict, &machine);
             let status = Some(verdict.conclusion().into());
             (holes, Some((verdict.verdict, verdict.summary.clone())), status, verdict.diagnostics)
         }
-        None => {
+        _ => {
             let found = simulation.dependencies(request);
             let assumed = found.numbered(&simulation.run);
             let denied = deny.errors(&assumed, Total::Holes(found.count()));

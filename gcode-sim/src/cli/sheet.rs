@@ -11,8 +11,8 @@ use crate::report::sheet::recorder::{OffsetObserver, UseRecorder};
 use crate::report::top;
 use gcode_draw::{FileFormat, Size};
 use gcode_inspect::tool_path::PathRecorder;
-use gcode_inspect::verify::Tolerances;
-use gcode_part::{Assumption, NominalPart};
+use gcode_part::Assumption;
+use gcode_session::{Criteria, HoleJudgement};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -34,43 +34,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let path = arguments.reference.clone().or_else(|| project.reference());
     let (mut request, mut folders) =
         options::checked_request(&program, path.as_deref(), None, Some(&arguments.output))?;
-    let nominal =
-        path.as_deref().map(|path| options::read_nominal(path, &request, &mut folders)).transpose()?;
-    if let Some(NominalPart::Flutes(_)) = nominal {
-        return Err(UsageError::new(
-            "this sheet shows holes, and the reference is a burr: `gcode-gen sheet JOB.toml` writes that of a burr",
-        ));
-    }
-    let reference = nominal.and_then(NominalPart::into_holes);
-    let metal = reference.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
-    request.process_limits = reference.as_ref().map(|one| one.process_limits.clone()).unwrap_or_default();
+    let refusal = "this sheet shows holes, and the reference is a burr: `gcode-gen sheet JOB.toml` writes that of a burr";
+    let reference = options::read_holes(path.as_deref(), &request, &mut folders, refusal)?;
     let machine = request.machine.clone();
     let mut recorder = PathRecorder::new(&machine);
     let (mut uses, mut offsets) = (UseRecorder::default(), OffsetObserver::default());
-    let simulation = progress::of_run(&mut request, |request| {
-        gcode_session::simulate_observed(
-            request,
-            &mut folders,
-            metal.clone(),
-            &mut (&mut recorder, &mut uses),
-            &mut offsets,
-        )
+    let criteria = reference.as_ref().map(Criteria::of);
+    let HoleJudgement { simulation, verdict } = progress::of_run(&mut request, |request| {
+        let sink = &mut (&mut recorder, &mut uses);
+        gcode_session::simulate_judged(request, &mut folders, criteria, sink, &mut offsets)
     })?;
     let tool_path = recorder.finish();
-    let verdict = reference.as_ref().map(|reference| {
-        (reference, simulation.verify(reference, Tolerances::of(reference, None), &request))
-    });
-    let dependencies = simulation.dependencies(&request);
-    let alone: Vec<Assumption> =
-        dependencies.numbered(&simulation.run).into_iter().map(|(assumption, _)| assumption).collect();
     let name = render::name(&request);
-    let (holes, findings, assumptions) = match &verdict {
-        Some((reference, verdict)) => (
+    let (holes, findings, assumptions) = match (&reference, &verdict) {
+        (Some(reference), Some(verdict)) => (
             top::of_verdict(&name, &simulation, reference, verdict, &machine),
             verdict.diagnostics.clone(),
             verdict.assumptions.clone(),
         ),
-        None => {
+        _ => {
+            let dependencies = simulation.dependencies(&request).numbered(&simulation.run);
+            let alone: Vec<Assumption> = dependencies.into_iter().map(|(assumption, _)| assumption).collect();
             let findings = simulation.extracted.findings.clone();
             (top::of_holes(&name, &simulation, &machine, &alone), findings, alone)
         }
@@ -98,7 +82,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         simulation: &simulation,
         uses: &uses,
         offsets: &offsets,
-        verdict: verdict.as_ref().map(|(_, verdict)| (verdict.conclusion(), verdict.not_checked.as_slice())),
+        verdict: verdict.as_ref().map(|verdict| (verdict.conclusion(), verdict.not_checked.as_slice())),
         findings: &findings,
         assumptions: &assumptions,
         files: &files,
@@ -106,9 +90,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     };
     output::write(&arguments.output, sheet.html().as_bytes())?;
     output::written("sheet", &arguments.output, true)?;
-    let run = &simulation.run;
-    Ok(match &verdict {
-        Some((_, verdict)) => super::concluded(verdict.conclusion(), &verdict.diagnostics, run),
-        None => super::findings(&findings, run),
-    })
+    Ok(super::judged(&simulation, verdict.as_ref()))
 }

@@ -18,8 +18,7 @@ use gcode_inspect::verify::{Conclusion, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Flutes;
 use gcode_part::NominalPart;
-use gcode_part::Reference;
-use gcode_session::{Request, Run, Simulation};
+use gcode_session::{Criteria, Request, Run, Simulation};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct Arguments {
@@ -89,7 +88,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
-            holes(arguments, &mut request, folders, (path, &ManuallyDrop::new(reference)), tolerances)
+            let reference = ManuallyDrop::new(reference);
+            holes(arguments, &mut request, folders, path, Criteria { reference: &reference, tolerances })
         }
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
@@ -113,8 +113,8 @@ fn flutes(
     mut folders: Folders,
     nominal: &Flutes,
 ) -> Result<ExitStatus, UsageError> {
-    let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, nominal))?;
-    let verdict = grinding.verify(request);
+    let judge = |request: &Request| gcode_session::judge_flutes(request, &mut folders, nominal);
+    let (grinding, verdict) = progress::of_run(request, judge)?;
     let table = || flute_table::table(&verdict);
     let picture = || gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
     let result = (&verdict, verdict.conclusion(), verdict.diagnostics.as_slice());
@@ -152,11 +152,10 @@ fn holes(
     arguments: &Arguments,
     request: &mut Request,
     mut folders: Folders,
-    (path_of_reference, reference): (&Path, &Reference),
-    tolerances: Tolerances,
+    path_of_reference: &Path,
+    criteria: Criteria<'_>,
 ) -> Result<ExitStatus, UsageError> {
-    request.process_limits = reference.process_limits.clone();
-    let machine = request.machine.clone();
+    let (machine, reference) = (request.machine.clone(), criteria.reference);
     let name = render::name(request);
     let print = |simulation: &Simulation, verdict: &Verdict| {
         let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
@@ -166,19 +165,20 @@ fn holes(
         print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
     };
     if let Some(path) = &arguments.page {
-        let metal = request.metal(reference);
-        let traced = page::simulate_traced(request, &mut folders, metal)?;
-        let verdict = traced.0.simulation.verify(reference, tolerances, request);
-        let judged = Some((path_of_reference, reference, &verdict));
+        let traced = page::judge_traced(request, &mut folders, Some(criteria))?;
+        let judged = Some((path_of_reference, reference));
         page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;
-        let status = print(&traced.0.simulation, &verdict)?;
+        let status = traced
+            .0
+            .verdict
+            .as_ref()
+            .map_or(Ok(ExitStatus::Failed), |verdict| print(&traced.0.simulation, verdict))?;
         output::written("page", path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let simulate =
-        |request: &Request| gcode_session::simulate(request, &mut folders, request.metal(reference));
-    let simulation = progress::of_run(request, simulate)?;
-    let verdict = simulation.verify(reference, tolerances, request);
+    let judge =
+        |request: &Request| gcode_session::judge_holes(request, &mut folders, criteria, &mut (), &mut ());
     // The process ends with the result: the system takes its memory back as a whole.
-    print(&ManuallyDrop::new(simulation), &ManuallyDrop::new(verdict))
+    let judgement = ManuallyDrop::new(progress::of_run(request, judge)?);
+    print(&judgement.0, &judgement.1)
 }

@@ -10,12 +10,13 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use gcode_inspect::machine::Machine;
-use gcode_inspect::verify::{Answer, Finding, HoleVerdict, Tolerances, Verdict};
+use gcode_inspect::verify::flutes::FluteVerdict;
+use gcode_inspect::verify::{Answer, Finding, HoleVerdict, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Call};
 use gcode_lang::program::NoLibrary;
 use gcode_part::{Assumption, AssumptionPlace, NominalPart};
-use gcode_session::{GrindingRun, Request, Run, Simulation, grind, simulate};
+use gcode_session::{Criteria, Request, Run, Simulation, judge_flutes, judge_holes, simulate};
 use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
 
@@ -32,17 +33,18 @@ pub(crate) fn run(case: &Case) {
         let axis = machine.axes.find(letter.as_bytes()[0]).unwrap();
         (axis, position.parse::<f64>().unwrap())
     }));
-    let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
+    let request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let nominal = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
     let (actual, layout) = match nominal {
         Some(NominalPart::Flutes(flutes)) => {
-            inspect_flutes(&grind(&request, &mut NoLibrary, &flutes).unwrap(), &request)
+            let (grinding, verdict) = judge_flutes(&request, &mut NoLibrary, &flutes).unwrap();
+            inspect_flutes(&verdict, &grinding.run)
         }
         Some(nominal) => {
             let reference = nominal.into_holes().unwrap();
-            request.process_limits = reference.process_limits.clone();
-            let simulation = simulate(&request, &mut NoLibrary, request.metal(&reference)).unwrap();
-            let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &request);
+            let criteria = Criteria::of(&reference);
+            let (simulation, verdict) =
+                judge_holes(&request, &mut NoLibrary, criteria, &mut (), &mut ()).unwrap();
             inspect_holes(&verdict, &simulation.run)
         }
         None => list_holes(&simulate(&request, &mut NoLibrary, None).unwrap()),
@@ -134,8 +136,7 @@ fn deviations(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
     ]
 }
 
-fn inspect_flutes(grinding: &GrindingRun, request: &Request) -> (ActualVerdict, String) {
-    let verdict = grinding.verify(request);
+fn inspect_flutes(verdict: &FluteVerdict, run: &Run) -> (ActualVerdict, String) {
     let found = [
         ("contact", verdict.surface_deviation),
         ("helix_min", verdict.helix_min),
@@ -154,15 +155,15 @@ fn inspect_flutes(grinding: &GrindingRun, request: &Request) -> (ActualVerdict, 
             verdict.flutes,
             verdict.nominal_flutes
         )),
-        findings: finding_lines(&verdict.diagnostics, &verdict.findings, &grinding.run),
+        findings: finding_lines(&verdict.diagnostics, &verdict.findings, run),
         missing: Vec::new(),
         not_checked: verdict.not_checked.clone(),
         assumptions: verdict.assumptions.iter().map(assumption_line).collect(),
         facts: vec![("burr".to_owned(), known_facts(found))],
         made: Vec::new(),
     };
-    let shown = flute_table::table(&verdict);
-    (actual, with_findings(shown, &verdict.diagnostics, &grinding.run))
+    let shown = flute_table::table(verdict);
+    (actual, with_findings(shown, &verdict.diagnostics, run))
 }
 
 /// Lists the holes that a program without a reference makes.

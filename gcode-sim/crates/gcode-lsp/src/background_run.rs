@@ -5,12 +5,11 @@ use std::sync::Arc;
 
 use gcode_control::{Limits, Outcome, Progress};
 use gcode_ide::{FileId, ProgramKey, Project};
-use gcode_inspect::verify::Tolerances;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
 use gcode_part::{NominalPart, Reference};
-use gcode_session::{Request, Trace};
+use gcode_session::{Criteria, HoleJudgement, Request, Trace};
 
 use crate::failure::Failure;
 use crate::overlay::Overlay;
@@ -45,10 +44,11 @@ fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts 
     let mut library = setup.library(&snapshot.files);
     let mut trace = Trace::default();
     let nominal = reference(&setup, &snapshot.files, &request, &mut library);
-    let metal = nominal.as_ref().map(|reference| request.metal(reference)).unwrap_or_default();
-    let simulated = gcode_session::simulate_observed(&request, &mut library, metal, &mut (), &mut trace);
-    let simulation = match simulated {
-        Ok(simulation) => simulation,
+    // The deviations of a hole are those of its own file.
+    let criteria = nominal.as_ref().filter(|_| main == file).map(Criteria::of);
+    let judged = gcode_session::simulate_judged(&request, &mut library, criteria, &mut (), &mut trace);
+    let HoleJudgement { simulation, verdict } = match judged {
+        Ok(judged) => judged,
         Err(error) => return RunFacts::cut_off(error.to_string()),
     };
     let run = &simulation.run;
@@ -57,9 +57,8 @@ fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts 
     let source = memory.sources().iter().find(|(_, source)| Path::new(&source.name) == path);
     let source = source.map(|(id, _)| id);
     let blocks = trace.blocks().filter(|executed| Some(executed.block.source) == source);
-    let holes = match &nominal {
-        Some(reference) if main == file => {
-            let verdict = simulation.verify(reference, Tolerances::of(reference, None), &request);
+    let holes = match &verdict {
+        Some(verdict) => {
             let tolerance = verdict.tolerance;
             let is_own = |label: &str| {
                 let programs = snapshot.project.programs();
@@ -80,7 +79,7 @@ fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts 
             }
             holes
         }
-        _ => BTreeMap::new(),
+        None => BTreeMap::new(),
     };
     RunFacts {
         blocks: blocks.cloned().collect(),

@@ -12,14 +12,23 @@ pub struct Overlap {
     pub distance: f64,
     /// Sum of the radii, mm.
     pub radius_sum: f64,
+    /// Number of further holes behind the second that the first overlaps and that are not listed.
+    pub further: usize,
 }
+
+/// Largest number of listed overlaps of one hole with holes behind it.
+const MOST_LISTED: usize = 8;
 
 impl Overlap {
     /// Returns one sentence with the ids of the holes.
     pub fn sentence(&self, holes: &[Hole]) -> String {
         let [one, other] = self.holes.map(|index| holes[index].id.as_deref().unwrap_or("?"));
+        let further = match self.further {
+            0 => String::new(),
+            count => format!("; {count} more holes overlap hole {one}"),
+        };
         format!(
-            "holes {one} and {other} overlap: their axes come within {:.3} mm, their radii add up to {:.3} mm",
+            "holes {one} and {other} overlap: their axes come within {:.3} mm, their radii add up to {:.3} mm{further}",
             self.distance, self.radius_sum
         )
     }
@@ -50,14 +59,15 @@ impl SizedHole {
     }
 }
 
-/// Returns all pairs of overlapping holes with known diameters, in the order of the list. A hole with features counts as wide
-/// as the widest of them.
+/// Returns the pairs of overlapping holes with known diameters, in the order of the list: of each hole the first eight with
+/// holes behind it, and the number of the others. A hole with features counts as wide as the widest of them.
 pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
     let mut sized: Vec<_> =
         holes.iter().enumerate().filter_map(|(index, hole)| SizedHole::new(index, hole)).collect();
     // Sorted along x: only holes that overlap in x are compared.
     sized.sort_by(|a, b| a.low[0].total_cmp(&b.low[0]));
-    let mut found = Vec::new();
+    // A list of n holes on one spot has n² pairs.
+    let mut found: Vec<Vec<Overlap>> = vec![Vec::new(); holes.len()];
     for (place, one) in sized.iter().enumerate() {
         let rest = sized[place + 1..].iter().take_while(|next| next.low[0] < one.high[0]);
         for other in rest.filter(|other| one.box_meets(other)) {
@@ -69,12 +79,23 @@ pub fn overlaps(holes: &[Hole]) -> Vec<Overlap> {
             // Tangent holes share a single line without material between them; rounding must not report them.
             if distance < radius_sum - 1e-9 {
                 let holes = [one.index.min(other.index), one.index.max(other.index)];
-                found.push(Overlap { holes, distance, radius_sum });
+                list(&mut found[holes[0]], Overlap { holes, distance, radius_sum, further: 0 });
             }
         }
     }
-    found.sort_by_key(|overlap| overlap.holes);
-    found
+    found.into_iter().flatten().collect()
+}
+
+/// Lists an overlap in the order of the second holes; the last of a full list counts those that are left out.
+fn list(of_hole: &mut Vec<Overlap>, overlap: Overlap) {
+    let further = of_hole.last_mut().map_or(0, |last| std::mem::take(&mut last.further));
+    let place = of_hole.partition_point(|other| other.holes < overlap.holes);
+    of_hole.insert(place, overlap);
+    let left_out = of_hole.len().saturating_sub(MOST_LISTED);
+    of_hole.truncate(MOST_LISTED);
+    if let Some(last) = of_hole.last_mut() {
+        last.further = further + left_out;
+    }
 }
 
 /// Returns true if two holes are steps of one: on one axis, with different diameters.
@@ -127,6 +148,22 @@ mod tests {
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].holes, found[0].radius_sum), ([0, 2], 5.0));
         assert!((found[0].distance - 4.9).abs() < 1e-12);
+    }
+
+    /// Twelve holes of 6 at pitch 0.1: the first overlaps eleven behind it, of which eight are listed, the fourth exactly eight.
+    #[test]
+    fn of_many_overlaps_eight_a_hole_are_listed_and_the_others_counted() {
+        let at = |index: u32| hole([f64::from(index) * 0.1, 0.0, 0.0], [0.0, 0.0, 1.0], 10.0, 6.0);
+        for order in [(0..12).collect::<Vec<_>>(), (0..12).rev().collect()] {
+            let found = overlaps(&order.into_iter().map(at).collect::<Vec<_>>());
+            let of = |first: usize| found.iter().filter(move |overlap| overlap.holes[0] == first);
+            assert_eq!(of(0).map(|overlap| overlap.holes[1]).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6, 7, 8]);
+            let further = |first: usize| of(first).map(|overlap| overlap.further).collect::<Vec<_>>();
+            assert_eq!(further(0), [0, 0, 0, 0, 0, 0, 0, 3]);
+            assert_eq!(further(3), [0; 8]);
+            assert_eq!(further(10), [0]);
+            assert_eq!(found.len(), 8 * 4 + 7 + 6 + 5 + 4 + 3 + 2 + 1);
+        }
     }
 
     #[test]

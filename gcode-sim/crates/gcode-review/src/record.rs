@@ -16,13 +16,13 @@ use super::step_list::StepList;
 use super::steps::StepKind;
 use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue};
 use gcode_inspect::holes::DrilledHole;
+use gcode_inspect::verify::Verdict;
 use gcode_lang::alarm::kinds::{LIMIT, PS0076};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Axes, Backtrace, CallChain, MAX_AXES, Position};
 use gcode_lang::program::Library;
 use gcode_lang::source::{SourceId, Span};
-use gcode_part::Metal;
-use gcode_session::{Request, Run, SessionError, Simulation};
+use gcode_session::{Criteria, HoleJudgement, Request, Run, SessionError, Simulation};
 
 /// Steps, holes and final state of one revision.
 #[derive(Clone, Debug)]
@@ -96,38 +96,41 @@ pub(super) struct ResidualEntry {
 pub struct Revision {
     /// The run, its holes and its findings.
     pub simulation: Simulation,
+    /// The verdict on the holes; `None` without a reference.
+    pub verdict: Option<Verdict>,
     /// The record of the run.
     pub record: Record,
+    /// The finding that the run has more moves than a record.
+    pub truncation: Option<Diagnostic>,
 }
 
 impl Revision {
-    /// Runs a program and records its steps; motion in known metal is a finding.
+    /// Runs a program, judges its holes if there are criteria, and records its steps.
     pub fn of(
         request: &Request,
         library: &mut impl Library,
-        metal: impl Into<Metal>,
+        criteria: Option<Criteria<'_>>,
     ) -> Result<Self, SessionError> {
-        Self::observed(request, library, metal, &mut ())
+        Self::observed(request, library, criteria, &mut ())
     }
 
     /// Runs a program like [`Revision::of`], with an observer of its blocks.
     pub fn observed(
         request: &Request,
         library: &mut impl Library,
-        metal: impl Into<Metal>,
+        criteria: Option<Criteria<'_>>,
         observer: &mut impl Observer,
     ) -> Result<Self, SessionError> {
         let recorder = RefCell::new(Recorder::default());
         let (mut sink, mut both) =
             (SharedRecorder(&recorder), ObserverPair(SharedRecorder(&recorder), observer));
-        let mut simulation = gcode_session::simulate_observed(request, library, metal, &mut sink, &mut both)?;
+        let HoleJudgement { simulation, verdict } =
+            gcode_session::simulate_judged(request, library, criteria, &mut sink, &mut both)?;
         let recorder = recorder.into_inner();
-        if recorder.is_truncated {
-            let message = format!("more than {MOST_STEPS} moves: later ones are not compared");
-            simulation.extracted.findings.push(Diagnostic::new(&LIMIT, message));
-        }
+        let message = || format!("more than {MOST_STEPS} moves: later ones are not compared");
+        let truncation = recorder.is_truncated.then(|| Diagnostic::new(&LIMIT, message()));
         let record = record(&simulation, recorder);
-        Ok(Self { simulation, record })
+        Ok(Self { simulation, verdict, record, truncation })
     }
 
     /// Returns the file of each program by its name in a [`BlockLocation`]; names of several files are left out.
@@ -151,7 +154,8 @@ impl Revision {
 
     /// Iterates over the alarms and limits that stopped the run or its record.
     pub fn stopped(&self) -> impl Iterator<Item = &Diagnostic> {
-        self.simulation.extracted.findings.iter().filter(|finding| finding.severity == Severity::Alarm)
+        let findings = self.simulation.extracted.findings.iter().chain(&self.truncation);
+        findings.filter(|finding| finding.severity == Severity::Alarm)
     }
 }
 

@@ -3,7 +3,8 @@
 //! **In:** a [`Request`], which holds the program's bytes, the control's settings and the machine, and a
 //! [`Library`] of called programs. **Out:** a [`Run`] with the control in its end state, or a run with the
 //! extracted holes ([`simulate`]), the ground flutes ([`grind`]) or the readings of an edge finder ([`read_stylus`]).
-//! Each result verifies itself against a reference and reports findings as [`Diagnostic`]s.
+//! [`judge_holes`] and [`judge_flutes`] run a program and verify what it makes against a reference: the verdict that every
+//! command shows. Findings are [`Diagnostic`]s.
 //!
 //! ```
 //! use gcode_inspect::machine::Machine;
@@ -27,6 +28,7 @@ mod completion;
 mod error;
 pub mod file_uri;
 pub mod files;
+mod judgement;
 mod marked_events;
 mod open_depths;
 mod outside_text;
@@ -37,6 +39,7 @@ use std::sync::Arc;
 
 pub use assumptions::Dependencies;
 pub use error::SessionError;
+pub use judgement::{Criteria, HoleJudgement, judge_flutes, judge_holes, simulate_judged};
 pub use open_depths::complete_depths;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
@@ -109,6 +112,12 @@ impl Request {
             denies_assumptions: false,
             progress: None,
         }
+    }
+
+    /// Returns the request with the limits of the process that a reference specifies.
+    #[must_use]
+    pub fn for_reference(&self, reference: &Reference) -> Self {
+        Self { process_limits: reference.process_limits.clone(), ..self.clone() }
     }
 
     /// Returns what is known to be metal of a reference: its stock overrides that of the machine.

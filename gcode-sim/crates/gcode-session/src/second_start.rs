@@ -53,7 +53,7 @@ pub(super) fn finding(
     if let Some(progress) = &request.progress {
         control.set_progress(Arc::clone(progress));
     }
-    let mut extractor = extractor(request, metal.clone());
+    let mut extractor = extractor(request, metal.clone()).without_rapids();
     let limits = Limits { blocks: request.limits.blocks.min(MAX_BLOCKS_RATIO * run.control.blocks()) };
     let mut feeds_again = FeedTrace::default();
     let mut sinks = (&mut extractor, &mut feeds_again);

@@ -11,12 +11,12 @@ use crate::cli::project::Project;
 use crate::cli::{UsageError, input, options};
 use crate::report::test_report::{CaseAnswer, CaseReport, CaseVerdict, FirstFailure};
 use gcode_control::Limits;
-use gcode_inspect::verify::{self, Tolerances, denied_assumptions};
+use gcode_inspect::verify::{self, denied_assumptions};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Backtrace;
-use gcode_part::{Assumption, Metal, NominalPart, Total};
+use gcode_part::{Assumption, NominalPart, Total};
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
-use gcode_session::Run;
+use gcode_session::{Criteria, Run};
 
 /// Name of the file with the accepted result; behind the program's label and a point if the folder has several cases.
 pub(super) const ACCEPTED: &str = "accepted.json";
@@ -149,53 +149,34 @@ impl Case {
         let reference = reference.or_else(|| project.reference());
         let read = |path: &Path| options::read_nominal(path, &request, &mut folders);
         let nominal = reference.as_deref().map(read).transpose()?;
-        let metal = match &nominal {
-            Some(NominalPart::Holes(reference)) => {
-                request.process_limits = reference.process_limits.clone();
-                request.metal(reference)
-            }
-            Some(NominalPart::Flutes(_)) | None => Metal::default(),
+        let criteria = match &nominal {
+            Some(NominalPart::Holes(reference)) => Some(Criteria::of(reference)),
+            Some(NominalPart::Flutes(_)) | None => None,
         };
-        let revision = Revision::of(&request, &mut folders, metal)?;
+        let revision = Revision::of(&request, &mut folders, criteria)?;
         if revision.is_cut_off() {
             return Err(cut_off(&revision));
         }
         let run = &revision.simulation.run;
-        let (against, verdict) = match &nominal {
-            None => {
+        let (against, verdict) = match (&nominal, &revision.verdict) {
+            (Some(NominalPart::Flutes(flutes)), _) => {
+                let (grinding, verdict) = gcode_session::judge_flutes(&request, &mut folders, flutes)?;
+                let against = fails(verdict.verdict, &verdict.diagnostics, &grinding.run);
+                let (summary, total) = (Some(verdict.conclusion().line()), Total::Flutes(verdict.passes));
+                (against, CaseVerdict { summary, total, assumptions: verdict.assumptions })
+            }
+            (_, Some(verdict)) => {
+                let against = fails(verdict.verdict, &verdict.diagnostics, run);
+                let total = Total::Holes(verdict.holes.len() + verdict.extra.len());
+                let (summary, assumptions) = (Some(verdict.conclusion().line()), verdict.assumptions.clone());
+                (against, CaseVerdict { summary, total, assumptions })
+            }
+            (_, None) => {
                 let found = revision.simulation.dependencies(&request);
                 let (assumed, total) = (found.numbered(run), Total::Holes(found.count()));
                 let denied = denied_assumptions(if denies_assumptions { &assumed } else { &[] }, total);
                 let against = denied.first().map(|denied| failure(Some(denied), run));
                 (against, CaseVerdict { summary: None, total, assumptions: without_places(assumed) })
-            }
-            Some(NominalPart::Holes(reference)) => {
-                let tolerances = Tolerances::of(reference, None);
-                let verdict = revision.simulation.verify(reference, tolerances, &request);
-                let against = fails(verdict.verdict, &verdict.diagnostics, run);
-                let total = Total::Holes(verdict.holes.len() + verdict.extra.len());
-                (
-                    against,
-                    CaseVerdict {
-                        summary: Some(verdict.conclusion().line()),
-                        total,
-                        assumptions: verdict.assumptions,
-                    },
-                )
-            }
-            Some(NominalPart::Flutes(flutes)) => {
-                let grinding = gcode_session::grind(&request, &mut folders, flutes)?;
-                let verdict = grinding.verify(&request);
-                let against = fails(verdict.verdict, &verdict.diagnostics, &grinding.run);
-                let total = Total::Flutes(verdict.passes);
-                (
-                    against,
-                    CaseVerdict {
-                        summary: Some(verdict.conclusion().line()),
-                        total,
-                        assumptions: verdict.assumptions,
-                    },
-                )
             }
         };
         let mut not_compared = Vec::new();

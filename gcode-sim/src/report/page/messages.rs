@@ -34,11 +34,13 @@ pub(super) fn messages(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
 
 /// Returns the findings of a run or of its verdict, most severe first.
 fn findings_of<'a>(side: &ReviewSide<'a>) -> Vec<&'a Diagnostic> {
-    let of_run = &side.observed.revision.simulation.extracted.findings;
+    let revision = side.observed.revision;
+    let of_run = &revision.simulation.extracted.findings;
     let mut all: Vec<&Diagnostic> = match side.observed.verdict {
         Some(verdict) => verdict.diagnostics.iter().collect(),
         None => of_run.iter().collect(),
     };
+    all.extend(&revision.truncation);
     all.sort_by_key(|finding| Reverse(finding.severity));
     all
 }

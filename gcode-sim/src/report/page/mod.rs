@@ -39,6 +39,12 @@ pub(crate) struct ObservedProgram<'a> {
     pub(crate) verdict: Option<&'a Verdict>,
 }
 
+impl<'a> ObservedProgram<'a> {
+    pub(crate) fn of(request: &'a Request, revision: &'a Revision, trace: &'a Trace) -> Self {
+        Self { request, revision, trace, verdict: revision.verdict.as_ref() }
+    }
+}
+
 /// An input file besides the programs.
 #[derive(Clone, Debug)]
 pub(crate) struct Document {

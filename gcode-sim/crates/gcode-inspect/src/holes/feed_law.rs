@@ -325,7 +325,12 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns false if a part of the tool stays outside the metal that is known.
-    fn may_cut(&self, part: &ToolPart, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> bool {
+    pub(super) fn may_cut(
+        &self,
+        part: &ToolPart,
+        travel: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+    ) -> bool {
         let Some(body) = self.surface else {
             let [from, to] = travel.map(|tip| tip + axis.into_inner() * part.from);
             return self.metal.is_touched(&from, &to, axis, part.radius());

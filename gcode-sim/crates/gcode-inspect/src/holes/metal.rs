@@ -107,7 +107,7 @@ impl KnownMetal {
             return body.touches(&Frustum { base: *from, axis: *axis, length, taper }, &(to - from));
         }
         let Some(holes) = &self.holes else { return false };
-        let margin = Vector3::repeat(radius);
+        let margin = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt());
         let up = axis.into_inner() * self.removed.height_of_metal(from, axis);
         let (low, high) = (from.inf(to) - margin, from.sup(to) + margin);
         let mut is_touched = false;
@@ -148,7 +148,7 @@ impl KnownMetal {
         axis: &Unit<Vector3<f64>>,
     ) -> Option<(usize, PointInMetal)> {
         let holes = self.holes.as_deref()?;
-        if self.pockets.iter().any(|pocket| -TOUCH_DEPTH < pocket.depth(tip)) {
+        if self.pockets_near(&[*tip, *tip]).any(|pocket| -TOUCH_DEPTH < pocket.depth(tip)) {
             return None;
         }
         let up = tip + axis.into_inner() * self.removed.height_of_metal(tip, axis);
@@ -204,10 +204,28 @@ impl KnownMetal {
         (0..pockets.len()).all(is_open)
     }
 
+    /// Iterates over the pockets that may be nearer to a box than [`TOUCH_DEPTH`].
+    pub(super) fn pockets_near<'m>(
+        &'m self,
+        [low, high]: &[Point3<f64>; 2],
+    ) -> impl Iterator<Item = &'m Surface> + use<'m> {
+        let margin = Vector3::repeat(2.0 * TOUCH_DEPTH);
+        let (low, high) = (low - margin, high + margin);
+        self.pockets.iter().filter(move |pocket| {
+            let [least, greatest] = pocket.bounds();
+            (0..3).all(|i| low[i] <= greatest[i] && least[i] <= high[i])
+        })
+    }
+
     /// Returns true if all metal on a line is in one pocket.
     pub(super) fn is_in_pocket(&self, line: &[Point3<f64>; 2]) -> bool {
-        self.pockets.iter().any(|pocket| {
-            let mut shares = self.solid(&Strip::line(*line), |_| true);
+        let strip = Strip::line(*line);
+        let solid = self.solid(&strip, |_| true);
+        if solid.is_empty() {
+            return !self.pockets.is_empty();
+        }
+        self.pockets_near(&strip.bounds()).any(|pocket| {
+            let mut shares = solid.clone();
             shares.take_away(pocket.piece(&line[0], &line[1], -TOUCH_DEPTH));
             shares.is_empty()
         })

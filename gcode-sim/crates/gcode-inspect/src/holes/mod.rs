@@ -124,6 +124,8 @@ pub struct HoleExtractor<'m> {
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
     process_limits: ProcessLimits,
+    /// Rapids are checked; they decide no hole.
+    checks_rapids: bool,
     clamp_state: ClampState,
     /// Frame of the part at `axis_position`.
     frame: Frame,
@@ -196,6 +198,7 @@ impl<'m> HoleExtractor<'m> {
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
+            checks_rapids: true,
             clamp_state: ClampState::default(),
             frame,
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
@@ -248,6 +251,13 @@ impl<'m> HoleExtractor<'m> {
         if are_straight {
             self.rapid_path = RapidPath::Straight;
         }
+        self
+    }
+
+    /// Checks no rapid: for a run of which only the holes count.
+    #[must_use]
+    pub fn without_rapids(mut self) -> Self {
+        self.checks_rapids = false;
         self
     }
 

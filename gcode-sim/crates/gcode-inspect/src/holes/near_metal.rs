@@ -78,7 +78,8 @@ impl KnownMetal {
     pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let travel = [*from, *to];
         let is_in_known = self.body.is_some() || self.is_solid(&travel);
-        is_in_known.then(|| self.uncut(&travel).is_some())
+        let line = Strip::line(travel);
+        is_in_known.then(|| !NearMetal::new(self, line.bounds(), Judged::Uncut(None)).is_clear(&line))
     }
 }
 
@@ -192,7 +193,7 @@ impl<'m> NearMetal<'m> {
         let Some(holes) = self.metal.holes.as_deref() else { return Shares::default() };
         // Without a diameter the wall of a hole is unknown.
         let mut shares = self.solid(strip, |hole| holes.collar(hole).has_diameter);
-        for pocket in &self.metal.pockets {
+        for pocket in self.metal.pockets_near(&strip.bounds()) {
             if shares.is_empty() {
                 return shares;
             }

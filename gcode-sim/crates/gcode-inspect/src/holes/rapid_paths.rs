@@ -191,8 +191,9 @@ impl HoleExtractor<'_> {
         };
         let paths =
             sides.filter(|_| is_straight).map(|(start, sides)| TipPaths::in_box(start, &sides, &axis));
+        let mut parts = self.tool_body.iter();
         let contact = match self.surface.is_none() && is_straight {
-            true if !self.metal.is_touched(&begin, &tip, &axis, self.body_radius()) => Contact::Clear,
+            true if !parts.any(|part| self.may_cut(part, &[begin, tip], &axis)) => Contact::Clear,
             _ => self.body_contact(path, paths, &axis),
         };
         let Some(cut) = self.in_rapid(event, contact) else { return };

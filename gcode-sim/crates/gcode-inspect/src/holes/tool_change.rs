@@ -88,6 +88,9 @@ impl HoleExtractor<'_> {
         start: Option<Point3<f64>>,
         before: &Point3<f64>,
     ) {
+        if !self.checks_rapids {
+            return;
+        }
         let counted = self.change_retract.rapids.number();
         let way = self.pose.tip - before;
         let along = self.tool_direction().map_or(0.0, |axis| way.dot(&axis));

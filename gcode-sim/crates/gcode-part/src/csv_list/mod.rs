@@ -137,7 +137,8 @@ impl Cells<'_> {
                 "column '{column}' is '{text}': the list has commas and points in its numbers"
             ));
         }
-        text.replacen(',', ".", 1).parse().map_err(|_| format!("column '{column}' is '{text}': a number"))
+        let number = if has_comma { text.replacen(',', ".", 1).parse() } else { text.parse() };
+        number.map_err(|_| format!("column '{column}' is '{text}': a number"))
     }
 
     fn required(&mut self, column: &str, default: Option<f64>) -> Result<f64, String> {

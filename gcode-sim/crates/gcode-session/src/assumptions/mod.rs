@@ -27,7 +27,7 @@ pub struct Dependencies {
 /// first run.
 pub(super) fn of_holes(request: &Request, run: &Run, metal: &Metal, has_holes: bool) -> Dependencies {
     let Some((reads, extractor, strokes)) =
-        follow(request, run, has_holes, || super::extractor(request, metal.clone()))
+        follow(request, run, has_holes, || super::extractor(request, metal.clone()).without_rapids())
     else {
         return Dependencies::default();
     };

@@ -207,6 +207,9 @@ fn rubbing_feed(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) 
         _ => share.map(|share| share.min(LEAST_FEED)),
     };
     let (per_turn, limit) = (feed.0 / speed.0, limit.unwrap_or(LEAST_OPEN_FEED));
+    if !exceeds(limit, per_turn) {
+        return None;
+    }
     let message = format!(
         "{} feeds {} µm a revolution ({} mm/min at S{}), limit {}",
         tool_name(cut.tool),
@@ -216,11 +219,9 @@ fn rubbing_feed(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) 
         round_thousandth(limit * 1e3)
     );
     let finding = Diagnostic::new(&DRILL_FEED, message).with_severity(Severity::Warning);
-    exceeds(limit, per_turn).then(|| {
-        finding.note("the edges rub and cut no chip").help(
-            "check F for a missing decimal point, which counts in thousandths, and whether G94 is in force instead of G95",
-        )
-    })
+    Some(finding.note("the edges rub and cut no chip").help(
+        "check F for a missing decimal point, which counts in thousandths, and whether G94 is in force instead of G95",
+    ))
 }
 
 fn peck(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {

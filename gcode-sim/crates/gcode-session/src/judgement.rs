@@ -1,0 +1,94 @@
+//! Judgement of a program: the one sequence from its run to its verdict, which every command, page, editor and test calls.
+//!
+//! **In:** a [`Request`] and a library of called programs; the nominal part with the tolerances to apply; a further event sink
+//! and an observer of the blocks, both `&mut ()` where nothing else is recorded. **Out:** the run with what it makes, and the
+//! verdict on it. Without a reference a run has no verdict: its findings are those of the run alone.
+//!
+//! The reference decides more than the comparison: the metal round its holes, the limits of its process and the axes by which
+//! passes belong to one hole. Thus the same program without a reference may have other findings.
+use super::{GrindingError, GrindingRun, Request, SessionError, Simulation, grind, simulate_observed};
+use gcode_control::Observer;
+use gcode_inspect::verify::flutes::FluteVerdict;
+use gcode_inspect::verify::{Tolerances, Verdict};
+use gcode_lang::motion::EventSink;
+use gcode_lang::program::Library;
+use gcode_part::{Flutes, Reference};
+
+/// What the holes of a program are judged by.
+#[derive(Clone, Copy, Debug)]
+pub struct Criteria<'r> {
+    /// The nominal holes.
+    pub reference: &'r Reference,
+    /// The tolerances to apply; by [`Criteria::of`] those of the reference.
+    pub tolerances: Tolerances,
+}
+
+impl<'r> Criteria<'r> {
+    /// Returns the criteria of a reference with its own tolerances.
+    pub fn of(reference: &'r Reference) -> Self {
+        Self { reference, tolerances: Tolerances::of(reference, None) }
+    }
+}
+
+/// A run with its holes, and the verdict on them if there is a reference.
+#[derive(Debug)]
+pub struct HoleJudgement {
+    /// The run and its holes.
+    pub simulation: Simulation,
+    /// The verdict; `None` without criteria.
+    pub verdict: Option<Verdict>,
+}
+
+/// Runs a program and judges its holes; `sink` and `observer` record what else the caller shows.
+///
+/// # Errors
+/// [`SessionError`] if the run cannot begin.
+pub fn judge_holes<S: EventSink>(
+    request: &Request,
+    library: &mut impl Library,
+    Criteria { reference, tolerances }: Criteria<'_>,
+    sink: &mut S,
+    observer: &mut impl Observer,
+) -> Result<(Simulation, Verdict), SessionError> {
+    let request = &request.for_reference(reference);
+    let simulation = simulate_observed(request, library, request.metal(reference), sink, observer)?;
+    let verdict = simulation.verify(reference, tolerances, request);
+    Ok((simulation, verdict))
+}
+
+/// Runs a program, and judges its holes like [`judge_holes`] if there are criteria.
+///
+/// # Errors
+/// [`SessionError`] if the run cannot begin.
+pub fn simulate_judged<S: EventSink>(
+    request: &Request,
+    library: &mut impl Library,
+    criteria: Option<Criteria<'_>>,
+    sink: &mut S,
+    observer: &mut impl Observer,
+) -> Result<HoleJudgement, SessionError> {
+    Ok(match criteria {
+        Some(criteria) => {
+            let (simulation, verdict) = judge_holes(request, library, criteria, sink, observer)?;
+            HoleJudgement { simulation, verdict: Some(verdict) }
+        }
+        None => {
+            let simulation = simulate_observed(request, library, None, sink, observer)?;
+            HoleJudgement { simulation, verdict: None }
+        }
+    })
+}
+
+/// Runs a program and judges the flutes that it grinds.
+///
+/// # Errors
+/// [`GrindingError`] if the machine is not a grinder for this burr or the run cannot begin.
+pub fn judge_flutes(
+    request: &Request,
+    library: &mut impl Library,
+    nominal: &Flutes,
+) -> Result<(GrindingRun, FluteVerdict), GrindingError> {
+    let grinding = grind(request, library, nominal)?;
+    let verdict = grinding.verify(request);
+    Ok((grinding, verdict))
+}
