@@ -91,7 +91,8 @@ mod tests {
         let note = "N1 is already defined in line 2: a search finds one of the two, so for 20 other numbers of this program";
         assert_eq!(messages(&RULE, &text), [note]);
         // A number that a GOTO names is a warning of its own.
-        assert_eq!(lines(&RULE, &text.replace("M30", "IF[#500 EQ 1]GOTO 7\nM30")), [23, 29]);
+        let jump = format!("O1\n{}IF[#500 EQ 1]GOTO 7\nM30\n", numbered(22));
+        assert_eq!(lines(&RULE, &jump), [24, 30]);
     }
 
     #[test]
