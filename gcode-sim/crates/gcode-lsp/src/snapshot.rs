@@ -243,8 +243,7 @@ impl Snapshot {
     }
 }
 
-/// Returns the first of some changes, and those behind it of which each lies in lines above the one before: their places are those
-/// of the text before all of them.
+/// Returns the first changes of which each lies in lines above the one before: their places are those of the text before all.
 fn upward_edits(text: &TextDocument, changes: &[TextDocumentContentChangeEvent]) -> Vec<TextEdit> {
     let mut edits = Vec::new();
     let mut lowest = u32::MAX;
