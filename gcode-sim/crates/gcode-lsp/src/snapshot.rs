@@ -251,8 +251,9 @@ fn upward_edits(text: &TextDocument, changes: &[TextDocumentContentChangeEvent])
         let Some(range) = change.range.filter(|range| range.start.line.max(range.end.line) < lowest) else {
             break;
         };
-        lowest = range.start.line.min(range.end.line);
         let (start, end) = text.offsets(range);
+        // A place behind the text lies in its last line.
+        lowest = text.position(start).line;
         edits.push(TextEdit { range: TextRange::new(start, end), text: change.text.clone() });
     }
     edits
