@@ -4,6 +4,8 @@
 use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use gcode_dap::{Adapter, Host, LaunchArguments, LaunchedProgram};
@@ -24,23 +26,28 @@ type Incoming = Result<Vec<u8>, FrameError>;
 
 pub(super) fn run() -> Result<ExitStatus, UsageError> {
     let (sender, receiver) = channel();
-    std::thread::spawn(move || read_messages(&sender));
-    serve(&receiver)
+    let waiting = Arc::new(AtomicUsize::new(0));
+    let unread = Arc::clone(&waiting);
+    std::thread::spawn(move || read_messages(&sender, &unread));
+    serve(&receiver, &waiting)
 }
 
-/// Reads standard input to its end.
-fn read_messages(sender: &Sender<Incoming>) {
+/// Reads standard input to its end, and counts the messages.
+fn read_messages(sender: &Sender<Incoming>, waiting: &AtomicUsize) {
     let mut stdin = std::io::stdin().lock();
     while let Ok(Some(message)) = read_body(&mut stdin) {
+        waiting.fetch_add(1, Ordering::Relaxed);
         if sender.send(message).is_err() {
             return;
         }
     }
+    // The client is gone: nothing is to go on.
+    waiting.fetch_add(1, Ordering::Relaxed);
 }
 
 /// Handles messages until the client disconnects or is gone; in between the run goes on.
-fn serve(receiver: &Receiver<Incoming>) -> Result<ExitStatus, UsageError> {
-    let mut adapter = Adapter::new(Files);
+fn serve(receiver: &Receiver<Incoming>, waiting: &Arc<AtomicUsize>) -> Result<ExitStatus, UsageError> {
+    let mut adapter = Adapter::new(Files { waiting: Arc::clone(waiting) });
     while !adapter.is_over() {
         let message = if adapter.is_running() {
             match receiver.try_recv() {
@@ -54,6 +61,9 @@ fn serve(receiver: &Receiver<Incoming>) -> Result<ExitStatus, UsageError> {
                 Err(_) => break,
             }
         };
+        if message.is_some() {
+            waiting.fetch_sub(1, Ordering::Relaxed);
+        }
         match message {
             Some(Ok(message)) => adapter.receive(&message),
             Some(Err(reason)) => adapter.refuse(&reason),
@@ -77,10 +87,16 @@ fn send(messages: &[String]) -> Result<bool, UsageError> {
     }
 }
 
-/// The files of this computer.
-struct Files;
+/// The files of this computer, and the number of messages that wait.
+struct Files {
+    waiting: Arc<AtomicUsize>,
+}
 
 impl Host for Files {
+    fn has_message(&self) -> bool {
+        0 < self.waiting.load(Ordering::Relaxed)
+    }
+
     fn launch(&mut self, arguments: &LaunchArguments) -> Result<LaunchedProgram, String> {
         launch(arguments).map_err(|refusal| in_terms_of_launch(&refusal.to_string()))
     }

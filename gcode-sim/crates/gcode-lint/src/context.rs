@@ -11,13 +11,16 @@ use gcode_lang::program::g_codes::{self, Effect, GCodeRow};
 use gcode_lang::program::{
     CallCode, LoweredWord, Memory, Op, OpIndex, OpKind, Program, ProgramId, Statement, WordOperand, Words,
 };
-use gcode_lang::source::{Span, Spanned};
-use gcode_lang::syntax::ast;
+use gcode_lang::source::{SourceId, Span, Spanned};
+use gcode_lang::syntax::{KnownBlocks, ast};
 
 use super::ControlKnowledge;
 use super::calls::{self, CallSite};
+use super::components::strongly_connected_components;
 use super::control_flow::ControlFlowGraph;
 use super::possible_modes::PossibleModes;
+use super::vacancy::{self, Locals, States};
+use super::variables::{self, VariableRead};
 
 const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
 
@@ -43,9 +46,33 @@ pub(crate) struct LeftOutNumber {
     pub block: Span,
 }
 
+/// Program that is lowered, with the trees of its blocks and its calls.
+#[derive(Debug)]
+pub(crate) struct LoadedProgram {
+    pub id: ProgramId,
+    pub blocks: Vec<ast::Block>,
+    pub calls: Vec<CallSite>,
+}
+
+impl LoadedProgram {
+    /// Lowers a program. The known blocks are those of the first text.
+    pub(super) fn new(
+        memory: &mut Memory,
+        id: ProgramId,
+        known: &mut KnownBlocks,
+        settings: &Settings,
+    ) -> Self {
+        let mut none = KnownBlocks::default();
+        let is_first = memory.get(id).span.source == SourceId(0);
+        let blocks = memory.lower_with_trees(id, if is_first { known } else { &mut none });
+        Self { id, blocks, calls: calls::call_sites(memory.get(id), settings) }
+    }
+}
+
 /// One program under check.
 #[derive(Debug)]
 pub(crate) struct ProgramUnit<'a> {
+    pub id: ProgramId,
     /// Blocks as written: the tree keeps comments and decimal points.
     pub blocks: Vec<ast::Block>,
     /// Operations; block and operation have the same index.
@@ -63,6 +90,10 @@ pub(crate) struct ProgramUnit<'a> {
     pub role: Role,
     /// Modes before each block, see `modes`.
     pub modes: OnceCell<Vec<Option<PossibleModes>>>,
+    /// Variables that each block reads, see `variables`.
+    reads: OnceCell<Vec<Vec<VariableRead>>>,
+    components: OnceCell<Vec<usize>>,
+    states_without_arguments: OnceCell<States>,
     /// Sequence numbers of the blocks that are left out, in the order of the blocks.
     pub left_out_numbers: Vec<LeftOutNumber>,
 }
@@ -82,14 +113,20 @@ impl<'a> CheckContext<'a> {
     pub(super) fn new(
         memory: &'a Memory,
         (settings, knowledge): (&'a Settings, ControlKnowledge),
-        programs: &[ProgramId],
+        programs: Vec<LoadedProgram>,
         rules: Vec<&'static str>,
     ) -> Self {
-        let unit_indices = programs.iter().enumerate().map(|(unit, id)| (*id, unit)).collect();
-        let units = programs.iter().map(|id| ProgramUnit::new(memory.get(*id), settings)).collect();
+        let unit_indices = programs.iter().enumerate().map(|(unit, program)| (program.id, unit)).collect();
+        let units = programs.into_iter().map(|program| ProgramUnit::new(memory, program)).collect();
         let mut context = Self { memory, settings, knowledge, units, rules, unit_indices };
         context.link_calls();
         context
+    }
+
+    /// Returns the programs again.
+    pub(super) fn into_loaded(self) -> Vec<LoadedProgram> {
+        let units = self.units.into_iter();
+        units.map(|ProgramUnit { id, blocks, calls, .. }| LoadedProgram { id, blocks, calls }).collect()
     }
 
     /// Links callers and called programs, adds the return targets of calls and computes reachability.
@@ -224,17 +261,22 @@ fn written_alarm(kind: &OpKind) -> Option<&LocatedAlarm> {
 }
 
 impl<'a> ProgramUnit<'a> {
-    fn new(program: &'a Program, settings: &Settings) -> Self {
+    fn new(memory: &'a Memory, LoadedProgram { id, blocks, calls }: LoadedProgram) -> Self {
+        let program = memory.get(id);
         Self {
-            blocks: program.trees().collect(),
+            id,
+            blocks,
             flow: ControlFlowGraph::new(program),
-            calls: calls::call_sites(program, settings),
+            calls,
             callers: Vec::new(),
             entry_blocks: vec![0],
             is_reached: Vec::new(),
             reaches_end: false,
             role: Role::Main,
             modes: OnceCell::new(),
+            reads: OnceCell::new(),
+            components: OnceCell::new(),
+            states_without_arguments: OnceCell::new(),
             left_out_numbers: Vec::new(),
             program,
         }
@@ -255,6 +297,22 @@ impl<'a> ProgramUnit<'a> {
         let returns = blocks.clone().any(|(call, _)| call == Some(CallCode::Return));
         let ends = blocks.any(|(call, block)| call.is_none() && self.flow.block_successors[block].is_exit);
         if returns && !ends { Role::Resident } else { Role::Main }
+    }
+
+    /// Returns the variables that a block reads.
+    pub(crate) fn reads(&self, block: OpIndex) -> &[VariableRead] {
+        let of_all = || self.blocks.iter().map(variables::block_reads).collect();
+        &self.reads.get_or_init(of_all)[block]
+    }
+
+    /// Returns the component of each node of the control flow, see `components`.
+    pub(crate) fn components(&self) -> &[usize] {
+        self.components.get_or_init(|| strongly_connected_components(&self.flow))
+    }
+
+    /// Returns the states of a program whose locals are all unset at its first block.
+    pub(crate) fn states_without_arguments(&self) -> &States {
+        self.states_without_arguments.get_or_init(|| vacancy::states(self, Locals::UNSET))
     }
 
     pub(crate) fn op(&self, block: OpIndex) -> &Op {

@@ -3,10 +3,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::program::OpIndex;
 
-use super::components::strongly_connected_components;
 use super::context::ProgramUnit;
 use super::vacancy::{Locals, States, UNSET, steps};
-use super::variables;
 
 /// States of a program with the components of its control flow.
 ///
@@ -14,7 +12,7 @@ use super::variables;
 pub(super) struct FirstReach<'a> {
     unit: &'a ProgramUnit<'a>,
     states: &'a States,
-    component: Vec<usize>,
+    component: &'a [usize],
     /// Nodes outside each component that lead into it.
     entries: BTreeMap<usize, Vec<OpIndex>>,
     /// Blocks with those of their locals that may be set when the block is reached for the first time.
@@ -23,7 +21,17 @@ pub(super) struct FirstReach<'a> {
 
 impl<'a> FirstReach<'a> {
     pub(super) fn new(unit: &'a ProgramUnit<'a>, states: &'a States) -> Self {
-        let component = strongly_connected_components(&unit.flow);
+        let mut first =
+            Self { unit, states, component: &[], entries: BTreeMap::new(), set_reads: BTreeSet::new() };
+        let is_unclear_read = |block: OpIndex| {
+            let reads = unit.reads(block).iter().map(|read| read.number);
+            reads.filter(|number| (1..=33).contains(number)).any(|local| is_unclear(first.bits(block, local)))
+        };
+        // Mostly the states decide all reads.
+        if !(0..unit.blocks.len()).any(is_unclear_read) {
+            return first;
+        }
+        let component = unit.components();
         let mut entries: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
         for place in 0..unit.flow.block_count() {
             let left = unit.flow.successors(place).filter(|to| component[*to] != component[place]);
@@ -31,7 +39,7 @@ impl<'a> FirstReach<'a> {
                 entries.entry(component[to]).or_default().push(place);
             }
         }
-        let mut first = Self { unit, states, component, entries, set_reads: BTreeSet::new() };
+        (first.component, first.entries) = (component, entries);
         first.set_reads = first.find_set_reads();
         first
     }
@@ -42,8 +50,8 @@ impl<'a> FirstReach<'a> {
     /// of them is set on a path that passes no earlier reader, which decides most reads.
     fn find_set_reads(&self) -> BTreeSet<(OpIndex, u32)> {
         let mut readers: BTreeMap<(usize, u32), BTreeSet<OpIndex>> = BTreeMap::new();
-        for (block, written) in self.unit.blocks.iter().enumerate() {
-            for number in variables::block_reads(written).iter().map(|read| read.number) {
+        for block in 0..self.unit.blocks.len() {
+            for number in self.unit.reads(block).iter().map(|read| read.number) {
                 if (1..=33).contains(&number) && is_unclear(self.bits(block, number)) {
                     readers.entry((self.component[block], number)).or_default().insert(block);
                 }

@@ -31,6 +31,8 @@ mod modes;
 mod parameters;
 mod possible_modes;
 mod prelude;
+#[cfg(test)]
+mod property_tests;
 mod repetition;
 mod rule;
 pub mod rules;
@@ -46,11 +48,12 @@ pub use expressions::{UsedExpressions, ValueUse, block_expressions};
 pub use literal::{constant, variable};
 pub use main_programs::{main_programs, programs_called_by_others};
 
-use context::CheckContext;
+use context::{CheckContext, LoadedProgram};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_lang::program::{Library, Memory, Program, ProgramId};
-use gcode_lang::source::{Bytes, Span};
+use gcode_lang::program::{Library, Memory, Program};
+use gcode_lang::source::{Bytes, SourceId, Span};
+use gcode_lang::syntax::{KnownBlocks, ReadBlocks};
 use repetition::Repetitions;
 pub use variables::variables_read;
 
@@ -63,6 +66,8 @@ pub struct CheckResult {
     pub programs: usize,
     /// Findings in the order of the programs and their blocks.
     pub findings: Vec<Diagnostic>,
+    /// Blocks of the first text as far as they were read, for [`check_edited`].
+    pub read_blocks: ReadBlocks,
 }
 
 /// Whether the settings of a check are those of the control that executes the programs.
@@ -92,33 +97,67 @@ pub fn check(
 ///
 /// A finding that an option of the control would remove is a note if the control is assumed.
 pub fn check_loaded(
-    mut memory: Memory,
+    memory: Memory,
     settings: &Settings,
     knowledge: ControlKnowledge,
     library: &mut impl Library,
 ) -> CheckResult {
+    check_known(memory, KnownBlocks::default(), (settings, knowledge), library)
+}
+
+/// Checks a file as [`check_loaded`] does. Blocks of an earlier state of its text are not read again where it is the same.
+pub fn check_edited(
+    (name, bytes): (String, Bytes),
+    before: ReadBlocks,
+    control: (&Settings, ControlKnowledge),
+    library: &mut impl Library,
+) -> CheckResult {
+    let known = before.moved_to(&bytes);
+    let mut memory = Memory::default();
+    memory.load_known(name, bytes, &known);
+    check_known(memory, known, control, library)
+}
+
+fn check_known(
+    mut memory: Memory,
+    known: KnownBlocks,
+    control: (&Settings, ControlKnowledge),
+    library: &mut impl Library,
+) -> CheckResult {
     let mut repetitions = Repetitions::default();
-    let programs = load_called_programs(&mut memory, settings, library, &mut repetitions);
-    let mut context = CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes());
-    for (unit, id) in context.units.iter_mut().zip(&programs) {
-        unit.left_out_numbers = repetitions.take_numbers(*id);
+    let mut units = load_called_programs(&mut memory, known, control.0, library, &mut repetitions);
+    if repetitions.may_numbers_matter(&memory, units.iter().map(|unit| unit.id)) {
+        std::mem::take(&mut repetitions).restore(&mut memory, control.0, &mut units);
+    }
+    let mut context = CheckContext::new(&memory, control, units, rules::codes());
+    for unit in &mut context.units {
+        unit.left_out_numbers = repetitions.take_numbers(unit.id);
     }
     let mut findings = rules::findings(&context);
-    if !repetitions.is_exact(&context, &findings) {
-        repetitions.restore(&mut memory);
-        let context = CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes());
+    let mut units = context.into_loaded();
+    if repetitions.stand_for_found(&findings) {
+        repetitions.restore(&mut memory, control.0, &mut units);
+        let context = CheckContext::new(&memory, control, units, rules::codes());
         findings = rules::findings(&context);
+        units = context.into_loaded();
     }
-    CheckResult { programs: programs.len(), memory, findings }
+    let programs = units.len();
+    let of_first = |unit: &LoadedProgram| memory.get(unit.id).span.source == SourceId(0);
+    let blocks = units.into_iter().filter(of_first).flat_map(|unit| unit.blocks).collect();
+    let text = memory.sources().iter().next().map(|(_, first)| first.bytes.clone());
+    let read_blocks = text.map(|text| ReadBlocks::new(text, blocks)).unwrap_or_default();
+    CheckResult { programs, memory, findings, read_blocks }
 }
 
 /// Returns the programs in memory, followed by the programs that they call, as far as these are found.
 fn load_called_programs(
     memory: &mut Memory,
+    mut known_blocks: KnownBlocks,
     settings: &Settings,
     library: &mut impl Library,
     repetitions: &mut Repetitions,
-) -> Vec<ProgramId> {
+) -> Vec<LoadedProgram> {
+    let mut loaded = Vec::new();
     let mut found: Vec<_> = memory.ids().collect();
     let mut known: BTreeSet<_> = found.iter().copied().collect();
     let (main, mut next) = (memory.main(), 0);
@@ -126,22 +165,23 @@ fn load_called_programs(
         // Each program finds what a main program in its folder would find.
         memory.set_main(id);
         repetitions.leave_out(memory, id, settings);
-        let mut targets = calls::called_programs(memory.lower_program(id), settings);
+        let program = LoadedProgram::new(memory, id, &mut known_blocks, settings);
         // A missing program is looked for once, not at each of its calls.
         let mut named = BTreeSet::new();
-        targets.retain(|target| named.insert(target.clone()));
+        let targets = program.calls.iter().map(|call| &call.target).filter(|target| named.insert(*target));
         for target in targets {
             let called = match target {
-                CalledProgramName::Number(number) => memory.fetch(number, library),
-                CalledProgramName::Name(name) => memory.fetch_name(&name, library),
+                CalledProgramName::Number(number) => memory.fetch(*number, library),
+                CalledProgramName::Name(name) => memory.fetch_name(name, library),
                 CalledProgramName::Computed | CalledProgramName::Missing => None,
             };
             found.extend(called.filter(|called| known.insert(*called)));
         }
+        loaded.push(program);
         next += 1;
     }
     memory.set_main(main);
-    found
+    loaded
 }
 
 impl CheckResult {

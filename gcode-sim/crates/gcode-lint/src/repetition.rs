@@ -11,8 +11,9 @@ use gcode_lang::control::Settings;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::program::{CallOp, CallTarget, Memory, Op, OpIndex, OpKind, Program, ProgramId, WordOperand};
 use gcode_lang::source::SourceId;
+use gcode_lang::syntax::KnownBlocks;
 
-use super::context::{CheckContext, LeftOutNumber};
+use super::context::{LeftOutNumber, LoadedProgram};
 use super::{literal, rules};
 
 /// Programs under check of which repeated moves are left out.
@@ -112,17 +113,22 @@ impl Repetitions {
         }
     }
 
-    /// Returns true if the blocks that are left out have no findings and change none.
-    pub(super) fn is_exact(&self, context: &CheckContext<'_>, findings: &[Diagnostic]) -> bool {
-        let stands_in = |finding: &Diagnostic| {
+    /// Returns true if one of the blocks that stand for others has a finding.
+    pub(super) fn stand_for_found(&self, findings: &[Diagnostic]) -> bool {
+        findings.iter().any(|finding| {
             let place = finding.backtrace.as_ref().map(|place| (place.block.source, place.block.start));
             finding.kind != rules::DOUBLED_N && place.is_some_and(|place| self.stand_ins.contains(&place))
-        };
-        let is_found = findings.iter().any(stands_in);
+        })
+    }
+
+    /// Returns true if a jump may lead to a sequence number that is left out.
+    pub(super) fn may_numbers_matter(
+        &self,
+        memory: &Memory,
+        programs: impl IntoIterator<Item = ProgramId>,
+    ) -> bool {
         let may_lead_there = |op: &Op| may_jump(op.kind());
-        let may_number_matter =
-            self.has_numbers && context.units.iter().flat_map(|unit| unit.program.ops()).any(may_lead_there);
-        !is_found && !may_number_matter
+        self.has_numbers && programs.into_iter().flat_map(|id| memory.get(id).ops()).any(may_lead_there)
     }
 
     /// Returns the sequence numbers that are left out of a program, in the order of the blocks.
@@ -131,10 +137,13 @@ impl Repetitions {
     }
 
     /// Puts the whole programs back.
-    pub(super) fn restore(self, memory: &mut Memory) {
-        for (id, program) in self.programs {
-            memory.replace(id, program);
-            memory.lower_program(id);
+    pub(super) fn restore(self, memory: &mut Memory, settings: &Settings, programs: &mut [LoadedProgram]) {
+        for (id, whole) in self.programs {
+            memory.replace(id, whole);
+            for program in programs.iter_mut().filter(|program| program.id == id) {
+                let mut known = KnownBlocks::of(std::mem::take(&mut program.blocks));
+                *program = LoadedProgram::new(memory, id, &mut known, settings);
+            }
         }
     }
 }
@@ -199,6 +208,7 @@ mod tests {
     use proptest::collection::vec;
     use proptest::prelude::*;
 
+    use super::super::context::CheckContext;
     use super::*;
     use crate::check;
 
@@ -210,11 +220,10 @@ mod tests {
         let mut memory = Memory::default();
         memory.load("O1.nc", text.as_bytes().to_vec());
         let programs: Vec<_> = memory.ids().collect();
-        for id in &programs {
-            memory.lower_program(*id);
-        }
+        let load = |id| LoadedProgram::new(&mut memory, id, &mut KnownBlocks::default(), settings);
+        let programs = programs.into_iter().map(load).collect();
         let knowledge = crate::ControlKnowledge::Stated;
-        rules::findings(&CheckContext::new(&memory, (settings, knowledge), &programs, rules::codes()))
+        rules::findings(&CheckContext::new(&memory, (settings, knowledge), programs, rules::codes()))
     }
 
     fn left_out(text: &str) -> usize {

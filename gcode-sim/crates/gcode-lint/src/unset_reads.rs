@@ -32,8 +32,11 @@ pub(super) fn unset_reads(unit: &ProgramUnit<'_>, states: &States) -> Vec<UnsetR
         if variables::assignment(written).is_some_and(|(target, value)| same_variable(target, value)) {
             continue;
         }
-        let reads = variables::block_reads(written);
-        let guarded = guarded_locals(unit, block, &reads);
+        let reads = unit.reads(block);
+        if !reads.iter().any(|read| (1..=33).contains(&read.number)) {
+            continue;
+        }
+        let guarded = guarded_locals(unit, block, reads);
         let counter = counter(written);
         let unset = reads.iter().filter(|read| {
             (1..=33).contains(&read.number)

@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use gcode_ide::FileId;
+use gcode_lang::syntax::ReadBlocks;
 use gcode_lint::CheckResult;
 use lsp_types::Uri;
 
@@ -34,8 +35,13 @@ pub(crate) fn start(answers: impl Fn(CheckAnswer) + Send + 'static) -> Sender<Ch
     sender
 }
 
+/// Largest number of blocks that are kept for the next check of a document, some tens of megabytes.
+const MAX_KEPT_BLOCKS: usize = 100_000;
+
 fn work(receiver: &Receiver<CheckJob>, answers: impl Fn(CheckAnswer)) {
     let mut jobs: BTreeMap<FileId, CheckJob> = BTreeMap::new();
+    // Blocks of the document that was checked last: most often it is the next one too.
+    let mut last: Option<(FileId, ReadBlocks)> = None;
     loop {
         if jobs.is_empty() {
             let Ok(job) = receiver.recv() else { return };
@@ -48,19 +54,23 @@ fn work(receiver: &Receiver<CheckJob>, answers: impl Fn(CheckAnswer)) {
         }
         let edited = jobs.values().find(|job| job.is_edited).or_else(|| jobs.values().next());
         let Some(file) = edited.map(|job| job.file) else { continue };
-        let answer = jobs.remove(&file).and_then(|job| check(&job));
-        let Some((answer, rest)) = answer else { continue };
+        let before = last.take().filter(|(checked, _)| *checked == file).map(|(_, blocks)| blocks);
+        let answer = jobs.remove(&file).and_then(|job| check(&job, before.unwrap_or_default()));
+        let Some((answer, CheckResult { memory, findings, read_blocks, .. })) = answer else { continue };
         answers(answer);
-        drop(rest);
+        drop((memory, findings));
+        last = (read_blocks.count() <= MAX_KEPT_BLOCKS).then_some((file, read_blocks));
     }
 }
 
-fn check(job: &CheckJob) -> Option<(CheckAnswer, CheckResult)> {
+fn check(job: &CheckJob, before: ReadBlocks) -> Option<(CheckAnswer, CheckResult)> {
     let CheckJob { snapshot, file, .. } = job;
     let (text, uri) = (snapshot.text(*file)?, snapshot.uri(*file)?);
     let check = || {
+        // What is read behind its stamp is that state of the file or a later one, which the next look at the disk finds.
+        let stamps = findings::stamps(&snapshot.setup(*file), &snapshot.files);
         let setup = snapshot.setup(*file);
-        Ok(findings::check(uri, &text, &setup, &snapshot.files, &snapshot.client))
+        Ok(findings::check(uri, &text, before, (&setup, stamps), &snapshot.files, &snapshot.client))
     };
     let (checked, rest) = guarded("check", check).ok()?;
     let version = snapshot.documents.get(file).map(|document| document.version);

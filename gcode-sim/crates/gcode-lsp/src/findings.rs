@@ -1,11 +1,11 @@
 //! Findings of `check` as diagnostics of the protocol.
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use gcode_lang::diag::{Diagnostic as Finding, Severity};
 use gcode_lang::motion::{Backtrace, CallChain};
-use gcode_lang::program::Memory;
 use gcode_lang::source::{SourceId, Sources, Span};
+use gcode_lang::syntax::ReadBlocks;
 use gcode_lint::CheckResult;
 use lsp_types::{
     Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString,
@@ -32,25 +32,35 @@ pub(crate) struct CheckedDocument {
     pub called: BTreeSet<PathBuf>,
     /// Files of the configuration, existing or not, and folders of called programs.
     pub surroundings: BTreeSet<PathBuf>,
+    /// Stamps of all these files, from before they were read.
+    pub stamps: BTreeMap<PathBuf, Option<u64>>,
     /// Faults of the configuration.
     pub faults: Vec<String>,
     /// The document belongs to the project of a gcode.toml.
     pub is_in_project: bool,
 }
 
-/// Checks a document with the programs that it calls. The second part of the result is to be dropped once the first is used:
-/// that takes as long as some rules.
+/// Returns the stamps of the files on which the conditions of a program rest.
+pub(crate) fn stamps(setup: &ProgramSetup, files: &Overlay) -> BTreeMap<PathBuf, Option<u64>> {
+    let paths = setup.dependencies().chain(setup.folders());
+    paths.map(|path| (path.clone(), files.host().stamp(&path))).collect()
+}
+
+/// Checks a document with the programs that it calls; `before` are the blocks of an earlier state of its text. The second part
+/// of the result is to be dropped once the first is used: that takes as long as some rules.
 pub(crate) fn check(
     uri: &Uri,
     document: &TextDocument,
-    setup: &ProgramSetup,
+    before: ReadBlocks,
+    (setup, mut stamps): (&ProgramSetup, BTreeMap<PathBuf, Option<u64>>),
     files: &Overlay,
     client: &Client,
 ) -> (CheckedDocument, CheckResult) {
-    let mut memory = Memory::default();
-    memory.load(setup.path.display().to_string(), document.bytes().clone());
+    let surroundings: BTreeSet<_> = setup.dependencies().chain(setup.folders()).collect();
     let mut library = setup.library(files);
-    let checked = gcode_lint::check_loaded(memory, &setup.settings, setup.knowledge, &mut library);
+    let text = (setup.path.display().to_string(), document.bytes().clone());
+    let control = (&setup.settings, setup.knowledge);
+    let checked = gcode_lint::check_edited(text, before, control, &mut library);
     let sources = checked.memory.sources();
     let context = FindingContext { uri, document, sources, client };
     let is_of_document = |finding: &&Finding| place(finding).is_none_or(|span| span.source == SourceId(0));
@@ -67,10 +77,13 @@ pub(crate) fn check(
         diagnostics.push(Diagnostic { message, source, ..Diagnostic::default() });
     }
     let called = sources.iter().skip(1).map(|(_, source)| PathBuf::from(&source.name));
+    let called: BTreeSet<_> = called.collect();
+    stamps.extend(called.iter().map(|path| (path.clone(), files.read_stamp(path))));
     let document = CheckedDocument {
         diagnostics,
-        called: called.collect(),
-        surroundings: setup.dependencies().chain(setup.folders()).collect(),
+        called,
+        stamps,
+        surroundings,
         faults: setup.faults.iter().chain(&setup.job_fault).cloned().collect(),
         is_in_project: setup.project.folder().is_some(),
     };

@@ -17,11 +17,18 @@ use crate::host::Host;
 pub(crate) struct Overlay {
     host: Arc<dyn Host>,
     /// Open documents by their paths.
-    open: Arc<BTreeMap<PathBuf, Bytes>>,
+    open: Arc<BTreeMap<PathBuf, OpenText>>,
     /// Files read from the host.
     cache: Arc<Mutex<BTreeMap<PathBuf, CachedFile>>>,
     /// Folders of the host that were listed.
     listings: Arc<Mutex<BTreeMap<PathBuf, FolderListing>>>,
+}
+
+/// Text of an open document, with the names of its programs.
+#[derive(Clone)]
+struct OpenText {
+    text: Bytes,
+    programs: Arc<[ProgramName]>,
 }
 
 struct CachedFile {
@@ -45,9 +52,9 @@ impl Overlay {
         &*self.host
     }
 
-    /// Covers a file by an open text.
-    pub(crate) fn open(&mut self, path: PathBuf, text: Bytes) {
-        Arc::make_mut(&mut self.open).insert(path, text);
+    /// Covers a file by an open text with these programs.
+    pub(crate) fn open(&mut self, path: PathBuf, text: Bytes, programs: Arc<[ProgramName]>) {
+        Arc::make_mut(&mut self.open).insert(path, OpenText { text, programs });
     }
 
     /// Uncovers a file.
@@ -78,6 +85,13 @@ impl Overlay {
         Ok(files)
     }
 
+    /// Returns the stamp of a file from before it was read.
+    pub(crate) fn read_stamp(&self, path: &Path) -> Option<u64> {
+        // 0 is the stamp of a file that isn't there.
+        let read = self.cache().get(path).map(|file| file.stamp).filter(|stamp| *stamp != 0);
+        read.or_else(|| self.host.stamp(path))
+    }
+
     fn cache(&self) -> MutexGuard<'_, BTreeMap<PathBuf, CachedFile>> {
         self.cache.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -98,14 +112,14 @@ impl Overlay {
 impl FileAccess for Overlay {
     fn program(&self, path: &Path) -> Result<Bytes, String> {
         match self.open.get(path) {
-            Some(text) => Ok(text.clone()),
+            Some(open) => Ok(open.text.clone()),
             None => self.cached(path, |file| file.content.clone()),
         }
     }
 
     fn text(&self, path: &Path) -> Result<String, String> {
         match self.open.get(path) {
-            Some(text) => Ok(String::from_utf8_lossy(text).into_owned()),
+            Some(open) => Ok(String::from_utf8_lossy(&open.text).into_owned()),
             None => self.host.text(path),
         }
     }
@@ -128,8 +142,8 @@ impl FileAccess for Overlay {
     }
 
     fn programs(&self, path: &Path) -> Result<Arc<[ProgramName]>, String> {
-        if let Some(text) = self.open.get(path) {
-            return Ok(programs_in(text));
+        if let Some(open) = self.open.get(path) {
+            return Ok(Arc::clone(&open.programs));
         }
         self.cached(path, |file| {
             let content = file.content.as_ref().map_err(Clone::clone)?;
@@ -138,7 +152,8 @@ impl FileAccess for Overlay {
     }
 }
 
-fn programs_in(text: &[u8]) -> Arc<[ProgramName]> {
+/// Returns the names of the programs of a text.
+pub(crate) fn programs_in(text: &[u8]) -> Arc<[ProgramName]> {
     let items = FileItems::new(SourceId::default(), text);
     let names = items.filter_map(|item| match item {
         FileItem::Program { name, .. } => Some(name),

@@ -16,6 +16,7 @@ use gcode_lang::syntax::ast::{ProgramName, ProgramPath};
 use gcode_session::{Request, Run};
 
 use crate::background_run::mains_of;
+use crate::overlay::programs_in;
 use crate::snapshot::Snapshot;
 
 /// Largest number of blocks of a proof.
@@ -44,7 +45,7 @@ pub(crate) fn prove(
     let mut edited = snapshot.clone();
     for (file, text) in &texts {
         let path = edited.path(*file);
-        edited.files.open(path, text.clone());
+        edited.files.open(path, text.clone(), programs_in(text));
     }
     let states = ProvedStates { old: snapshot, new: &edited, texts: &texts, renamed, progress };
     // An edit that no run has executed proves nothing by equal runs.

@@ -29,20 +29,22 @@ proptest! {
     #[test]
     fn edits_leave_the_state_of_a_fresh_start(
         start in text(),
-        changes in prop::collection::vec(change(), 1..12),
+        notifications in prop::collection::vec(prop::collection::vec(change(), 1..4), 1..6),
     ) {
         let (mut edited, files) = opened(&[("O1.nc", &start)]);
         let mut expected = start;
-        for (version, change) in (2..).zip(changes) {
-            let fresh = TextDocument::new(expected.as_bytes(), edited.client.encoding);
-            match change.range {
-                None => expected = change.text.clone(),
-                Some(range) => {
-                    let (start, end) = fresh.offsets(range);
-                    expected.replace_range(start as usize..end as usize, &change.text);
+        for (version, changes) in (2..).zip(notifications) {
+            for change in &changes {
+                let fresh = TextDocument::new(expected.as_bytes(), edited.client.encoding);
+                match change.range {
+                    None => expected = change.text.clone(),
+                    Some(range) => {
+                        let (start, end) = fresh.offsets(range);
+                        expected.replace_range(start as usize..end as usize, &change.text);
+                    }
                 }
             }
-            edited.change(files[0], version, vec![change]);
+            edited.change(files[0], version, changes);
         }
         let (fresh, _) = opened(&[("O1.nc", &expected)]);
         let documents = [&edited, &fresh].map(|snapshot| Arc::clone(&snapshot.documents[&files[0]].text));

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gcode_ide::{FileId, Project, TextEdit, TextRange};
+use gcode_ide::{FileId, FileIndex, Project, TextEdit, TextRange};
 use gcode_lang::source::Bytes;
+use gcode_lang::syntax::ast::ProgramName;
 use lsp_types::{
     Diagnostic, Location, TextDocumentContentChangeEvent, TextDocumentIdentifier, TextDocumentPositionParams,
     Uri,
@@ -149,7 +150,7 @@ impl Snapshot {
         let index = self.project.file(file).map(|index| index.text().clone());
         let text =
             Arc::new(TextDocument::new(index.unwrap_or_else(|| Vec::new().into()), self.client.encoding));
-        self.cover(&uri, &text);
+        self.cover(file, &uri, &text);
         Arc::make_mut(&mut self.documents).insert(file, OpenDocument { uri, version, text });
         file
     }
@@ -161,13 +162,18 @@ impl Snapshot {
     }
 
     /// Covers the file of a document by its text.
-    fn cover(&mut self, uri: &Uri, text: &TextDocument) {
+    fn cover(&mut self, file: FileId, uri: &Uri, text: &TextDocument) {
         if let Some(path) = document_uri::path(uri) {
-            self.files.open(path, text.bytes().clone());
+            let programs = self.project.file(file).map(FileIndex::programs).unwrap_or_default();
+            let names = programs.iter().map(|program| program.name.clone());
+            let named = names.filter(|name| *name != ProgramName::Unnamed).collect();
+            self.files.open(path, text.bytes().clone(), named);
         }
     }
 
     /// Applies the changes of one notification, each to the text that the one before leaves.
+    ///
+    /// Changes that go upwards, as of several cursors or of a replacement of all places, are made at once.
     pub(crate) fn change(
         &mut self,
         file: FileId,
@@ -178,24 +184,27 @@ impl Snapshot {
         let mut text = open.text;
         // A whole text makes the changes before it void.
         let first = changes.iter().rposition(|change| change.range.is_none()).unwrap_or_default();
-        for change in changes.into_iter().skip(first) {
-            let Some(range) = change.range else {
-                self.set_text(file, change.text.into_bytes().into());
+        let mut changes = &changes[first..];
+        while let Some(change) = changes.first() {
+            if change.range.is_none() {
+                self.set_text(file, change.text.clone().into_bytes().into());
                 let Some(index) = self.project.file(file) else { return };
                 text = Arc::new(TextDocument::new(index.text().clone(), self.client.encoding));
+                changes = &changes[1..];
                 continue;
-            };
-            let (start, end) = text.offsets(range);
-            let edit = TextEdit { range: TextRange::new(start, end), text: change.text };
+            }
+            let upwards = upward_edits(&text, changes);
+            changes = &changes[upwards.len()..];
+            let Some(edit) = hull(text.bytes(), &upwards) else { return };
             Arc::make_mut(&mut self.project).edit_file(file, &edit);
             let Some(index) = self.project.file(file) else { return };
             Arc::make_mut(&mut text).replace(
-                (start as usize, end as usize),
+                (edit.range.start as usize, edit.range.end as usize),
                 edit.text.len(),
                 index.text().clone(),
             );
         }
-        self.cover(&open.uri, &text);
+        self.cover(file, &open.uri, &text);
         Arc::make_mut(&mut self.documents).insert(file, OpenDocument { uri: open.uri, version, text });
     }
 
@@ -232,6 +241,35 @@ impl Snapshot {
             }
         }
     }
+}
+
+/// Returns the first changes of which each lies in lines above the one before: their places are those of the text before all.
+fn upward_edits(text: &TextDocument, changes: &[TextDocumentContentChangeEvent]) -> Vec<TextEdit> {
+    let mut edits = Vec::new();
+    let mut lowest = u32::MAX;
+    for change in changes {
+        let Some(range) = change.range.filter(|range| range.start.line.max(range.end.line) < lowest) else {
+            break;
+        };
+        let (start, end) = text.offsets(range);
+        // A place behind the text lies in its last line.
+        lowest = text.position(start).line;
+        edits.push(TextEdit { range: TextRange::new(start, end), text: change.text.clone() });
+    }
+    edits
+}
+
+/// Returns the edit that has the effect of some edits that go upwards; `None` without any.
+fn hull(text: &[u8], upwards: &[TextEdit]) -> Option<TextEdit> {
+    let (last, first) = (upwards.first()?, upwards.last()?);
+    let mut new = String::new();
+    let mut from = first.range.start;
+    for edit in upwards.iter().rev() {
+        new.push_str(&String::from_utf8_lossy(&text[from as usize..edit.range.start as usize]));
+        new.push_str(&edit.text);
+        from = edit.range.end;
+    }
+    Some(TextEdit { range: TextRange::new(first.range.start, last.range.end), text: new })
 }
 
 /// Returns the key of a document: its path, however the URI escapes it.

@@ -15,6 +15,7 @@ use crate::checker::{self, CheckAnswer, CheckJob};
 use crate::commands::CommandResult;
 use crate::document_uri;
 use crate::failure::Failure;
+use crate::findings::CheckedDocument;
 use crate::host::Host;
 use crate::overlay::Overlay;
 use crate::proof;
@@ -348,11 +349,7 @@ impl ServerState {
                 self.show_message(MessageType::WARNING, fault);
             }
         }
-        let host = self.snapshot.files.host();
-        let files = checked.called.iter().chain(&checked.surroundings);
-        let stamps = files.map(|path| (path.clone(), host.stamp(path))).collect();
-        let (called, surroundings, is_in_project) =
-            (checked.called, checked.surroundings, checked.is_in_project);
+        let CheckedDocument { called, surroundings, is_in_project, stamps, .. } = checked;
         self.checked.insert(file, CheckBasis { called, surroundings, is_in_project, stamps });
         let published = Arc::new(checked.diagnostics.clone());
         Arc::make_mut(&mut self.snapshot.published).insert(file, published);

@@ -37,4 +37,9 @@ pub trait Host {
 
     /// Returns a function that returns the one path of a file that several paths may name.
     fn canonical(&self) -> Rc<dyn Fn(&str) -> String>;
+
+    /// Returns true if a message of the client waits: long work gives way to it.
+    fn has_message(&self) -> bool {
+        false
+    }
 }

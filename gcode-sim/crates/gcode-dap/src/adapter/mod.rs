@@ -161,15 +161,20 @@ impl<H: Host> Adapter<H> {
         self.outbox.take()
     }
 
-    /// Lets the run go on for one slice.
+    /// Lets the run go on for one slice. What takes longer ends and begins anew at the next slice if the host has a message.
     pub fn work(&mut self) {
         let (Some(mut goal), Some(session)) = (self.goal, &mut self.session) else { return };
-        if let Some((reference, tolerances)) = &session.reference
-            && let Err(error) = session.debuggee.find_bad_holes(&session.request, (reference, *tolerances))
-        {
-            self.write(&OutputLine { text: error.to_string(), block: None });
-            self.goal = None;
-            return self.outbox.send_events();
+        if let Some((reference, tolerances)) = &session.reference {
+            let (of, is_interrupted) = ((reference, *tolerances), || self.host.has_message());
+            match session.debuggee.find_bad_holes(&session.request, of, &is_interrupted) {
+                Ok(true) => {}
+                Ok(false) => return,
+                Err(error) => {
+                    self.write(&OutputLine { text: error.to_string(), block: None });
+                    self.goal = None;
+                    return self.outbox.send_events();
+                }
+            }
         }
         let mut output = Vec::new();
         let stop = session.debuggee.advance(&mut goal, SLICE, &mut output);

@@ -49,15 +49,19 @@ fn position_of(backtrace: &Backtrace) -> Option<u64> {
     (mark.source == MARKER).then_some(u64::from(mark.start) | u64::from(mark.end) << 32)
 }
 
-/// Finds the bad holes of a run as its changes make it.
+/// Finds the bad holes of a run as its changes make it; `None` if the search is interrupted.
 pub(crate) fn find(
     request: &Request,
     (reference, tolerances): (&Reference, Tolerances),
     run: &mut ReversibleRun,
-) -> Result<BadHoles, SessionError> {
+    is_interrupted: &dyn Fn() -> bool,
+) -> Result<Option<BadHoles>, SessionError> {
     let extractor = gcode_session::extractor(request, request.metal(reference));
     let mut events = MarkedEvents { sink: extractor, position: 0 };
-    run.run_again(gcode_session::set_up(request, None)?, request.limits.blocks, &mut events);
+    let control = gcode_session::set_up(request, None)?;
+    if !run.run_again(control, request.limits.blocks, &mut events, is_interrupted) {
+        return Ok(None);
+    }
     let extraction = events.sink.finish();
     let memory = run.control().memory();
     let locate = |span: Span| match memory.sources().iter().nth(span.source.0 as usize) {
@@ -91,5 +95,5 @@ pub(crate) fn find(
         let [x, y, z] = extra.hole.entry;
         add(extra.drilled_index, format!("extra hole at x {x:.3} y {y:.3} z {z:.3}: {}", extra.why));
     }
-    Ok(found)
+    Ok(Some(found))
 }

@@ -119,17 +119,21 @@ impl Debuggee {
         self.filters = filters;
     }
 
-    /// Finds the holes that come out bad, if the filter for them is on and the run has changed since.
+    /// Finds the holes that come out bad, if the filter for them is on and the run has changed since. Returns false if the search
+    /// is interrupted.
     pub(crate) fn find_bad_holes(
         &mut self,
         request: &Request,
         reference: (&Reference, Tolerances),
-    ) -> Result<(), SessionError> {
+        is_interrupted: &dyn Fn() -> bool,
+    ) -> Result<bool, SessionError> {
         let revision = self.run.revision();
         if self.filters.has(BAD_HOLE) && self.bad_holes.as_ref().is_none_or(|(of, _)| *of != revision) {
-            self.bad_holes = Some((revision, bad_holes::find(request, reference, &mut self.run)?));
+            let found = bad_holes::find(request, reference, &mut self.run, is_interrupted)?;
+            let Some(found) = found else { return Ok(false) };
+            self.bad_holes = Some((revision, found));
         }
-        Ok(())
+        Ok(true)
     }
 
     /// Makes a change in front of the next block.

@@ -37,6 +37,39 @@ fn debuggee(text: &str) -> Debuggee {
     debuggee
 }
 
+/// Sink that counts blocks.
+#[derive(Default)]
+struct CountedBlocks(u64);
+
+impl EventSink for CountedBlocks {
+    fn event(&mut self, _: &Event<'_>) {}
+}
+
+impl crate::run::PositionedSink for CountedBlocks {
+    fn begin_block(&mut self, _: u64) {
+        self.0 += 1;
+    }
+}
+
+/// The loop has three blocks a turn, the WHILE, the sum and the END, and 1,000 turns.
+#[test]
+fn a_second_run_ends_where_it_is_interrupted() {
+    const TEXT: &str = "O1\n#1=0\nWHILE[#1LT1000]DO1\n#1=#1+1\nEND1\nM30\n";
+    let blocks = |is_interrupted: &dyn Fn(u64) -> bool| {
+        let (mut sink, asked) = (CountedBlocks::default(), std::cell::Cell::new(0));
+        let ask = || {
+            asked.set(asked.get() + 1);
+            is_interrupted(asked.get())
+        };
+        let is_whole = run(TEXT, &[]).run_again(control(TEXT), 1_000_000, &mut sink, &ask);
+        (is_whole, sink.0)
+    };
+    assert_eq!(blocks(&|_| true), (false, 0));
+    assert_eq!(blocks(&|asked| asked == 3), (false, 2048), "it asks once in 1,024 blocks");
+    let (is_whole, all) = blocks(&|_| false);
+    assert!(is_whole && (3000..3010).contains(&all), "{all}");
+}
+
 /// Everything of a run that a person can see.
 fn shown(control: &Control) -> String {
     let variables: Vec<_> = control.variables().collect();

@@ -11,6 +11,9 @@ use gcode_lang::program::{Library, Memory, Program};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::ProgramName;
 
+/// Number of blocks after which a run asks whether it is interrupted.
+const INTERRUPTION_INTERVAL: u64 = 1024;
+
 /// Change of a control between two blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Change {
@@ -186,18 +189,29 @@ impl ReversibleRun {
         self.checkpoints.position_before(position)
     }
 
-    /// Runs another control from the start with the changes of this run, up to a number of blocks.
-    pub(crate) fn run_again(&mut self, mut control: Control, blocks: u64, sink: &mut impl PositionedSink) {
+    /// Runs another control from the start with the changes of this run, up to a number of blocks. Returns false if it is
+    /// interrupted before its end.
+    pub(crate) fn run_again(
+        &mut self,
+        mut control: Control,
+        blocks: u64,
+        sink: &mut impl PositionedSink,
+        is_interrupted: &dyn Fn() -> bool,
+    ) -> bool {
         let mut changes = self.changes.iter().peekable();
         for position in 0..blocks {
+            if position.is_multiple_of(INTERRUPTION_INTERVAL) && is_interrupted() {
+                return false;
+            }
             while let Some(recorded) = changes.next_if(|recorded| recorded.position == position) {
                 _ = make(&mut control, recorded.change);
             }
             sink.begin_block(position);
             if control.step(&mut self.library.as_mut(), sink).is_some() {
-                return;
+                break;
             }
         }
+        true
     }
 }
 

@@ -8,7 +8,7 @@ use super::loops::Loops;
 use super::lowering::{Lowering, lower_case};
 use super::{Op, OpBody, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
-use crate::syntax::{ast, sequence_number_at};
+use crate::syntax::{KnownBlocks, ast, sequence_number_at};
 
 /// Number of operations kept. Most loops are shorter; the operations take a few megabytes at most.
 const KEPT_OPERATIONS: usize = 8192;
@@ -131,6 +131,29 @@ impl Blocks {
         for index in 0..self.texts.starts.len() {
             self.lower(index, loops);
         }
+    }
+
+    /// Lowers all blocks and returns their trees. A block that is not known is read once.
+    pub(super) fn lower_with_trees(&mut self, loops: &Loops, known: &mut KnownBlocks) -> Vec<ast::Block> {
+        self.index_mask = usize::MAX;
+        self.ops = Vec::with_capacity(self.len());
+        let mut trees = Vec::with_capacity(self.len());
+        for index in 0..self.len() {
+            let start = self.texts.start(index);
+            let is_separate = self.texts.separate_trees.contains_key(&(index as u32));
+            let known = if is_separate { None } else { known.take(start) };
+            let Some(tree) = known.or_else(|| self.tree(index)) else { break };
+            let mut op = Op::default();
+            if is_separate || !op.refill(self.texts.text.source, self.texts.text.content(), start) {
+                let small = lower_case(&tree, &self.texts.text.bytes);
+                op = self.lowering.lower_block(&tree, small);
+                link_loop(&mut op, index, loops);
+            }
+            op.ordinal = index as u32 + 1;
+            self.ops.push(op);
+            trees.push(tree);
+        }
+        trees
     }
 
     /// Lowers a block that has more than numbers.

@@ -3,7 +3,8 @@ use std::collections::BTreeMap;
 
 use super::{Op, OpIndex, OpKind, Program, outline};
 use crate::source::{Bytes, SourceId, Sources, Span};
-use crate::syntax::ast::{Folder, ProgramName, ProgramPath};
+use crate::syntax::KnownBlocks;
+use crate::syntax::ast::{self, Folder, ProgramName, ProgramPath};
 
 /// Index of a program in its [`Memory`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -80,9 +81,19 @@ impl Memory {
     /// The first of two programs with one number stays, as on a control, which refuses the second: see
     /// [`Memory::duplicates`].
     pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Bytes>) -> SourceId {
+        self.load_known(name, bytes, &KnownBlocks::default())
+    }
+
+    /// Loads the first file as [`Memory::load`] does. Known blocks of it are not read again.
+    pub fn load_known(
+        &mut self,
+        name: impl Into<String>,
+        bytes: impl Into<Bytes>,
+        known: &KnownBlocks,
+    ) -> SourceId {
         let source = self.sources.add(name, bytes);
         let bytes = &self.sources.get(source).bytes;
-        for program in outline::programs(source, bytes) {
+        for program in outline::programs(source, bytes, known) {
             let id = ProgramId(self.programs.len() as u32);
             if program.name != ProgramName::Unnamed {
                 let same_name = self.by_name.entry(program.name.clone()).or_default();
@@ -172,6 +183,15 @@ impl Memory {
         let Program { blocks, loops, .. } = program;
         blocks.lower_all(loops);
         program
+    }
+
+    /// Lowers all blocks of a program and returns their trees: known blocks, which are taken, and the others read once.
+    pub fn lower_with_trees(&mut self, id: ProgramId, known: &mut KnownBlocks) -> Vec<ast::Block> {
+        let Program { blocks, loops, span, .. } = &mut self.programs[id.0 as usize];
+        let mut none = KnownBlocks::default();
+        // Known blocks are those of the first text.
+        let known = if span.source == SourceId(0) { known } else { &mut none };
+        blocks.lower_with_trees(loops, known)
     }
 
     /// Replaces a program by another form of it and returns it.

@@ -363,11 +363,6 @@ impl Program {
         self.blocks.op(index)
     }
 
-    /// Iterates over the trees of all blocks, read again from the text.
-    pub fn trees(&self) -> impl Iterator<Item = ast::Block> + '_ {
-        (0..).map_while(|index| self.blocks.tree(index))
-    }
-
     fn numbers(&self) -> &[(u32, u32)] {
         self.numbers.get_or_init(|| self.blocks.sequence_numbers())
     }

@@ -10,7 +10,7 @@ use super::{OpIndex, OpKind, Program, Statement};
 use crate::source::{Bytes, SourceId, Span};
 use crate::syntax::ast;
 use crate::syntax::{
-    BlockOutline, ProgramParts, end_without_spaces, outline, sequence_number_at, without_trailer,
+    BlockOutline, KnownBlocks, ProgramParts, end_without_spaces, outline, sequence_number_at, without_trailer,
 };
 
 #[derive(Default)]
@@ -23,16 +23,17 @@ struct OutlineBuilder {
     separate_trees: BTreeMap<u32, ast::Block>,
 }
 
-/// Returns the programs of a file, with their blocks located but not lowered.
-pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
+/// Returns the programs of a file, with their blocks located but not lowered. Known blocks are not read again.
+pub(super) fn programs(source: SourceId, bytes: &Bytes, known: &KnownBlocks) -> Vec<Program> {
     let text = ProgramText { source, bytes: bytes.clone(), length: without_trailer(bytes).len() };
-    let programs = outline(source, bytes, |growing: &mut OutlineBuilder, block| growing.block(block, &text));
+    let programs =
+        outline(source, bytes, known, |growing: &mut OutlineBuilder, block| growing.block(block, &text));
     programs.into_iter().map(|parts| finish(parts, text.clone())).collect()
 }
 
 impl OutlineBuilder {
     #[inline(always)]
-    fn block(&mut self, block: BlockOutline, text: &ProgramText) -> u32 {
+    fn block(&mut self, block: BlockOutline<'_>, text: &ProgramText) -> u32 {
         let span = block.span();
         if !matches!(block, BlockOutline::Words(_)) || self.first_number.is_none() {
             self.record_block(block, text);
@@ -44,13 +45,13 @@ impl OutlineBuilder {
 
     /// Records the loops, the sequence number and the separate tree of a block.
     #[inline(never)]
-    fn record_block(&mut self, block: BlockOutline, text: &ProgramText) {
+    fn record_block(&mut self, block: BlockOutline<'_>, text: &ProgramText) {
         let index = self.blocks;
         match block {
             BlockOutline::Words(span) => {
                 self.record_number(sequence_number_at(text.source, text.content(), span.start));
             }
-            BlockOutline::Tree(block) => self.record_tree(index, &block),
+            BlockOutline::Tree(block) => self.record_tree(index, block),
             BlockOutline::WithinLine(block) => {
                 self.record_tree(index, &block);
                 self.separate_trees.insert(index, *block);

@@ -5,6 +5,7 @@
 use super::ast::{Block, Folder, Program, ProgramName};
 use super::file_items::{FileItem, FileItems};
 use super::numbers::NumberWords;
+use super::read_blocks::KnownBlocks;
 use crate::source::{SourceId, Span};
 
 /// One program of a file, with its blocks in the form of the caller.
@@ -113,31 +114,33 @@ impl<C: Default, B> Programs<C, B> {
 }
 
 #[derive(Debug)]
-pub(crate) enum BlockOutline {
+pub(crate) enum BlockOutline<'a> {
     /// Block that is not read; it is neither DO nor END. The span includes trailing spaces.
     Words(Span),
     /// Block that begins its line.
-    Tree(Box<Block>),
+    Tree(&'a Block),
     /// Block after another item of its line; it cannot be read again from its own start.
     WithinLine(Box<Block>),
 }
 
-impl BlockOutline {
+impl BlockOutline<'_> {
     pub(crate) fn span(&self) -> Span {
         match self {
             Self::Words(span) => *span,
-            Self::Tree(block) | Self::WithinLine(block) => block.span,
+            Self::Tree(block) => block.span,
+            Self::WithinLine(block) => block.span,
         }
     }
 }
 
 /// Returns the programs of a file as [`parse`] finds them, each block converted by `convert`.
 ///
-/// Neither the trees nor the lines of a long file are kept.
+/// Neither the trees nor the lines of a long file are kept. A known block is not read.
 pub(crate) fn outline<C: Default, B>(
     source: SourceId,
     bytes: &[u8],
-    mut convert: impl FnMut(&mut C, BlockOutline) -> B,
+    known: &KnownBlocks,
+    mut convert: impl FnMut(&mut C, BlockOutline<'_>) -> B,
 ) -> Vec<ProgramParts<C, B>> {
     let mut programs = Programs::default();
     let mut items = FileItems::new(source, bytes);
@@ -145,6 +148,17 @@ pub(crate) fn outline<C: Default, B>(
     let mut is_program_known = false;
     loop {
         let begins_line = items.begins_line();
+        if let Some(block) = items.line_code_start().filter(|_| begins_line).and_then(|at| known.find(at)) {
+            items.skip_line();
+            let is_unreadable = block.is_unreadable();
+            is_program_known |= !is_unreadable;
+            if !programs.is_open {
+                programs.folder = items.folder();
+            }
+            let ProgramParts { context, blocks, .. } = programs.program_for_block(block.span, is_unreadable);
+            blocks.push(convert(context, BlockOutline::Tree(block)));
+            continue;
+        }
         match items.next_item() {
             Some(FileItem::Section) => {
                 is_program_known = false;
@@ -163,9 +177,10 @@ pub(crate) fn outline<C: Default, B>(
                 }
                 let ProgramParts { context, blocks, .. } =
                     programs.program_for_block(block.span, is_unreadable);
-                let block = Box::new(block);
-                let outlined =
-                    if begins_line { BlockOutline::Tree(block) } else { BlockOutline::WithinLine(block) };
+                let outlined = match begins_line {
+                    true => BlockOutline::Tree(&block),
+                    false => BlockOutline::WithinLine(Box::new(block)),
+                };
                 blocks.push(convert(context, outlined));
             }
             None => {

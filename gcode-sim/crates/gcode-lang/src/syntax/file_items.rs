@@ -215,6 +215,18 @@ impl<'a> FileItems<'a> {
         self.position == self.line_start
     }
 
+    /// Returns the offset of the first byte of the current line that is no space.
+    pub(super) fn line_code_start(&self) -> Option<u32> {
+        let code = unspaced(&self.bytes[self.line_start..self.line_end]);
+        (!code.is_empty()).then(|| (self.line_end - code.len()) as u32)
+    }
+
+    /// Counts the current line as read.
+    pub(super) fn skip_line(&mut self) {
+        (self.position, self.code_end, self.blanked) = (self.line_end, self.line_end, None);
+        self.comments.clear();
+    }
+
     /// Sets the comments and span of a block, and the text of its unreadable rest.
     fn attach_comments(&mut self, block: &mut Block, from: usize, to: usize) {
         let is_last = to == self.code_end;

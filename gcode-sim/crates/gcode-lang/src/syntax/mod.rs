@@ -18,6 +18,8 @@ mod print;
 mod program_name;
 #[cfg(test)]
 mod property_tests;
+mod read_blocks;
+mod shift;
 mod statement;
 mod token;
 mod word;
@@ -29,3 +31,4 @@ pub(crate) use file_items::{end_without_spaces, without_trailer};
 pub use lines::{LineItem, first_line, line_items};
 pub(crate) use numbers::{NumberWord, NumberWords};
 pub use print::{print, print_decimal};
+pub use read_blocks::{KnownBlocks, ReadBlocks};

@@ -5,7 +5,9 @@ use proptest::prelude::*;
 use proptest::sample::select;
 
 use super::ast::*;
-use super::{BlockOutline, block_at, outline, parse, print, sequence_number_at, without_trailer};
+use super::{
+    BlockOutline, KnownBlocks, block_at, outline, parse, print, sequence_number_at, without_trailer,
+};
 use crate::source::{SourceId, Span, Spanned};
 
 const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
@@ -284,7 +286,7 @@ proptest! {
         let whole = without_trailer(text.as_bytes());
         let tree = parse(SourceId(0), text.as_bytes());
         let at = |start| (sequence_number_at(SourceId(0), whole, start), block_at(SourceId(0), whole, start));
-        let outlined = outline(SourceId(0), text.as_bytes(), |(), block| match block {
+        let outlined = outline(SourceId(0), text.as_bytes(), &KnownBlocks::default(), |(), block| match block {
             BlockOutline::Words(span) => at(span.start),
             BlockOutline::Tree(block) => at(block.span.start),
             BlockOutline::WithinLine(block) => (block.number.map(|n| n.node), Some(*block)),
@@ -316,7 +318,7 @@ fn long_lines_are_read_in_linear_time() {
     ] {
         let text = piece.repeat(300_000 / piece.len());
         parse(SourceId(0), text.as_bytes());
-        outline(SourceId(0), text.as_bytes(), |(), _| ());
+        outline(SourceId(0), text.as_bytes(), &KnownBlocks::default(), |(), _| ());
         let text = format!("#1=1{}", piece.repeat(300_000 / piece.len()));
         parse(SourceId(0), text.as_bytes());
     }

@@ -1,6 +1,7 @@
 //! Rule: a sequence number that is defined twice.
 //!
 //! The target of a jump then depends on the control's parameters and on the blocks read so far; without a jump it is a note.
+//! In a long program the numbers begin anew at N9999: many notes are one.
 use std::collections::BTreeMap;
 
 use gcode_lang::motion::Backtrace;
@@ -11,6 +12,9 @@ use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("doubled-n", Severity::Warning, "a sequence number that is defined twice", find);
+
+/// Most notes of a program that are told one by one.
+const MAX_NOTES: usize = 20;
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
@@ -51,13 +55,45 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             Some(_) => {}
         }
     }
+    fold_notes(found)
+}
+
+/// Makes many notes one, at the place of the first: a program whose numbers begin anew is no mistake, and needs no remedy.
+fn fold_notes(found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let is_note = |finding: &Diagnostic| finding.severity == Severity::Note;
+    let (mut notes, mut found): (Vec<_>, Vec<_>) = found.into_iter().partition(is_note);
+    if MAX_NOTES < notes.len() {
+        let others = notes.len() - 1;
+        notes.truncate(1);
+        for note in &mut notes {
+            note.message = format!("{}, so for {others} other numbers of this program", note.message);
+            note.help = None;
+        }
+    }
+    found.extend(notes);
     found
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{NOWHERE, lines};
+    use super::super::testing::{NOWHERE, lines, messages};
     use super::RULE;
+
+    #[test]
+    fn numbers_that_begin_anew_are_one_note() {
+        let numbered = |count: usize| -> String {
+            let numbers = (1..=count).chain(1..=count);
+            numbers.map(|number| format!("N{number} G4 X1.\n")).collect::<String>()
+        };
+        assert_eq!(lines(&RULE, &format!("O1\n{}M30\n", numbered(20))).len(), 20);
+        let text = format!("O1\n{}M30\n", numbered(21));
+        assert_eq!(lines(&RULE, &text), [23], "the block behind O1 and 21 others");
+        let note = "N1 is already defined in line 2: a search finds one of the two, so for 20 other numbers of this program";
+        assert_eq!(messages(&RULE, &text), [note]);
+        // A number that a GOTO names is a warning of its own.
+        let jump = format!("O1\n{}IF[#500 EQ 1]GOTO 7\nM30\n", numbered(22));
+        assert_eq!(lines(&RULE, &jump), [24, 30]);
+    }
 
     #[test]
     fn each_duplicate_number_is_reported_once() {

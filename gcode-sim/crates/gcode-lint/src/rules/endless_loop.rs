@@ -3,7 +3,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::syntax::ast::{Condition, Statement};
 
-use crate::components::strongly_connected_components;
 use crate::control_flow::{Jump, raises_alarm};
 use crate::expressions::condition_expressions;
 use crate::literal;
@@ -45,7 +44,7 @@ fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, reported:
     if !unit.flow.jumps.iter().any(|jump| backward_target(jump).is_some()) {
         return found;
     }
-    let components = strongly_connected_components(&unit.flow);
+    let components = unit.components();
     let mut members: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
     for (block, component) in components[..unit.flow.block_successors.len()].iter().enumerate() {
         members.entry(*component).or_default().push(block);

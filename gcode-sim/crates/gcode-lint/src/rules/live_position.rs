@@ -33,9 +33,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (block, written) in unit.reached_blocks() {
         let Some(motion) = pending[block].flatten() else { continue };
-        let reads = variables::block_reads(written);
+        let reads = unit.reads(block);
         let is_live = |number: u32| {
-            LIVE_VARIABLES.iter().any(|range| range.contains(&number)) && !is_difference(&reads, number)
+            LIVE_VARIABLES.iter().any(|range| range.contains(&number)) && !is_difference(reads, number)
         };
         let mut live = reads.iter().filter(|read| is_live(read.number));
         // One finding per block: a probe reads several axes at once.

@@ -112,11 +112,11 @@ fn factors_left_out(called: &ProgramUnit<'_>, entry: Locals) -> Vec<(u32, OpInde
 
 /// Returns true if a program tests, compares or sets a local.
 fn is_optional(called: &ProgramUnit<'_>, local: u32) -> bool {
-    called.blocks.iter().any(|block| {
+    called.blocks.iter().enumerate().any(|(index, block)| {
         let is_set = block.items.iter().filter_map(variables::item_assignment);
         let mut is_set = is_set.map(|(target, _)| literal::variable(target));
         is_set.any(|number| number == Some(local))
-            || variables::block_reads(block).iter().any(|read| {
+            || called.reads(index).iter().any(|read| {
                 read.number == local && matches!(read.usage, ValueUse::VacancyTest | ValueUse::Comparison)
             })
     })

@@ -31,7 +31,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
                 _ => finding,
             });
         };
-        for read in variables::block_reads(block) {
+        for read in unit.reads(index) {
             if let Err(alarm) = known.read(read.number) {
                 report(alarm.located_at(read.span));
             }

@@ -1,4 +1,6 @@
 //! Rule: a #3000 that is never reached, so that the test it belongs to has no effect.
+use std::cell::OnceCell;
+
 use gcode_lang::syntax::ast::Statement;
 
 use crate::control_flow::raises_alarm;
@@ -10,9 +12,15 @@ pub(super) static RULE: Rule =
     Rule::new("unreachable-alarm", Severity::Warning, "a #3000 that is never reached", find);
 
 fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    if !unit.program.ops().iter().any(|op| raises_alarm(op.kind())) {
+        return Vec::new();
+    }
     // The result must hold for all calls of a program, also those outside the check.
-    let entry = if unit.role == Role::Main { Locals::UNSET } else { Locals::ANYTHING };
-    let states = states(unit, entry);
+    let of_any_call = OnceCell::new();
+    let states = match unit.role {
+        Role::Main => unit.states_without_arguments(),
+        Role::Called | Role::Resident => of_any_call.get_or_init(|| states(unit, Locals::ANYTHING)),
+    };
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(_, op)| raises_alarm(op.kind())) {
         if !unit.is_reached[block] {

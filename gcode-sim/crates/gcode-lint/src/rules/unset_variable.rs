@@ -1,5 +1,5 @@
 //! Rule: a local variable that is read before it is set. Its word is ignored, or it counts as 0.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::alarm::kinds::PS0112;
 use gcode_lang::program::argument_letter;
@@ -8,7 +8,7 @@ use gcode_lang::source::Span;
 use crate::expressions::ValueUse;
 use crate::prelude::*;
 use crate::unset_reads::{entry_locals, unset_reads};
-use crate::vacancy::{Locals, states};
+use crate::vacancy::states;
 
 use super::missing_argument::factor_reads;
 
@@ -22,17 +22,22 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         // Without an end it may be a part of a program, or a macro.
         Role::Main if !unit.flow.block_successors.iter().any(|block| block.is_exit) => {}
         Role::Main => {
-            let states = states(unit, Locals::UNSET);
-            unset.extend(unset_reads(unit, &states));
+            unset.extend(unset_reads(unit, unit.states_without_arguments()));
         }
         Role::Called => {
+            // Calls with the same arguments leave the same locals unset.
+            let mut entries = BTreeSet::new();
             for (caller, site) in &unit.callers {
                 let call = &context.units[*caller].calls[*site];
                 // A subprogram has its caller's locals, and a modal call keeps its own between calls.
                 if !call.has_own_locals || call.is_modal {
                     return Vec::new();
                 }
-                let states = states(unit, entry_locals(call));
+                let entry = entry_locals(call);
+                if !entries.insert(entry) {
+                    continue;
+                }
+                let states = states(unit, entry);
                 // The rule `missing-argument` reports locals that an argument can set.
                 let reads = unset_reads(unit, &states).into_iter();
                 unset.extend(reads.filter(|((_, local), _)| argument_letter(*local as usize).is_none()));

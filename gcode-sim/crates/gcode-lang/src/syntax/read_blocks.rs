@@ -1,0 +1,155 @@
+//! Blocks that were read before an edit: those on lines that the edit leaves as they are need not be read again.
+use super::ast::Block;
+use super::token::is_space;
+use crate::source::Bytes;
+
+/// Blocks of one state of a text, in order.
+#[derive(Debug, Default)]
+pub struct ReadBlocks {
+    text: Option<Bytes>,
+    blocks: Vec<Block>,
+}
+
+/// Blocks of a text that were read in an earlier state of it, by their offsets in this one.
+#[derive(Debug, Default)]
+pub struct KnownBlocks {
+    starts: Vec<u32>,
+    blocks: Vec<Option<Block>>,
+}
+
+impl ReadBlocks {
+    /// Takes the blocks of a text, in order.
+    pub fn new(text: Bytes, blocks: Vec<Block>) -> Self {
+        Self { text: Some(text), blocks }
+    }
+
+    /// Returns the number of blocks.
+    pub fn count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Returns the blocks that a later state of the text has too, at their offsets there.
+    ///
+    /// Such a block fills its line, and the line is outside of what changed: reading it again gives the same block.
+    pub fn moved_to(self, text: &[u8]) -> KnownBlocks {
+        let Some(before) = self.text else { return KnownBlocks::default() };
+        let (same_front, same_back) = common_ends(&before, text);
+        // A line in front of the change ends before it, a line behind it begins after a line end that did not change.
+        let front_end = before[..same_front].iter().rposition(is_line_end).unwrap_or(0);
+        let back = &before[before.len() - same_back..];
+        let back_start = before.len() - same_back + back.iter().position(is_line_end).unwrap_or(same_back);
+        let delta = text.len() as i64 - before.len() as i64;
+        let mut known = KnownBlocks::default();
+        for mut block in self.blocks {
+            let (start, end) = (block.span.start as usize, block.span.end as usize);
+            let is_behind = back_start < start;
+            if !is_behind && front_end < end || !fills_its_line(&before, start, end) {
+                continue;
+            }
+            if is_behind && delta != 0 {
+                block.shift(delta);
+            }
+            known.starts.push(block.span.start);
+            known.blocks.push(Some(block));
+        }
+        known
+    }
+}
+
+impl KnownBlocks {
+    /// Takes blocks of the same state of the text, in order.
+    pub fn of(blocks: Vec<Block>) -> Self {
+        let starts = blocks.iter().map(|block| block.span.start).collect();
+        Self { starts, blocks: blocks.into_iter().map(Some).collect() }
+    }
+
+    /// Returns the block that begins its line at an offset.
+    pub(crate) fn find(&self, start: u32) -> Option<&Block> {
+        self.blocks[self.starts.binary_search(&start).ok()?].as_ref()
+    }
+
+    /// Takes the block that begins its line at an offset.
+    pub(crate) fn take(&mut self, start: u32) -> Option<Block> {
+        self.blocks[self.starts.binary_search(&start).ok()?].take()
+    }
+}
+
+/// Returns the lengths of the equal beginning and of the equal rest of two texts.
+fn common_ends(one: &[u8], other: &[u8]) -> (usize, usize) {
+    let front = equal_length(one.iter(), other.iter());
+    (front, equal_length(one[front..].iter().rev(), other[front..].iter().rev()))
+}
+
+fn equal_length<'a>(one: impl Iterator<Item = &'a u8>, other: impl Iterator<Item = &'a u8>) -> usize {
+    one.zip(other).take_while(|(one, other)| one == other).count()
+}
+
+fn is_line_end(byte: &u8) -> bool {
+    matches!(byte, b'\n' | b'\r')
+}
+
+fn fills_its_line(text: &[u8], start: usize, end: usize) -> bool {
+    let before = text[..start].iter().rev().take_while(|byte| !is_line_end(byte)).all(|byte| is_space(*byte));
+    before && text[end..].iter().take_while(|byte| !is_line_end(byte)).all(|byte| is_space(*byte))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::{block_at, parse, without_trailer};
+    use super::*;
+    use crate::source::SourceId;
+
+    fn blocks(text: &[u8]) -> Vec<Block> {
+        parse(SourceId(0), text).into_iter().flat_map(|program| program.blocks).collect()
+    }
+
+    #[test]
+    fn blocks_beside_the_edited_line_are_kept() {
+        let before = b"O1\nG0 X1. (A)\n#1=SIN[#2]\nG1 X2.\n/2IF[#1 GT 3]THEN #2=1\nM30\n";
+        let after = b"O1\nG0 X1. (A)\n#1=SIN[#2]\nG1 X2. Y5. F100.\n/2IF[#1 GT 3]THEN #2=1\nM30\n";
+        let known = ReadBlocks::new(Bytes::from(&before[..]), blocks(before)).moved_to(after);
+        let read = blocks(after);
+        let found: Vec<_> = read.iter().map(|block| known.find(block.span.start)).collect();
+        assert_eq!(found[2], None, "the edited block");
+        for at in [0, 1, 3, 4] {
+            assert_eq!(found[at], Some(&read[at]));
+        }
+    }
+
+    #[test]
+    fn a_line_of_several_items_is_read_again() {
+        let text = b"O1 G0 X1.\nM99 O2\nM98 P1\nM99\n";
+        let known = ReadBlocks::new(Bytes::from(&text[..]), blocks(text)).moved_to(text);
+        let found = |start| known.find(start).is_some();
+        assert!(!found(3) && !found(10), "behind O1, before O2");
+        assert!(found(17) && found(24));
+    }
+
+    proptest! {
+        /// Lines of all kinds and any edit: a known block is the one that the line has now.
+        #[test]
+        fn a_known_block_is_the_block_of_the_new_text(
+            lines in proptest::collection::vec(
+                "N?[0-9]{0,2} ?(G0|X1\\.|#1=\\[2\\+#3\\]|IF\\[#1EQ#0\\]GOTO ?5|WHILE\\[#1LT2\\]DO1|END1|\\(A\\(B\\)|;C|O2|%|/|DPRNT\\[A#1\\[44\\]\\]|X1\\.\\.|\u{1a}|&F=//A)",
+                1..8,
+            ),
+            end in proptest::sample::select(vec!["\n", "\r\n", "\r", "\n\r\r"]),
+            cut in (any::<prop::sample::Index>(), any::<prop::sample::Index>()),
+            new in proptest::sample::select(vec!["", "X", "\n", "\r", "(", ")", "O3\n", "%\n", "#2=1\n", " ", "\u{1a}"]),
+        ) {
+            let before = format!("O1{end}{}", lines.join(end)).into_bytes();
+            let (one, other) = (cut.0.index(before.len() + 1), cut.1.index(before.len() + 1));
+            let (from, to) = (one.min(other), one.max(other));
+            let after = [&before[..from], new.as_bytes(), &before[to..]].concat();
+            let known = ReadBlocks::new(Bytes::from(&before[..]), blocks(&before)).moved_to(&after);
+            for start in known.starts.clone() {
+                let content = without_trailer(&after);
+                prop_assert!((start as usize) < content.len());
+                let read = block_at(SourceId(0), content, start);
+                prop_assert_eq!(known.find(start), read.as_ref(), "{:?}", String::from_utf8_lossy(&after));
+            }
+        }
+    }
+}
