@@ -6,6 +6,7 @@ use gcode_lang::motion::{
     Backtrace, Event, EventKind, EventSink, LengthCompensation, SpindleDirection, StopKind,
 };
 use gcode_lang::program::modes::{ModalGroup, WorkSystem};
+use gcode_lang::source::Span;
 
 /// G40, as code × 10.
 const CUTTER_COMPENSATION_OFF: u32 = 400;
@@ -19,7 +20,7 @@ pub(crate) struct ToolUse {
     pub length_offsets: BTreeSet<LengthCompensation>,
     /// Least and largest spindle speed of its cuts, 1/min.
     pub speed: Option<[f64; 2]>,
-    /// True if it cuts with M04.
+    /// True if the spindle turns as by M04 when it begins a cut; a tap is reversed on its way out.
     pub is_reversed: bool,
     /// Least and largest feed of its cuts, mm/min.
     pub feed: Option<[f64; 2]>,
@@ -56,6 +57,8 @@ pub(crate) struct UseRecorder {
     speed: f64,
     direction: SpindleDirection,
     coolant: Option<u32>,
+    /// Block of the last cut, and the spindle's direction when that block began to cut; `None` behind a rapid.
+    cut: Option<(Span, SpindleDirection)>,
 }
 
 impl UseRecorder {
@@ -67,15 +70,17 @@ impl UseRecorder {
         &mut self.uses[last]
     }
 
-    fn record_cut(&mut self, rate: f64) {
+    fn record_cut(&mut self, rate: f64, block: Span) {
         let (length, speed, direction, coolant) = (self.length, self.speed, self.direction, self.coolant);
+        let begun = self.cut.filter(|(known, _)| *known == block);
+        let (_, first) = *self.cut.insert(begun.unwrap_or((block, direction)));
         let now = self.current();
         now.length_offsets.insert(length);
         widen(&mut now.feed, rate);
         if direction != SpindleDirection::Off {
             widen(&mut now.speed, speed);
         }
-        now.is_reversed |= direction == SpindleDirection::Counterclockwise;
+        now.is_reversed |= first == SpindleDirection::Counterclockwise;
         now.coolants.extend(coolant);
     }
 }
@@ -90,9 +95,12 @@ impl EventSink for UseRecorder {
     fn event(&mut self, event: &Event<'_>) {
         let seconds = event.seconds.0;
         let kind = match &event.kind {
-            EventKind::Rapid { .. } => Some(0),
+            EventKind::Rapid { .. } => {
+                self.cut = None;
+                Some(0)
+            }
             EventKind::Feed { rate, .. } | EventKind::Arc { rate, .. } | EventKind::Skip { rate, .. } => {
-                self.record_cut(rate.0);
+                self.record_cut(rate.0, event.block);
                 Some(1)
             }
             EventKind::Dwell { .. } => Some(2),
