@@ -55,6 +55,9 @@ pub(crate) struct RunReport {
     /// Number of holes that the run makes.
     #[serde(skip)]
     total: Total,
+    /// The text of the main program has ended without M02, M30 or M99.
+    #[serde(skip)]
+    lacks_end: bool,
     /// Decimals of a position on the control's screen, in the work's unit and in the machine's.
     #[serde(skip)]
     decimals: [usize; 2],
@@ -288,6 +291,7 @@ impl RunReport {
             assumptions,
             total,
             path,
+            lacks_end: control.lacks_end(),
             uncommanded: axes.names(uncommanded),
             work_unit: if control.is_inch() { "inches" } else { "mm" },
             decimals: {
@@ -301,6 +305,7 @@ impl RunReport {
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         let word = match self.outcome {
+            "end" if self.lacks_end => "ended where its text does, without M02, M30 or M99",
             "end" => "ended",
             "limit" => "not ended: a limit was reached",
             _ => "stopped by an alarm",

@@ -360,3 +360,29 @@ fn sample_commands(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{FileFormat, HoleStatus, Size, TopView, draw, top_view};
+
+    fn svg(verdict: String) -> String {
+        let view = TopView { verdict: Some((HoleStatus::Good, verdict)), ..TopView::default() };
+        String::from_utf8(draw(&top_view(&view), Size::default(), FileFormat::Svg).unwrap()).unwrap()
+    }
+
+    /// Ten lines are more than other rows have; each aspect that was not checked is there.
+    #[test]
+    fn a_verdict_is_whole() {
+        let aspects: Vec<String> = (1..=20).map(|number| format!("aspect-{number}")).collect();
+        let picture = svg(format!("PASS; not checked: {}", aspects.join(", ")));
+        assert!(aspects.iter().all(|aspect| picture.contains(aspect)), "{picture}");
+    }
+
+    /// More than fits on the sheet is cut, and its end says so.
+    #[test]
+    fn a_verdict_longer_than_the_sheet_is_cut() {
+        let aspects: Vec<String> = (1..=900).map(|number| format!("aspect-{number}")).collect();
+        let picture = svg(format!("PASS; not checked: {}", aspects.join(", ")));
+        assert!(picture.contains("aspect-1,") && !picture.contains("aspect-900") && picture.contains('…'));
+    }
+}

@@ -282,19 +282,7 @@ impl Recorder {
     /// Returns the block of the word that a step uses, if that is another; `None` for a move that waited for later
     /// blocks.
     fn set_by(&self, kind: &StepKind, backtrace: &Backtrace) -> Option<usize> {
-        let letter = match kind {
-            StepKind::Tool(_) => 'T',
-            StepKind::Spindle(direction, _) if *direction != SpindleDirection::Off => 'S',
-            StepKind::Feed(_) | StepKind::Arc(..) | StepKind::Probe(_) => 'F',
-            StepKind::Rapid
-            | StepKind::Dwell(_)
-            | StepKind::Length(_)
-            | StepKind::Spindle(..)
-            | StepKind::Coolant(..)
-            | StepKind::Auxiliary(_)
-            | StepKind::Stop(..)
-            | StepKind::Silent(..) => return None,
-        };
+        let letter = kind.letter()?;
         let has_waited = self.block.as_ref().is_some_and(|block| block.backtrace.block != backtrace.block);
         let set_by = self.set_by.get(&letter).filter(|(block, _)| *block != backtrace.block && !has_waited);
         set_by.map(|(_, number)| *number)

@@ -173,3 +173,39 @@ impl Observer for OffsetObserver {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::program::NoLibrary;
+    use gcode_session::Request;
+
+    fn is_reversed(lines: &str) -> bool {
+        let text = format!("O1\nG90 G0 Z50.\n{lines}\nM30\n");
+        let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
+        let mut recorder = UseRecorder::default();
+        gcode_session::run(&request, &mut NoLibrary, &mut recorder).unwrap();
+        let [one] = &recorder.uses[..] else { panic!("one tool") };
+        assert!(one.speed == Some([300.0, 300.0]) && one.feed == Some([450.0, 450.0]), "{one:?}");
+        one.is_reversed
+    }
+
+    /// The cycle of a tap reverses the spindle on the way out: M03 is what the operator sees start.
+    #[test]
+    fn the_direction_of_a_tap_is_that_of_its_way_in() {
+        let tap = "X10. Y0 R5. Z-20. F450.";
+        for (lines, expected) in [
+            (format!("S300 M03\nG99 G84 {tap}\nX20.\nX30. K2"), false),
+            (format!("M29 S300\nG84 {tap}\nX20."), false),
+            (format!("S300 M03\nG84 {tap} Q5."), false),
+            (format!("S300 M04\nG74 {tap}\nX20."), true),
+            (format!("M29 S300\nG74 {tap}"), true),
+            (format!("S300 M04\nG81 {tap}"), true),
+            (format!("S300 M03\nG81 {tap}"), false),
+            (format!("S300 M03\nG84 {tap}\nG80\nM04\nG1 X0 F450."), true),
+        ] {
+            assert_eq!(is_reversed(&lines), expected, "{lines}");
+        }
+    }
+}
