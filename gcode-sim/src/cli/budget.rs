@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::format::TextFormat;
 use super::picture_file::PictureFile;
-use super::{ExitStatus, UsageError, input, options, output, overwrite_guard, progress};
+use super::{ExitStatus, UsageError, common, input, options, output, overwrite_guard, progress};
 use crate::report::budget::BudgetReport;
 use gcode_draw::Size;
 use gcode_inspect::budget::{BudgetRequest, MAX_SAMPLES, budget};
@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     machine: Option<PathBuf>,
 
     /// Diameter of the tolerance zone, mm [default: the job's]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = common::number)]
     tolerance: Option<f64>,
 
     /// Number of threads; the result does not depend on it [default: the number of processors]

@@ -31,6 +31,23 @@ impl Colours {
     }
 }
 
+/// Parses the number of a flag.
+pub(super) fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| match text.replacen(',', ".", 1) {
+        pointed if pointed.parse::<f64>().is_ok() => format!("a number has a point, not a comma: {pointed}"),
+        _ => "a number is required, such as 0.1".to_owned(),
+    })
+}
+
+/// Removes the quotes of `'#500=12.5'`, which the command line of Windows leaves there.
+fn unquoted(argument: OsString) -> OsString {
+    let text = argument.to_str().and_then(|text| text.strip_prefix('\'')?.strip_suffix('\''));
+    match text.filter(|text| text.starts_with('#')) {
+        Some(text) => OsString::from(text),
+        None => argument,
+    }
+}
+
 /// Parses the arguments with clap and executes the command. Help and version count as results; anything else that
 /// clap rejects is an invalid request.
 pub fn main<A: Parser>(
@@ -38,7 +55,7 @@ pub fn main<A: Parser>(
     colours: impl Fn(&A) -> Colours,
     execute: impl FnOnce(A) -> Result<ExitStatus, UsageError>,
 ) -> ExitStatus {
-    let arguments = match A::try_parse_from(arguments) {
+    let arguments = match A::try_parse_from(arguments.into_iter().map(unquoted)) {
         Ok(arguments) => arguments,
         Err(error) => {
             let text = error.render().ansi().to_string();
@@ -54,4 +71,25 @@ pub fn main<A: Parser>(
         output::print_message(&format!("error: {refusal}\n"));
         ExitStatus::Invalid
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comma_in_a_number_is_named() {
+        assert_eq!(number("0.1"), Ok(0.1));
+        assert_eq!(number("0,1").unwrap_err(), "a number has a point, not a comma: 0.1");
+        assert_eq!(number("1,0,1").unwrap_err(), "a number is required, such as 0.1");
+    }
+
+    #[test]
+    fn quotes_about_a_variable_are_removed() {
+        for (given, expected) in
+            [("'#500=12.5'", "#500=12.5"), ("'O1.nc'", "'O1.nc'"), ("'#5", "'#5"), ("#5", "#5"), ("'", "'")]
+        {
+            assert_eq!(unquoted(given.into()), OsString::from(expected), "{given}");
+        }
+    }
 }

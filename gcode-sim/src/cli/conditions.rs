@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::common;
 use gcode_inspect::verify::denied_assumptions;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
@@ -90,7 +91,7 @@ pub(super) struct RunConditions {
     pub(super) input: Vec<String>,
 
     /// The machine: axes, rotary sign, head, tools, offsets [default: that of gcode.toml, machine.toml beside the program,
-    /// or the machine of the paper]
+    /// or X, Y, Z and a rotary B about Y]
     #[arg(long, value_name = "MACHINE.toml")]
     pub(super) machine: Option<PathBuf>,
 
@@ -99,7 +100,7 @@ pub(super) struct RunConditions {
     pub(super) code: Vec<String>,
 
     /// G31 stops after this fraction of its path, 0 to 1
-    #[arg(long, value_name = "PART", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PART", allow_negative_numbers = true, value_parser = common::number)]
     pub(super) skip: Option<f64>,
 
     #[arg(

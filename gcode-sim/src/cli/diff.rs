@@ -7,7 +7,7 @@ use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::picture_file::PictureFile;
 use super::project::{self, Project};
-use super::{ExitStatus, UsageError, options, output, page, progress, render, unused_machine};
+use super::{ExitStatus, UsageError, common, options, output, page, progress, render, unused_machine};
 use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
@@ -30,7 +30,13 @@ pub(super) struct Arguments {
     old_libraries: Vec<PathBuf>,
 
     /// Tolerance for equality, mm or degrees
-    #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 0.0001,
+        allow_negative_numbers = true,
+        value_parser = common::number
+    )]
     tolerance: f64,
 
     /// Also draw the new holes over the old ones to this file
@@ -123,7 +129,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if let (Some(path), Some(old_trace), Some(new_trace)) = (&arguments.page, &old_trace, &new_trace) {
         let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
         let of_old = arguments.old_libraries.iter().map(|folder| format!("--old-lib {}", folder.display()));
-        let flags: Vec<String> = page::flags(&after).into_iter().chain(of_old).collect();
+        let flags: Vec<String> =
+            page::flags(&after, arguments.reference.as_deref()).into_iter().chain(of_old).collect();
         let review = Page {
             old: Some((ObservedProgram::of(&old_request, &old, old_trace), difference)),
             new: ObservedProgram::of(&new_request, &new, new_trace),

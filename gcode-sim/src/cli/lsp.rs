@@ -17,7 +17,7 @@ use super::project::Project;
 use super::rerun::Rerun;
 use super::{ExitStatus, UsageError, framing, input, options, output, page};
 use crate::report::proof::ProofReport;
-use crate::report::run::RunReport;
+use crate::report::run::{RunReport, StopRecorder};
 use gcode_control::Control;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
@@ -139,7 +139,13 @@ impl Host for EditorHost {
         let found = run.dependencies(request);
         let assumptions = found.numbered(&run).into_iter().map(|(assumption, _)| assumption).collect();
         let assumptions = (assumptions, Total::Holes(found.count()));
-        json(&RunReport::new(&run, &request.machine, None, Vec::new(), assumptions))
+        json(&RunReport::new(
+            &run,
+            &request.machine,
+            (&StopRecorder::default(), None),
+            Vec::new(),
+            assumptions,
+        ))
     }
 
     fn verdict_report(

@@ -46,7 +46,7 @@ pub(super) fn alone(
         new: ObservedProgram::of(request, revision, trace),
         machine: &request.machine,
         reference: reference.map(|(_, reference)| reference),
-        conditions: &flags(conditions),
+        conditions: &flags(conditions, reference.map(|(path, _)| path)),
         documents: &documents(conditions, reference.map(|(path, _)| path))?,
     };
     html(&page)
@@ -92,8 +92,8 @@ pub(super) fn documents(
     given.map(document).collect()
 }
 
-/// Returns the flags that the run depends on.
-pub(super) fn flags(conditions: &RunConditions) -> Vec<String> {
+/// Returns the flags that the run and its verdict depend on.
+pub(super) fn flags(conditions: &RunConditions, reference: Option<&Path>) -> Vec<String> {
     let RunConditions {
         main_program,
         libraries,
@@ -115,6 +115,7 @@ pub(super) fn flags(conditions: &RunConditions) -> Vec<String> {
     let mut add = |flag: &str, value: &str| flags.push(format!("{flag} {value}"));
     main_program.iter().for_each(|program| add("--program", program));
     machine.iter().for_each(|file| add("--machine", &path(file)));
+    reference.iter().for_each(|file| add("--reference", &path(file)));
     libraries.iter().for_each(|folder| add("--lib", &path(folder)));
     dialect.iter().for_each(|name| add("--dialect", name));
     control_file.iter().for_each(|file| add("--control-file", &path(file)));

@@ -12,7 +12,7 @@ use super::conditions::ProgramArguments;
 use super::format::TextFormat;
 use super::library::Folders;
 use super::rerun::Rerun;
-use super::{ExitStatus, UsageError, options, output, progress};
+use super::{ExitStatus, UsageError, common, options, output, progress};
 use crate::report::proof::ProofReport;
 use gcode_control::Control;
 use gcode_prove::{Ask, Setup, Verdict, Watch, prove};
@@ -47,7 +47,8 @@ pub(super) struct Arguments {
         value_name = "SECONDS",
         default_value_t = 10.0,
         allow_negative_numbers = true,
-        display_order = 0
+        display_order = 0,
+        value_parser = common::number
     )]
     time: f64,
 
@@ -57,7 +58,8 @@ pub(super) struct Arguments {
         value_name = "PART",
         default_value_t = 0.0,
         allow_negative_numbers = true,
-        display_order = 0
+        display_order = 0,
+        value_parser = common::number
     )]
     widening: f64,
 

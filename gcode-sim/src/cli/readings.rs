@@ -5,7 +5,7 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
 use super::picture_file::PictureFile;
-use super::{ExitStatus, UsageError, options, output, render};
+use super::{ExitStatus, UsageError, common, options, output, render};
 use crate::report::readings::ReadingsReport;
 use gcode_draw::Size;
 use gcode_inspect::verify::Answer;
@@ -13,7 +13,7 @@ use gcode_inspect::verify::Answer;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Tolerance of a reading either way, mm [default: no verdict]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = common::number)]
     tolerance: Option<f64>,
 
     /// Also draw the readings along the path to this file

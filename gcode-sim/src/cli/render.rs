@@ -7,7 +7,7 @@ use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
-use super::{ExitStatus, UsageError, options, output, progress};
+use super::{ExitStatus, UsageError, common, options, output, progress};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, tool_path, top};
 use gcode_draw::{Arrangement, ColorBy, FluteView, Picture, Projection, StandardView, TopView};
@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     reference: Option<PathBuf>,
 
     /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = common::number)]
     tolerance: Option<f64>,
 
     #[command(flatten)]

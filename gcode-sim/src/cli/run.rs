@@ -6,7 +6,7 @@ use clap::Args;
 use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress};
-use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport};
+use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport, StopRecorder};
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::stylus::RapidChecker;
 use gcode_part::Total;
@@ -42,15 +42,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) =
         options::checked_request(&program, None, arguments.output.as_deref(), None)?;
     let shown = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
-    let mut moves = arguments.moves.then(MoveRecorder::default);
+    let (mut stops, mut moves) = (StopRecorder::default(), arguments.moves.then(MoveRecorder::default));
     let (run, rapids) = progress::of_run(&mut request, |request| {
         // The tool is followed only if a part for probing is given.
         let follow = |part| HoleExtractor::new(&request.machine).with_surface(Some(part));
         let mut probe = request.part.map(follow);
         let ball = request.part.zip(request.machine.probe.as_ref());
         let mut rapids = ball.map(|(part, probe)| RapidChecker::new(&request.machine, part, probe.radius));
-        let run =
-            gcode_session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
+        let run = gcode_session::run(
+            request,
+            &mut folders,
+            &mut (&mut (&mut stops, &mut moves), &mut (&mut probe, &mut rapids)),
+        )?;
         Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, RapidChecker::finish)))
     })?;
     let mut system = Vec::new();
@@ -71,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (assumed, holes) = (found.numbered(&run), Total::Holes(found.count()));
     let denied = arguments.deny.errors(&assumed, holes);
     let assumptions = (assumed.into_iter().map(|(assumption, _)| assumption).collect(), holes);
-    let report = RunReport::new(&run, &request.machine, moves.as_ref(), system, assumptions);
+    let report = RunReport::new(&run, &request.machine, (&stops, moves.as_ref()), system, assumptions);
     output::report(&report, RunReport::text, arguments.format)?;
     let in_part = super::findings(&rapids, &run);
     let of_run = super::findings(&run.findings().collect::<Vec<_>>(), &run);

@@ -9,7 +9,7 @@ use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::FindingFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
-use super::{ExitStatus, UsageError, options, output, page, progress, render};
+use super::{ExitStatus, UsageError, common, options, output, page, progress, render};
 use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view, top};
@@ -28,11 +28,11 @@ pub(super) struct Arguments {
 
     /// Diameter of the tolerance zone, or tolerance of a burr's contact from its surface, mm [default: the job's,
     /// or 0.1]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = common::number)]
     tolerance: Option<f64>,
 
     /// Tolerance of a hole's depth either way, mm [default: the job's, or 0.1]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = common::number)]
     depth_tolerance: Option<f64>,
 
     #[command(flatten)]

@@ -9,6 +9,7 @@ use gcode_control::notes;
 use gcode_inspect::findings;
 use gcode_lang::alarm::kinds;
 use gcode_lang::diag::FindingKind;
+use gcode_lang::similar;
 use gcode_lint::rules;
 
 /// The document of `explain --format json`.
@@ -106,9 +107,15 @@ pub fn pages(code: &str) -> impl Iterator<Item = Page> {
     all().filter(move |page| Some(page.code) == own)
 }
 
-/// Returns the page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`, `hole-position`, `doubled-n`.
+/// Returns the code that a misspelt one means; `None` if no code is so near.
+pub(crate) fn similar_code(code: &str) -> Option<&'static str> {
+    similar(code, all().map(|page| page.code))
+}
+
+/// Returns the page of a code in any of its spellings: `PS0112`, `PS 112`, `ps112`, `112`, `MC3021`, `hole-position`,
+/// `doubled-n`.
 pub fn find(code: &str) -> Option<Page> {
-    let code = code.trim();
+    let code = &code.replace(' ', "");
     if let Some(page) = all().find(|page| page.code.eq_ignore_ascii_case(code)) {
         return Some(page);
     }
@@ -162,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_code_is_found_in_all_its_spellings() {
-        for spelling in ["PS0112", "ps112", "112", " Ps0112 "] {
+        for spelling in ["PS0112", "ps112", "112", " Ps0112 ", "PS 0112", "ps 112"] {
             assert_eq!(find(spelling).unwrap().code, "PS0112", "{spelling}");
         }
         for spelling in ["MC3021", "mc7", "3001"] {
@@ -176,6 +183,13 @@ mod tests {
         for unknown in ["PS9999", "", "PS", "X", "PS-1", "€1"] {
             assert!(find(unknown).is_none(), "{unknown}");
         }
+    }
+
+    #[test]
+    fn a_misspelt_code_is_named_with_the_one_that_is_meant() {
+        assert_eq!(similar_code("hole-positon"), Some("hole-position"));
+        assert_eq!(similar_code("PS9999"), None, "digits are no slip");
+        assert_eq!(similar_code("nonsense"), None);
     }
 
     #[test]

@@ -23,9 +23,9 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
         ),
         Origin::FeedStart => (
             ["fed from x", "fed from y", "fed from z"],
-            "length",
-            "fed from: start of the cutting feed (R point level); axis: unit vector out of the part; \
-             length: from there, the surface is unknown",
+            "deepest",
+            "fed from: start of the last tool's feed (R point level); axis: unit vector out of the part; \
+             deepest: from there to the deepest point of any tool",
         ),
     };
     let mut text = format!("{title}\n");

@@ -55,6 +55,9 @@ pub(crate) struct RunReport {
     /// Number of holes that the run makes.
     #[serde(skip)]
     total: Total,
+    /// The text of the main program has ended without M02, M30 or M99.
+    #[serde(skip)]
+    lacks_end: bool,
     /// Decimals of a position on the control's screen, in the work's unit and in the machine's.
     #[serde(skip)]
     decimals: [usize; 2],
@@ -81,6 +84,12 @@ pub(crate) struct StopReport {
     /// Variables that the text names, with their values.
     #[serde(skip)]
     variables: Vec<(u32, f64)>,
+    /// Program and line of its block.
+    #[serde(skip)]
+    location: Option<(String, u32)>,
+    /// Comment of its block, which the control shows while it waits.
+    #[serde(skip)]
+    comment: String,
 }
 
 /// An M code without an effect on the control, and its first block.
@@ -159,6 +168,26 @@ const SCRATCH: std::ops::RangeInclusive<u32> = 100..=199;
 /// Largest number of recorded moves: a loop that never ends must not fill the memory.
 pub(crate) const MAX_MOVES: usize = 1_000_000;
 
+/// Records the blocks of operator stops, in their order.
+#[derive(Debug, Default)]
+pub(crate) struct StopRecorder(Vec<Span>);
+
+impl EventSink for StopRecorder {
+    fn event(&mut self, event: &Event<'_>) {
+        /// A program that loops over M00 must not fill the memory.
+        const MOST: usize = 10_000;
+        if matches!(event.kind, EventKind::Stop { .. }) && self.0.len() < MOST {
+            self.0.push(event.block);
+        }
+    }
+}
+
+/// Returns the comments of a block.
+pub(super) fn comments(block: &str) -> String {
+    let comments = block.split('(').skip(1).map(|rest| rest.split(')').next().unwrap_or_default().trim());
+    comments.filter(|comment| !comment.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
 /// Records every move that changes the position, and every dwell.
 #[derive(Debug, Default)]
 pub(crate) struct MoveRecorder {
@@ -190,12 +219,12 @@ impl EventSink for MoveRecorder {
 }
 
 impl RunReport {
-    /// Builds the report of a run; `moves` and the values of `system` variables are optional. `assumptions` come with the
-    /// number of holes.
+    /// Builds the report of a run with its stops; `moves` and the values of `system` variables are optional.
+    /// `assumptions` come with the number of holes.
     pub(crate) fn new(
         run: &Run,
         machine: &Machine,
-        moves: Option<&MoveRecorder>,
+        (stops, moves): (&StopRecorder, Option<&MoveRecorder>),
         system: Vec<(u32, Value)>,
         (assumptions, total): (Vec<Assumption>, Total),
     ) -> Self {
@@ -222,10 +251,17 @@ impl RunReport {
             stops: control
                 .stops()
                 .iter()
-                .map(|stop| StopReport {
-                    kind: stop.kind.name(),
-                    text: stop.text.clone(),
-                    variables: stop.variables.clone(),
+                .enumerate()
+                .map(|(index, stop)| {
+                    let block = stops.0.get(index).copied();
+                    let text = |block| control.memory().sources().text(block);
+                    StopReport {
+                        kind: stop.kind.name(),
+                        text: stop.text.clone(),
+                        variables: stop.variables.clone(),
+                        location: block.map(|block| run.locate(block)),
+                        comment: block.map_or_else(String::new, |block| comments(&text(block))),
+                    }
                 })
                 .collect(),
             output: control.output().iter().map(|line| printable(line)).collect(),
@@ -255,6 +291,7 @@ impl RunReport {
             assumptions,
             total,
             path,
+            lacks_end: control.lacks_end(),
             uncommanded: axes.names(uncommanded),
             work_unit: if control.is_inch() { "inches" } else { "mm" },
             decimals: {
@@ -268,6 +305,7 @@ impl RunReport {
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         let word = match self.outcome {
+            "end" if self.lacks_end => "ended where its text does, without M02, M30 or M99",
             "end" => "ended",
             "limit" => "not ended: a limit was reached",
             _ => "stopped by an alarm",
@@ -293,7 +331,10 @@ impl RunReport {
                 .map(|(number, value)| format!(" #{number} = {}", as_on_control(*value)));
             let values: Vec<_> = values.collect();
             let shown = if values.is_empty() { String::new() } else { format!(":{}", values.join(",")) };
-            let _ = writeln!(text, "stop       {} {}{shown}", stop.kind, stop.text);
+            let place = stop.location.as_ref().map(|(program, line)| format!(" ({program} line {line})"));
+            let words = if stop.text.is_empty() { &stop.comment } else { &stop.text };
+            let words = if words.is_empty() { String::new() } else { format!(" {words}") };
+            let _ = writeln!(text, "stop       {}{}{words}{shown}", stop.kind, place.unwrap_or_default());
         }
         for line in &self.output {
             let _ = writeln!(text, "output     {line}");

@@ -10,6 +10,8 @@ use gcode_inspect::machine::{AxisLink, HeadKind, LinkMotion, Machine};
 use gcode_inspect::verify::{Answer, Conclusion, Neighbours, Verdict};
 use gcode_lang::motion::AxisIndex;
 use gcode_part::Assumption;
+use gcode_part::Feature;
+use gcode_part::FeatureKind;
 use gcode_part::Hole;
 use gcode_part::Pattern;
 use gcode_part::Reference;
@@ -28,12 +30,13 @@ pub fn of_holes(
     let found = simulation.hole_list().holes;
     let side = side_along_holes(&found).unwrap_or_else(|| side(machine));
     let holes = simulation.extracted.holes.iter().zip(found).enumerate();
-    let drawn = holes.map(|(index, (found, hole))| DrawnHole {
-        actual: Some(hole),
-        rotary_angle: rotary.angle(found),
-        further_angles: rotary.further_angles(found),
-        ..blank_hole((index + 1).to_string(), HoleStatus::Unjudged)
-    });
+    let drawn =
+        holes.zip(features_made(simulation, machine)).map(|((index, (found, hole)), features)| DrawnHole {
+            actual: Some(Hole { features, ..hole }),
+            rotary_angle: rotary.angle(found),
+            further_angles: rotary.further_angles(found),
+            ..blank_hole((index + 1).to_string(), HoleStatus::Unjudged)
+        });
     let mut holes: Vec<DrawnHole> = drawn.collect();
     hide_constant_rotary(&mut holes);
     TopView {
@@ -50,6 +53,20 @@ pub fn of_holes(
         holes,
         ..TopView::default()
     }
+}
+
+/// Returns what the tools make of each hole: its drills, counterbores, threads. Without a known surface the width of a
+/// countersink is unknown.
+fn features_made(simulation: &Simulation, machine: &Machine) -> Vec<Vec<Feature>> {
+    let body = machine.stock.as_ref().and_then(|stock| stock.body(None));
+    let mut list = simulation.hole_list();
+    body.iter().for_each(|body| list.enter_at(body));
+    let holes = simulation.extracted.holes.iter().zip(list.holes);
+    let features = holes.map(|(found, hole)| {
+        let made = found.features(&hole.entry.into(), &hole.axis.into(), machine).into_iter();
+        made.filter(|feature| body.is_some() || feature.kind != FeatureKind::Countersink).collect()
+    });
+    features.collect()
 }
 
 /// Builds the view of a verdict: actual and nominal, missing and extra holes.

@@ -97,7 +97,11 @@ impl Planner<'_> {
             return Err(self.not_simulated("more than a million pecks in one block"));
         }
         if repeats == 0 && !self.data.settings.undocumented.k0_positions {
-            plan.notes.push(Note::CycleRepeatsZero);
+            // Without a position in the block there is nothing in which controls differ.
+            let is_position = |(other, letter): (AxisIndex, u8)| other != axis && self.words.has(letter);
+            if self.data.settings.axes.letters().any(is_position) {
+                plan.notes.push(Note::CycleRepeatsZero);
+            }
             plan.state.unknown = from.unknown;
             return Ok(());
         }

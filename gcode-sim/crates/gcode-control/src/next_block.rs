@@ -21,7 +21,7 @@ pub struct BlockCommands {
     pub axes: Vec<char>,
     /// Offsets that G10 sets: `G10 L2 P1 X`.
     pub offsets: Vec<String>,
-    /// Letters of F, S and T with a value.
+    /// Letters of F, S, T, H and D with a value.
     pub valued_letters: Vec<char>,
 }
 
@@ -203,7 +203,7 @@ impl Registers {
         };
         for word in words.list.iter().filter(|word| self.has_value(words, word)) {
             let letter = char::from(word.letter);
-            if "FST".contains(letter) {
+            if "FSTHD".contains(letter) {
                 commands.valued_letters.push(letter);
             }
             if is_positioned && word.axis.is_none() && self.data.settings.axes.find(word.letter).is_some() {
@@ -370,6 +370,7 @@ mod tests {
         assert_eq!(commands("G10 L2 P1 X0 Y0").offsets, ["G10 L2 P1 X", "G10 L2 P1 Y"]);
         assert_eq!(commands("G1 X1. F100 S500 M3").valued_letters, ['F', 'S']);
         assert!(commands("G0 X1.").valued_letters.is_empty(), "F is modal");
+        assert_eq!(commands("G43 Z5. H2").valued_letters, ['H']);
         assert_eq!([modal_code(0), modal_code(541)], ["G00", "G54.1"]);
     }
 

@@ -49,8 +49,7 @@ impl Registers {
             WordOperand::Literal(number) => WordNumber::Literal(*number),
             WordOperand::G(code, found) if !word.comma => {
                 let row = g_codes::row_on(*code, *found, &self.data.settings);
-                let improper =
-                    || Alarm::ImproperGCode { code: g_codes::spelled(*code) }.located_at(word.span);
+                let improper = || g_codes::improper(*code).located_at(word.span);
                 return locate(block_words.put_g(row.ok_or_else(improper)?), word.span);
             }
             value => match self.evaluate_operand(words, value)? {

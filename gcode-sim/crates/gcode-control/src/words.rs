@@ -205,7 +205,9 @@ pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
 pub(super) fn computed_row(raw: WordNumber, settings: &Settings) -> Result<&'static GCodeRow, Alarm> {
     let value = match raw {
         WordNumber::Computed(value) => value,
-        WordNumber::Literal(number) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
+        WordNumber::Literal(number) => {
+            return Err(Alarm::ImproperGCode { code: number.value().to_string(), control: None });
+        }
     };
     // A computed code is rounded to one decimal.
     let tenths = round(value * 10.0);
@@ -213,11 +215,11 @@ pub(super) fn computed_row(raw: WordNumber, settings: &Settings) -> Result<&'sta
         return Err(Alarm::IllegalMinus { letter: 'G' });
     }
     if !(0.0..=9999.0).contains(&tenths) {
-        return Err(Alarm::ImproperGCode { code: value.to_string() });
+        return Err(Alarm::ImproperGCode { code: value.to_string(), control: None });
     }
     let code = tenths as u32;
     let row = g_codes::row_on(code, g_codes::find(code), settings);
-    row.ok_or_else(|| Alarm::ImproperGCode { code: g_codes::spelled(code) })
+    row.ok_or_else(|| g_codes::improper(code))
 }
 
 /// Word that calls a subprogram.

@@ -67,20 +67,24 @@ pub(super) fn shade(value: f64) -> Rgb {
     Rgb(mixed(r, r2), mixed(g, g2), mixed(b, b2))
 }
 
-/// Colours of classes, the ones of Okabe and Ito's that are dark enough for thin lines, and black.
+/// Colours of classes: those of Okabe and Ito's that are dark enough for thin lines, black and violet. Rapids alone are
+/// blue.
 const CLASSES: [Rgb; 6] =
-    [BLUE, VERMILION, Rgb(0, 158, 115), Rgb(204, 121, 167), Rgb(0, 0, 0), Rgb(190, 132, 0)];
+    [Rgb(0, 158, 115), VERMILION, Rgb(204, 121, 167), Rgb(190, 132, 0), Rgb(0, 0, 0), Rgb(88, 44, 140)];
+
+/// Length of a line in the legend, in text heights.
+pub(super) const SAMPLE: f64 = 1.75;
 
 /// Number of dash patterns.
 pub(super) const PATTERNS: u8 = 6;
 
-/// Dash patterns in text heights, from 1 on; 0 is a solid line.
+/// Dash patterns in text heights, from 1 on; 0 is a solid line. In the legend each has two dashes at least.
 const DASHES: [[f64; 4]; PATTERNS as usize - 1] = [
-    [0.9, 0.3, 0.9, 0.3],
-    [0.9, 0.25, 0.2, 0.25],
-    [0.45, 0.25, 0.45, 0.25],
-    [1.6, 0.3, 0.4, 0.3],
-    [0.2, 0.2, 0.2, 0.2],
+    [0.6, 0.3, 0.6, 0.3],
+    [0.7, 0.18, 0.14, 0.18],
+    [0.12, 0.15, 0.12, 0.15],
+    [1.0, 0.35, 1.0, 0.35],
+    [0.34, 0.14, 0.34, 0.14],
 ];
 
 /// Returns the line style of a stroke at a text height of `text` pixels and `scale` pixels a millimetre.
@@ -128,4 +132,28 @@ pub(super) fn pen(pen: Pen, text: f64) -> Ink {
         Pen::Comparison => (Rgb(204, 121, 167), 0.14, dashed(0.22, 0.3)),
     };
     Ink { color, width: width * text, dash: dash.map(|lengths| lengths.map(|length| length * text)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sample of the legend shows a gap and the dash behind it, and no two patterns have the same lengths.
+    #[test]
+    fn a_pattern_is_recognised_in_the_legend() {
+        for (index, pattern) in DASHES.iter().enumerate() {
+            assert!(pattern[0] + pattern[1] + 0.12 <= SAMPLE, "{pattern:?}");
+            assert!(DASHES[..index].iter().all(|other| other != pattern), "{pattern:?}");
+        }
+    }
+
+    /// Rapids are blue, with blue as the strongest part of their colour by far.
+    #[test]
+    fn no_class_has_the_colour_of_rapids() {
+        let Rgb(r, g, b) = pen(Pen::Rapid, 1.0).color;
+        for Rgb(red, green, blue) in CLASSES {
+            let apart = [(r, red), (g, green), (b, blue)].map(|(one, other)| one.abs_diff(other));
+            assert!(apart.into_iter().any(|apart| 64 < apart), "{red} {green} {blue}");
+        }
+    }
 }

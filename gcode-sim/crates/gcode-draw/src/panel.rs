@@ -66,6 +66,9 @@ impl PanelRow {
 
 /// Largest number of lines of a row; longer texts are cut short.
 const MOST_LINES: usize = 3;
+/// The same of a verdict, which states what was not checked: it is cut to `MOST_LINES` only where nothing else makes
+/// room.
+const MOST_VERDICT_LINES: usize = 24;
 /// Line spacing in parts of the text size.
 const LEADING: f64 = 1.28;
 
@@ -89,8 +92,8 @@ impl Panel {
             displacements: true,
             ..LegendUse::default()
         };
-        let (_, title) = flow(&title_rows(picture, text), column, font, text);
-        let (_, legend) = flow(&legend_rows(picture, all, &notes, text), column, font, text);
+        let (_, title) = flow(&title_rows(picture, text), column, font, text, MOST_VERDICT_LINES);
+        let (_, legend) = flow(&legend_rows(picture, all, &notes, text), column, font, text, MOST_LINES);
         let height = title.max(legend) + 2.0 * space;
         let top = (page.bottom - height).max(page.top + 0.55 * page.height()).round();
         let column = |left: f64, right: f64| Rect {
@@ -138,23 +141,30 @@ impl Panel {
 }
 
 /// Sets the rows in the largest text that fits the column. If even the smallest is too large, the least
-/// important rows are omitted and a row of dots marks the omission. Returns the height too.
+/// important rows are omitted and a row of dots marks the omission; last a long verdict is cut short. Returns the
+/// height too.
 fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<PanelRow>) -> (Vec<DrawCommand>, f64) {
     let least = 9.5f64.min(frame.text_size);
     let mut text = frame.text_size;
-    let (mut inks, mut height) = flow(&rows(text), column, &frame.font, text);
+    let set = |rows: &[PanelRow], text: f64, lines: usize| flow(rows, column, &frame.font, text, lines);
+    let (mut inks, mut height) = set(&rows(text), text, MOST_VERDICT_LINES);
     while column.height() < height && least < text {
         text = (text - 0.5).max(least);
-        (inks, height) = flow(&rows(text), column, &frame.font, text);
+        (inks, height) = set(&rows(text), text, MOST_VERDICT_LINES);
     }
     let mut left = rows(text);
+    let mut lines = MOST_VERDICT_LINES;
     while column.height() < height
-        && let Some((index, _)) = left.iter().enumerate().rev().min_by_key(|(_, row)| row.importance())
+        && let Some((index, row)) = left.iter().enumerate().rev().min_by_key(|(_, row)| row.importance())
     {
-        left.remove(index);
-        left.retain(|row| !matches!(row, PanelRow::Dots));
-        left.push(PanelRow::Dots);
-        (inks, height) = flow(&left, column, &frame.font, text);
+        if matches!(row, PanelRow::Verdict(..)) && MOST_LINES < lines {
+            lines -= 1;
+        } else {
+            left.remove(index);
+            left.retain(|row| !matches!(row, PanelRow::Dots));
+            left.push(PanelRow::Dots);
+        }
+        (inks, height) = set(&left, text, lines);
     }
     (inks, height)
 }
@@ -206,18 +216,28 @@ fn legend_rows(picture: &Picture, shown: LegendUse, notes: &[String], text: f64)
     rows
 }
 
-/// Sets the rows below each other; returns the commands and the height.
-fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCommand>, f64) {
+/// Sets the rows below each other, a verdict in at most `verdict_lines`; returns the commands and the height.
+fn flow(
+    rows: &[PanelRow],
+    column: Rect,
+    font: &Font,
+    text: f64,
+    verdict_lines: usize,
+) -> (Vec<DrawCommand>, f64) {
     let mut commands = Vec::new();
     let mut y = column.top;
+    let write_lines =
+        |words: &str, at: Px, (size, most): (f64, usize), color, commands: &mut Vec<DrawCommand>| {
+            let lines = font.wrapped(words, size, column.right - at.x, most);
+            let count = lines.len();
+            for (n, line) in lines.into_iter().enumerate() {
+                let base = px(at.x, at.y + size * (ASCENT + LEADING * n as f64));
+                commands.push(DrawCommand::text(base, size, line, color));
+            }
+            LEADING * size * count as f64
+        };
     let write = |words: &str, at: Px, size: f64, color: Rgb, commands: &mut Vec<DrawCommand>| {
-        let lines = font.wrapped(words, size, column.right - at.x, MOST_LINES);
-        let count = lines.len();
-        for (n, line) in lines.into_iter().enumerate() {
-            let base = px(at.x, at.y + size * (ASCENT + LEADING * n as f64));
-            commands.push(DrawCommand::text(base, size, line, color));
-        }
-        LEADING * size * count as f64
+        write_lines(words, at, (size, MOST_LINES), color, commands)
     };
     for row in rows {
         let sign = px(column.left + 0.8 * text, y + 0.5 * text);
@@ -251,7 +271,8 @@ fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCom
                     _ => Vec::new(),
                 });
                 let indented = px(column.left + 2.1 * text, y);
-                let height = write(words, indented, text, palette::TEXT, &mut commands);
+                let most = if matches!(row, PanelRow::Verdict(..)) { verdict_lines } else { MOST_LINES };
+                let height = write_lines(words, indented, (text, most), palette::TEXT, &mut commands);
                 y += height.max(LEADING * text);
             }
         }
@@ -271,7 +292,10 @@ fn shades(bar: Rect, (low, high): (f64, f64), font: &Font, text: f64) -> Vec<Dra
             DrawCommand::Area { points, color: palette::shade(step(n)) }
         })
         .collect();
-    let ticks = Ticks::over(low, high, 4.0);
+    // Fewer than three numbers are no scale.
+    let of = |most: &f64| Ticks::over(low, high, *most);
+    let fine = [4.0, 6.0, 8.0].iter().map(of).find(|ticks| 3 <= ticks.all().count());
+    let ticks = fine.unwrap_or_else(|| of(&10.0));
     for value in ticks.all() {
         let (x, name) = (at((value - low) / (high - low)), ticks.name(value));
         let end = px(x, bar.bottom + 0.25 * text);
@@ -311,7 +335,8 @@ fn sample_commands(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
         Sample::Line(pen, style) => {
             let ink = palette::ink(pen, Some(style), text, text);
             let inset = if style.width.is_some() { ink.width / 2.0 } else { 0.0 };
-            vec![DrawCommand::line(px(left.x + inset, left.y), px(right.x - inset, right.y), ink)]
+            let end = left.x + palette::SAMPLE * text;
+            vec![DrawCommand::line(px(left.x + inset, left.y), px(end - inset, left.y), ink)]
         }
         Sample::Sign(sign) => symbol::sign(sign, middle, SIGN * text),
         Sample::Zero => symbol::zero(middle, 0.8 * ZERO * text, palette::pen(Pen::Edge, text)),
@@ -333,5 +358,31 @@ fn sample_commands(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
                 DrawCommand::Disc { centre: end, radius: (0.17 * text).max(1.8), color },
             ]
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{FileFormat, HoleStatus, Size, TopView, draw, top_view};
+
+    fn svg(verdict: String) -> String {
+        let view = TopView { verdict: Some((HoleStatus::Good, verdict)), ..TopView::default() };
+        String::from_utf8(draw(&top_view(&view), Size::default(), FileFormat::Svg).unwrap()).unwrap()
+    }
+
+    /// Ten lines are more than other rows have; each aspect that was not checked is there.
+    #[test]
+    fn a_verdict_is_whole() {
+        let aspects: Vec<String> = (1..=20).map(|number| format!("aspect-{number}")).collect();
+        let picture = svg(format!("PASS; not checked: {}", aspects.join(", ")));
+        assert!(aspects.iter().all(|aspect| picture.contains(aspect)), "{picture}");
+    }
+
+    /// More than fits on the sheet is cut, and its end says so.
+    #[test]
+    fn a_verdict_longer_than_the_sheet_is_cut() {
+        let aspects: Vec<String> = (1..=900).map(|number| format!("aspect-{number}")).collect();
+        let picture = svg(format!("PASS; not checked: {}", aspects.join(", ")));
+        assert!(picture.contains("aspect-1,") && !picture.contains("aspect-900") && picture.contains('…'));
     }
 }

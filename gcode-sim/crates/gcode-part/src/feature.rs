@@ -197,7 +197,7 @@ impl Feature {
         ];
         for (key, value) in lengths.into_iter().flatten() {
             if !(value.is_finite() && value > 0.0) {
-                return Err(format!("the {key} of its {name} is {value}: a number above 0"));
+                return Err(format!("the {key} of its {name} is {value}: a number above 0 is required"));
             }
         }
         if let Some(angle) = self.angle.filter(|angle| !(*angle > 0.0 && *angle < 180.0)) {

@@ -31,6 +31,9 @@ impl NominalPart {
         if text.trim_start().starts_with('{') {
             return Reference::of_list(read::json(text)?).map(Self::Holes);
         }
+        if let Some((line, message)) = csv_list::lacking_header(text) {
+            return Err(FileError { line: Some(line), message });
+        }
         if csv_list::is_csv(text) {
             return Reference::of_csv(csv_list::csv(text)?).map(Self::Holes);
         }

@@ -83,10 +83,10 @@ fn find_fault(hole: &Hole) -> Option<String> {
         return Some(format!("the axis has the length {length:.7}: divide i, j, k by it"));
     }
     if hole.depth <= 0.0 {
-        return Some(format!("the depth is {}: a number above 0", hole.depth));
+        return Some(format!("the depth is {}: a number above 0 is required", hole.depth));
     }
     if let Some(diameter) = hole.diameter.filter(|diameter| *diameter <= 0.0) {
-        return Some(format!("the diameter is {diameter}: a number above 0"));
+        return Some(format!("the diameter is {diameter}: a number above 0 is required"));
     }
     check_features(hole).err()
 }
@@ -183,7 +183,7 @@ mod tests {
     fn an_implausible_entry_is_refused_with_its_place() {
         let row = |row: &str| format!("id,x,y,z,i,j,k,depth,diameter\n0,0,0,0,0,1,0,5,6\n{row}\n");
         let cases = [
-            (row("1,0,0,zero,0,1,0,5,6"), "line 3: column 'z' is 'zero': a number"),
+            (row("1,0,0,zero,0,1,0,5,6"), "line 3: column 'z' is 'zero': a number is required"),
             (row("1,0,0,nan,0,1,0,5,6"), "line 3: hole 2 (id '1'): a number is NaN: all must be finite"),
             (
                 row("1,0,0,0,0,0,0,5,6"),
@@ -193,8 +193,14 @@ mod tests {
                 row("1,0,0,0,0,2,0,5,6"),
                 "line 3: hole 2 (id '1'): the axis has the length 2.0000000: divide i, j, k by it",
             ),
-            (row("1,0,0,0,0,1,0,-5,6"), "line 3: hole 2 (id '1'): the depth is -5: a number above 0"),
-            (row("0,0,0,0,0,1,0,5,6"), "id '0' is used twice, in hole 1 and hole 2: give each its own"),
+            (
+                row("1,0,0,0,0,1,0,-5,6"),
+                "line 3: hole 2 (id '1'): the depth is -5: a number above 0 is required",
+            ),
+            (
+                row("0,0,0,0,0,1,0,5,6"),
+                "line 3: id '0' is used twice, in line 2 first: give each hole its own",
+            ),
             (row("1,0,0"), "line 3: 3 columns, the header has 9"),
             (
                 "id,x,y,z,i,j,depth,diameter\n".to_owned(),

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::kinds;
-use gcode_control::{State, additional_system_name, modal_code};
+use gcode_control::{BlockCommands, State, additional_system_name, modal_code};
 use gcode_lang::control::Dialect;
 use gcode_lang::diag::FindingKind;
 use gcode_lang::program::modes::WorkSystem;
@@ -43,6 +43,22 @@ impl ModalAspect {
         }
     }
 
+    /// Returns true if a block commands it, by a code of its group or by the number of its offset.
+    fn is_commanded(self, commands: &BlockCommands) -> bool {
+        let letter = match self {
+            Self::Length => Some('H'),
+            Self::Cutter => Some('D'),
+            Self::System | Self::Path | Self::Level | Self::Cycle => None,
+        };
+        commands.modes.iter().any(|(group, _)| *group == self.row().0)
+            || letter.is_some_and(|letter| commands.valued_letters.contains(&letter))
+    }
+
+    /// Returns those that a block commands.
+    pub(super) fn commanded_by(commands: &BlockCommands) -> [bool; 6] {
+        Self::ALL.map(|aspect| aspect.is_commanded(commands))
+    }
+
     fn read(self, state: &State, dialect: Dialect) -> String {
         let modal = &state.modal;
         let code = modal.code(self.row().0).unwrap_or_default();
@@ -67,7 +83,7 @@ impl ModalAspect {
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ModalConditions(pub [ModalSetting; 6]);
 
-/// A modal code as written in programs, and the number of the block that set it.
+/// A modal code as written in programs, and the number of the block that commanded it last.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ModalSetting {
     /// Empty for none.
@@ -95,12 +111,21 @@ impl ModalConditions {
         self.0[aspect as usize] = word;
     }
 
-    /// Returns the conditions after a block; unchanged ones keep the block that set them.
-    pub(super) fn after_block(&self, state: &State, dialect: Dialect, block_number: usize) -> Self {
+    /// Returns the conditions after a block that commands some of them; the others keep their block.
+    ///
+    /// A block that commands what is in force already is the one to edit for the moves behind it.
+    pub(super) fn after_block(
+        &self,
+        state: &State,
+        dialect: Dialect,
+        commanded: [bool; 6],
+        block_number: usize,
+    ) -> Self {
         let mut next = self.clone();
         for aspect in ModalAspect::ALL {
             let text = aspect.read(state, dialect);
-            if next.word(aspect).text != text {
+            let is_commanded = commanded[aspect as usize] && !text.is_empty();
+            if is_commanded || next.word(aspect).text != text {
                 next.set(aspect, ModalSetting { text, block_number: Some(block_number) });
             }
         }

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 use super::block_list::BlockNumbers;
 use super::first_command::{CommandKind, FirstCommand};
-use super::modal_conditions::ModalConditions;
+use super::modal_conditions::{ModalAspect, ModalConditions};
 use super::step_list::{NewStep, StepList};
 use super::steps::{StepKind, UnsimulatedKind};
 use gcode_control::{
@@ -19,6 +19,9 @@ use gcode_lang::source::Span;
 
 /// Largest number of recorded steps: a loop that never ends must not fill the memory.
 pub(super) const MOST_STEPS: usize = 5_000_000;
+
+/// Group of G00 to G03, which blocks repeat most.
+const MOVES: u32 = 1;
 
 /// Variables that outlive a program.
 const COMMON: RangeInclusive<u32> = 100..=999;
@@ -59,6 +62,8 @@ pub(super) struct Recorder {
     set_by: BTreeMap<char, (Span, usize)>,
     /// Inputs of the last conditions: modal codes, H, D, Q.
     seen: Option<(Modal, u32, u32, Option<f64>)>,
+    /// Aspects that the block before its execution commands, and the groups of its modal codes without moves.
+    commanded: ([bool; 6], Vec<u32>),
     /// Last blocks and their conditions: a move may wait until the blocks after it are read.
     recent: VecDeque<(Span, usize)>,
 }
@@ -102,6 +107,8 @@ impl Recorder {
 
     /// Records first commands, and the block of F, S and T.
     fn begin(&mut self, commands: BlockCommands, backtrace: &Backtrace) {
+        let groups = commands.modes.iter().map(|(group, _)| *group).filter(|group| *group != MOVES);
+        self.commanded = (ModalAspect::commanded_by(&commands), groups.collect());
         let BlockCommands { modes, axes, offsets, valued_letters } = commands;
         for letter in valued_letters {
             let number = self.numbers.number(backtrace);
@@ -222,16 +229,19 @@ impl Recorder {
     fn resolve_conditions(&mut self, control: &Control) {
         let state = control.state();
         let now = (state.modal, state.modal_words.h, state.modal_words.d, state.cycle.q);
-        if self.seen != Some(now) {
+        let (commanded, codes) = std::mem::take(&mut self.commanded);
+        if self.seen != Some(now) || commanded.contains(&true) || !codes.is_empty() {
             let backtrace = control.backtrace();
             let block_number = self.numbers.number(&backtrace);
             let before = self.seen.map_or_else(Modal::default, |(modal, ..)| modal);
             let groups = GROUPS.iter().map(|group| group.number());
-            for group in groups.filter(|group| before.code(*group) != state.modal.code(*group)) {
+            let is_set =
+                |group: &u32| before.code(*group) != state.modal.code(*group) || codes.contains(group);
+            for group in groups.filter(is_set) {
                 self.written.insert(mode_name(group), backtrace.clone());
             }
             let before = self.conditions.last().cloned().unwrap_or_else(ModalConditions::at_power_on);
-            let next = before.after_block(state, control.settings().dialect, block_number);
+            let next = before.after_block(state, control.settings().dialect, commanded, block_number);
             if self.conditions.last() != Some(&next) {
                 self.conditions.push(next);
             }
@@ -272,19 +282,7 @@ impl Recorder {
     /// Returns the block of the word that a step uses, if that is another; `None` for a move that waited for later
     /// blocks.
     fn set_by(&self, kind: &StepKind, backtrace: &Backtrace) -> Option<usize> {
-        let letter = match kind {
-            StepKind::Tool(_) => 'T',
-            StepKind::Spindle(direction, _) if *direction != SpindleDirection::Off => 'S',
-            StepKind::Feed(_) | StepKind::Arc(..) | StepKind::Probe(_) => 'F',
-            StepKind::Rapid
-            | StepKind::Dwell(_)
-            | StepKind::Length(_)
-            | StepKind::Spindle(..)
-            | StepKind::Coolant(..)
-            | StepKind::Auxiliary(_)
-            | StepKind::Stop(..)
-            | StepKind::Silent(..) => return None,
-        };
+        let letter = kind.letter()?;
         let has_waited = self.block.as_ref().is_some_and(|block| block.backtrace.block != backtrace.block);
         let set_by = self.set_by.get(&letter).filter(|(block, _)| *block != backtrace.block && !has_waited);
         set_by.map(|(_, number)| *number)

@@ -18,7 +18,7 @@ pub(super) struct Step<'a> {
     pub at: Position,
     /// Number of its block in the record.
     pub block_number: usize,
-    /// Block of the T, S or F word that the step uses, if that is another; `None` in a record from a file.
+    /// Block of the T, S or F word that the step uses, if that is another; `None` in an earlier accepted result.
     pub set_by: Option<usize>,
     /// Number of its modal conditions in the record.
     pub condition: usize,
@@ -123,6 +123,23 @@ impl StepKind {
         match self {
             Self::Feed(rate) | Self::Arc(_, rate) | Self::Probe(rate) => Some(*rate),
             _ => None,
+        }
+    }
+
+    /// Returns the letter of the word whose value the step uses, from its own block or an earlier one.
+    pub(super) fn letter(&self) -> Option<char> {
+        match self {
+            Self::Tool(_) => Some('T'),
+            Self::Spindle(direction, _) if *direction != SpindleDirection::Off => Some('S'),
+            Self::Feed(_) | Self::Arc(..) | Self::Probe(_) => Some('F'),
+            Self::Rapid
+            | Self::Dwell(_)
+            | Self::Length(_)
+            | Self::Spindle(..)
+            | Self::Coolant(..)
+            | Self::Auxiliary(_)
+            | Self::Stop(..)
+            | Self::Silent(..) => None,
         }
     }
 

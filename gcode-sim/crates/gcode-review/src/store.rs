@@ -125,6 +125,12 @@ enum StepLine {
         #[serde(rename = "place")]
         block_number: Option<usize>,
     },
+    /// Not a step: the block whose T, S or F the steps from here on use; null for their own blocks.
+    Word {
+        letter: char,
+        #[serde(rename = "place")]
+        block_number: Option<usize>,
+    },
 }
 
 /// A hole in the part's frame, and the steps that cut it.
@@ -156,6 +162,7 @@ impl Record {
         let mut at = Position::default();
         let mut steps = Vec::with_capacity(self.steps.len());
         let mut under = ModalConditions::default();
+        let mut words: BTreeMap<char, usize> = BTreeMap::new();
         for (index, step) in self.steps.iter().enumerate() {
             let now = self.under(index);
             for what in ModalAspect::ALL.into_iter().filter(|what| now.word(*what) != under.word(*what)) {
@@ -163,6 +170,15 @@ impl Record {
                 steps.push(StepLine::Under { what, code: text, block_number });
             }
             under.clone_from(now);
+            if let Some(letter) = step.kind.letter()
+                && words.get(&letter) != step.set_by.as_ref()
+            {
+                steps.push(StepLine::Word { letter, block_number: step.set_by });
+                match step.set_by {
+                    Some(block_number) => _ = words.insert(letter, block_number),
+                    None => _ = words.remove(&letter),
+                }
+            }
             steps.push(self.line(&step, &at));
             at = step.at;
         }
@@ -212,6 +228,7 @@ impl Record {
             at: Position::default(),
             length: Position::default(),
             conditions: vec![ModalConditions::default()],
+            words: BTreeMap::new(),
         };
         let mut steps = StepList::default();
         for line in file.steps {
@@ -222,7 +239,7 @@ impl Record {
         if let Some(block_number) = named.max().filter(|block_number| file.blocks.len() <= *block_number) {
             return Err(StoreError(format!("a mode names block {block_number}, which does not exist")));
         }
-        let mut named = (0..steps.len()).map(|step| steps.block_number(step));
+        let mut named = (0..steps.len()).flat_map(|step| [steps.block_number(step), steps.editable_at(step)]);
         if let Some(block_number) = named.find(|block_number| file.blocks.len() <= *block_number) {
             return Err(StoreError(format!("a step names block {block_number}, which does not exist")));
         }
@@ -320,6 +337,8 @@ struct Steps<'a> {
     at: Position,
     length: Position,
     conditions: Vec<ModalConditions>,
+    /// Blocks of the T, S and F that the steps use; none for a letter in their own blocks.
+    words: BTreeMap<char, usize>,
 }
 
 impl Steps<'_> {
@@ -355,13 +374,21 @@ impl Steps<'_> {
                 self.conditions.push(next);
                 return Ok(None);
             }
+            StepLine::Word { letter, block_number } => {
+                match block_number {
+                    Some(block_number) => _ = self.words.insert(letter, block_number),
+                    None => _ = self.words.remove(&letter),
+                }
+                return Ok(None);
+            }
         };
+        let set_by = kind.letter().and_then(|letter| self.words.get(&letter)).copied();
         Ok(Some(NewStep {
             kind,
             at: self.at,
             length: self.length,
             block_number,
-            set_by: None,
+            set_by,
             condition: self.conditions.len() - 1,
         }))
     }
@@ -406,5 +433,30 @@ impl Hole {
             finishing_index: 0,
             first_on_line: self.again.unwrap_or(number),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::program::NoLibrary;
+    use gcode_session::Request;
+
+    use super::*;
+    use crate::{Revision, changes};
+
+    /// F stands in line 3, the moves that it feeds in lines 4 and 5; the accepted result keeps line 3.
+    #[test]
+    fn a_word_of_an_earlier_block_keeps_its_place_in_the_file() {
+        let [old, new] = [100, 200].map(|feed| {
+            let text = format!("O1\nG90 G54\nG1 X0 Y0 Z0 F{feed}\nX10.\nX20.\nG4 P1\nG1 X30. F50\nM30\n");
+            let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
+            Revision::of(&request, &mut NoLibrary, None).unwrap().record
+        });
+        let accepted = Record::from_json(&old.to_json().unwrap()).unwrap();
+        assert!(changes(&accepted, &old, 1e-4).is_empty());
+        let found = changes(&accepted, &new, 1e-4);
+        let lines = [&found[0].old, &found[0].new].map(|at| at.as_ref().unwrap().line);
+        assert_eq!((found.len(), &*found[0].code, lines), (1, "feed", [3, 3]));
     }
 }

@@ -34,6 +34,9 @@ enum Kind {
     HeadTable,
     /// C and A tilt the spindle: a fork head
     HeadHead,
+    /// No kind: three kinds have five axes
+    #[value(name = "5-axis", aliases = ["5axis", "5-axes", "five-axis"], hide = true)]
+    FiveAxis,
 }
 
 fn dialects() -> clap::builder::PossibleValuesParser {
@@ -42,8 +45,8 @@ fn dialects() -> clap::builder::PossibleValuesParser {
 
 impl Kind {
     /// Returns the kind in words, the control's axis table, and the sections on table, head and part.
-    fn template(self) -> (&'static str, &'static str, &'static str) {
-        match self {
+    fn template(self) -> Result<(&'static str, &'static str, &'static str), UsageError> {
+        Ok(match self {
             Self::ThreeAxis => ("3 axes", "XYZ", include_str!("machine/3-axis.toml")),
             Self::FourthAxis => {
                 ("a 4th axis A under the part", "XYZA", include_str!("machine/4th-axis.toml"))
@@ -61,18 +64,24 @@ impl Kind {
             Self::HeadHead => {
                 ("5 axes, C and A tilt the spindle", "XYZAC", include_str!("machine/head-head.toml"))
             }
-        }
+            Self::FiveAxis => {
+                return Err(UsageError::new(
+                    "--kind 5-axis: give the kind by its rotary axes: trunnion (A tilts the table, C rotates on it), head-table \
+                     (B tilts the spindle, C rotates the part) or head-head (C and A tilt the spindle)",
+                ));
+            }
+        })
     }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    arguments.file.write(&text(arguments.kind, &arguments.dialect))?;
+    arguments.file.write(&text(arguments.kind, &arguments.dialect)?)?;
     Ok(ExitStatus::Passed)
 }
 
 /// Returns the text of the machine file.
-fn text(kind: Kind, dialect: &str) -> String {
-    let (words, axes, sections) = kind.template();
+fn text(kind: Kind, dialect: &str) -> Result<String, UsageError> {
+    let (words, axes, sections) = kind.template()?;
     let quoted = |name: &str| format!("\"{name}\"");
     let control = format!(
         "\
@@ -90,7 +99,7 @@ axes = {:<21} # axis table of the control, axis 1 first
         names(&Dialect::ALL).join(", "),
         quoted(axes)
     );
-    control + sections + include_str!("machine/tools.toml")
+    Ok(control + sections + include_str!("machine/tools.toml"))
 }
 
 #[cfg(test)]
@@ -98,13 +107,18 @@ mod tests {
     use super::*;
     use gcode_inspect::machine::Machine;
 
+    /// Returns the kinds that have a machine file.
+    fn kinds() -> impl Iterator<Item = Kind> {
+        Kind::value_variants().iter().copied().filter(|kind| *kind != Kind::FiveAxis)
+    }
+
     #[test]
     fn every_kind_is_read_for_every_control() {
-        for kind in Kind::value_variants() {
+        for kind in kinds() {
             for (name, dialect) in Dialect::ALL {
-                let machine = Machine::parse(&text(*kind, name)).unwrap();
+                let machine = Machine::parse(&text(kind, name).unwrap()).unwrap();
                 assert_eq!(machine.dialect, dialect);
-                let has_rotary = *kind != Kind::ThreeAxis;
+                let has_rotary = kind != Kind::ThreeAxis;
                 assert_eq!(machine.kinematics().is_some(), has_rotary, "{kind:?}");
             }
         }
@@ -118,8 +132,8 @@ mod tests {
             Some(rest) if is_key(rest) => rest.to_owned(),
             _ => line.to_owned(),
         };
-        for kind in Kind::value_variants() {
-            let text: Vec<_> = text(*kind, "fanuc-31i").lines().map(uncommented).collect();
+        for kind in kinds() {
+            let text: Vec<_> = text(kind, "fanuc-31i").unwrap().lines().map(uncommented).collect();
             let machine = Machine::parse(&text.join("\n")).unwrap();
             assert_eq!(machine.tools[0].length, Some(120.0));
             assert!(machine.stock.is_some() && machine.start == [(2, 250.0)]);

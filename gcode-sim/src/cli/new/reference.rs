@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::{ExitStatus, OutputFile, UsageError};
 use crate::cli::conditions::{ProgramArguments, RunConditions};
-use crate::cli::{options, output, progress};
+use crate::cli::{common, options, output, progress};
 use crate::report::holes as report;
 use gcode_inspect::holes::DrilledHole;
 use gcode_part::{Hole, HoleList};
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     from: PathBuf,
 
     /// Distance of the R point level from the surface, mm: entries lie so far below the start of the feed
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", value_parser = common::number)]
     clearance: Option<f64>,
 
     #[command(flatten)]

@@ -14,7 +14,7 @@ use clap::Args;
 use self::case::{Case, CaseResult, Terms};
 use super::conditions::DenyArguments;
 use super::format::TestFormat;
-use super::{ExitStatus, UsageError, options, output, progress};
+use super::{ExitStatus, UsageError, common, options, output, progress};
 use crate::report::junit;
 use crate::report::test_report::{CaseAnswer, Shard, TestReport};
 use gcode_review::Record;
@@ -57,7 +57,13 @@ pub(super) struct Arguments {
     deny: DenyArguments,
 
     /// Tolerance for equality, mm or degrees
-    #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 0.0001,
+        allow_negative_numbers = true,
+        value_parser = common::number
+    )]
     tolerance: f64,
 
     /// Output format

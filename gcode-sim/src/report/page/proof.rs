@@ -18,7 +18,9 @@ pub(super) fn proof(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                 @if index > 0 { ", " }
                 code { (shown(flag)) }
             }
-            "; without " code { "--machine" } " the machine of the paper is used."
+            @let is_machine = |flag: &String| flag.starts_with("--machine ");
+            @if !page.conditions.iter().any(is_machine) { "; without " code { "--machine" } ": X, Y, Z and a rotary B about Y" }
+            "."
         }
         div.scroll {
             table.digests {

@@ -8,6 +8,7 @@ use maud::{Markup, html};
 
 use super::encode::base64;
 use super::figures::{count, duration, finding_counts, rounded, short};
+use super::run::comments;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Conclusion};
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -209,7 +210,7 @@ impl ProgramSheet<'_> {
             let values =
                 stop.variables.iter().map(|(number, value)| format!("#{number} = {}", short(*value)));
             let block = self.simulation.run.control.memory().sources().text(stop.backtrace.block);
-            let text = if stop.text.is_empty() { comment(&block) } else { stop.text.clone() };
+            let text = if stop.text.is_empty() { comments(&block) } else { stop.text.clone() };
             vec![
                 html! { (index + 1) },
                 html! {
@@ -334,10 +335,4 @@ fn range(range: Option<[f64; 2]>) -> String {
         Some([min, max]) if min == max => short(min),
         Some([min, max]) => format!("{} to {}", short(min), short(max)),
     }
-}
-
-/// Returns the comments of a block, which the control shows with it while it waits.
-fn comment(block: &str) -> String {
-    let comments = block.split('(').skip(1).map(|rest| rest.split(')').next().unwrap_or_default().trim());
-    comments.filter(|comment| !comment.is_empty()).collect::<Vec<_>>().join(" ")
 }

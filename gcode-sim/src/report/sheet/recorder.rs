@@ -6,6 +6,7 @@ use gcode_lang::motion::{
     Backtrace, Event, EventKind, EventSink, LengthCompensation, SpindleDirection, StopKind,
 };
 use gcode_lang::program::modes::{ModalGroup, WorkSystem};
+use gcode_lang::source::Span;
 
 /// G40, as code × 10.
 const CUTTER_COMPENSATION_OFF: u32 = 400;
@@ -19,7 +20,7 @@ pub(crate) struct ToolUse {
     pub length_offsets: BTreeSet<LengthCompensation>,
     /// Least and largest spindle speed of its cuts, 1/min.
     pub speed: Option<[f64; 2]>,
-    /// True if it cuts with M04.
+    /// True if the spindle turns as by M04 when it begins a cut; a tap is reversed on its way out.
     pub is_reversed: bool,
     /// Least and largest feed of its cuts, mm/min.
     pub feed: Option<[f64; 2]>,
@@ -56,6 +57,8 @@ pub(crate) struct UseRecorder {
     speed: f64,
     direction: SpindleDirection,
     coolant: Option<u32>,
+    /// Block of the last cut, and the spindle's direction when that block began to cut; `None` behind a rapid.
+    cut: Option<(Span, SpindleDirection)>,
 }
 
 impl UseRecorder {
@@ -67,15 +70,17 @@ impl UseRecorder {
         &mut self.uses[last]
     }
 
-    fn record_cut(&mut self, rate: f64) {
+    fn record_cut(&mut self, rate: f64, block: Span) {
         let (length, speed, direction, coolant) = (self.length, self.speed, self.direction, self.coolant);
+        let begun = self.cut.filter(|(known, _)| *known == block);
+        let (_, first) = *self.cut.insert(begun.unwrap_or((block, direction)));
         let now = self.current();
         now.length_offsets.insert(length);
         widen(&mut now.feed, rate);
         if direction != SpindleDirection::Off {
             widen(&mut now.speed, speed);
         }
-        now.is_reversed |= direction == SpindleDirection::Counterclockwise;
+        now.is_reversed |= first == SpindleDirection::Counterclockwise;
         now.coolants.extend(coolant);
     }
 }
@@ -90,9 +95,12 @@ impl EventSink for UseRecorder {
     fn event(&mut self, event: &Event<'_>) {
         let seconds = event.seconds.0;
         let kind = match &event.kind {
-            EventKind::Rapid { .. } => Some(0),
+            EventKind::Rapid { .. } => {
+                self.cut = None;
+                Some(0)
+            }
             EventKind::Feed { rate, .. } | EventKind::Arc { rate, .. } | EventKind::Skip { rate, .. } => {
-                self.record_cut(rate.0);
+                self.record_cut(rate.0, event.block);
                 Some(1)
             }
             EventKind::Dwell { .. } => Some(2),
@@ -162,6 +170,42 @@ impl Observer for OffsetObserver {
         }
         if state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF {
             self.radius_offsets.insert((state.tool, state.modal_words.d));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::program::NoLibrary;
+    use gcode_session::Request;
+
+    fn is_reversed(lines: &str) -> bool {
+        let text = format!("O1\nG90 G0 Z50.\n{lines}\nM30\n");
+        let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
+        let mut recorder = UseRecorder::default();
+        gcode_session::run(&request, &mut NoLibrary, &mut recorder).unwrap();
+        let [one] = &recorder.uses[..] else { panic!("one tool") };
+        assert!(one.speed == Some([300.0, 300.0]) && one.feed == Some([450.0, 450.0]), "{one:?}");
+        one.is_reversed
+    }
+
+    /// The cycle of a tap reverses the spindle on the way out: M03 is what the operator sees start.
+    #[test]
+    fn the_direction_of_a_tap_is_that_of_its_way_in() {
+        let tap = "X10. Y0 R5. Z-20. F450.";
+        for (lines, expected) in [
+            (format!("S300 M03\nG99 G84 {tap}\nX20.\nX30. K2"), false),
+            (format!("M29 S300\nG84 {tap}\nX20."), false),
+            (format!("S300 M03\nG84 {tap} Q5."), false),
+            (format!("S300 M04\nG74 {tap}\nX20."), true),
+            (format!("M29 S300\nG74 {tap}"), true),
+            (format!("S300 M04\nG81 {tap}"), true),
+            (format!("S300 M03\nG81 {tap}"), false),
+            (format!("S300 M03\nG84 {tap}\nG80\nM04\nG1 X0 F450."), true),
+        ] {
+            assert_eq!(is_reversed(&lines), expected, "{lines}");
         }
     }
 }

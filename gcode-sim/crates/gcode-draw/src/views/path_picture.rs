@@ -6,7 +6,7 @@ use super::top::{TopView, hole_mark};
 use super::view_frames::{Frames, PlacedView, ViewBox};
 use crate::measure::plain;
 use crate::picture::{LegendItem, Picture, Sample};
-use crate::scene::{HoleStatus, Mark, Pen, Scene, Shape, Sign, Stroke, Style, Tint};
+use crate::scene::{Mark, Pen, Scene, Shape, Sign, Stroke, Style, Tint};
 use crate::side::Projection;
 use nalgebra::Vector3;
 
@@ -136,8 +136,8 @@ fn marks(view: &TopView, placed: &PlacedView, is_crowded: bool, labelled: &mut [
         if std::mem::replace(&mut labelled[index], true) {
             mark.label.clear();
             mark.deviation = None;
-        } else if is_crowded && hole.status == HoleStatus::Unjudged {
-            // Small views have room for the number alone.
+        } else if is_crowded {
+            // Small views have room for the number alone; the table has the rest.
             mark.label.truncate(1);
         }
         marks.push(mark);

@@ -293,7 +293,7 @@ impl TopView {
         };
         let has_diameter = shown().any(|(_, hole)| !diameters(hole).is_empty());
         let has_position = shown().any(|(hole, _)| hole.position_deviation.is_some());
-        // Without a nominal hole the depth counts from where the feed begins.
+        // Without a nominal hole the depth counts from where a feed begins to the deepest point of any tool.
         let is_fed = shown().all(|(hole, _)| hole.nominal.is_none());
         let columns = [
             (true, "hole", 9),
@@ -301,7 +301,7 @@ impl TopView {
             (true, "y", 7),
             (true, "z", 6),
             (has_diameter, "Φ", 3),
-            (true, if is_fed { "feed length" } else { "depth" }, 2),
+            (true, if is_fed { "deepest" } else { "depth" }, 2),
             (has_position, "position", 5),
         ];
         let row = |(drawn, hole): (&DrawnHole, &Hole)| {

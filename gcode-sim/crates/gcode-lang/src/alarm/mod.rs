@@ -86,6 +86,8 @@ pub enum Alarm {
     ImproperGCode {
         /// Code without its letter.
         code: String,
+        /// Name of a control that has it.
+        control: Option<&'static str>,
     },
     /// A cutting feed has no feed rate.
     FeedZero,

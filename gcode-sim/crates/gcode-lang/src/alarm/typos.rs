@@ -29,6 +29,8 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         dwell_with_two_times,
         work_offset_range,
         protected_program,
+        other_control,
+        vacant_target,
     ];
     rules.into_iter().find_map(|rule| rule(alarm, &line)).or_else(|| alarm.row().help)
 }
@@ -37,6 +39,20 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
 fn protected_program(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
     let Alarm::ProgramNotFound { number, read_error: None } = alarm else { return None };
     missing_macro_help(*number)
+}
+
+/// Returns the control that has a code which this one lacks.
+fn other_control(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
+    let Alarm::ImproperGCode { control: Some(control), .. } = alarm else { return None };
+    Some(format!("{control} has it: give --dialect {control} for such a control, or correct the code"))
+}
+
+/// Detects `GOTO#1` with a vacant #1.
+fn vacant_target(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let is_computed = alarm_line.text.contains('#');
+    (*alarm == Alarm::SequenceNumberRange { number: 0 } && is_computed).then(|| {
+        format!("check {}: a vacant variable counts as 0; write 1 to 99999999", alarm_line.text.trim())
+    })
 }
 
 /// Program numbers that a control can protect: macros of the machine builder and of the probe's maker.
@@ -398,6 +414,22 @@ mod tests {
         assert!(!help(small(4.0), "G02 X10. R4", "R4").contains("without"));
         let alarm = Alarm::NotSimulated { what: "X in this block".into() };
         assert!(help(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));
+    }
+
+    #[test]
+    fn a_code_of_another_control_names_it() {
+        let improper = |control| Alarm::ImproperGCode { code: "187".into(), control };
+        assert!(help(improper(Some("haas-ngc")), "G187 P1", "G187").contains("--dialect haas-ngc"));
+        assert!(!help(improper(None), "G187 P1", "G187").contains("--dialect"));
+    }
+
+    #[test]
+    fn a_vacant_jump_target_is_named() {
+        let range = |number| Alarm::SequenceNumberRange { number };
+        let vacant = help(range(0), "GOTO#1", "#1");
+        assert_eq!(vacant, "check #1: a vacant variable counts as 0; write 1 to 99999999");
+        assert_eq!(help(range(-5), "GOTO#1", "#1"), "write 1 to 99999999");
+        assert_eq!(help(range(0), "GOTO0", "0"), "write 1 to 99999999");
     }
 
     #[test]

@@ -82,7 +82,7 @@ impl DialectSyntax {
             Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,
             Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
             Self::NewWord(word) => Alarm::NotAWord { text: word.into() },
-            Self::GCodeCall(code) => Alarm::ImproperGCode { code: g_codes::spelled(code) },
+            Self::GCodeCall(code) => g_codes::improper(code),
             Self::FractionalNumber => Alarm::NotSimulated { what: "writing #n.m".into() },
             Self::ValueCondition { of_loop: false } => Alarm::IfFormat,
             Self::ValueCondition { of_loop: true } => Alarm::WhileFormat,

@@ -2,6 +2,7 @@
 use super::code_facts::{AxisWords, Unsimulated};
 pub use super::g_code_row::{Effect, GCodeRow, HolePattern, MeasuringCode, OneShot, name, spelled};
 use super::g_code_table::{CODES, DECLARED, DECLARED_WAIT};
+use crate::alarm::Alarm;
 use crate::control::{DeclaredEffect, Dialect, Settings};
 
 /// Rows of a code × 10 by family, as indices; 255 for a code that the controls lack.
@@ -42,6 +43,14 @@ pub fn row_on(code: u32, found: RowLookup, settings: &Settings) -> Option<&'stat
         Some(row) if row.effect != Effect::NotSimulated => Some(row),
         row => declared_row(code, settings).or(row),
     }
+}
+
+/// Returns the alarm of a code × 10 that a control does not have.
+#[cold]
+pub fn improper(code: u32) -> Alarm {
+    let has_code = |(_, dialect): &&(&str, Dialect)| find(code).row_for(*dialect).is_some();
+    let control = Dialect::ALL.iter().find(has_code).map(|(name, _)| *name);
+    Alarm::ImproperGCode { code: spelled(code), control }
 }
 
 /// Returns the row of a code × 10 that the user declares.

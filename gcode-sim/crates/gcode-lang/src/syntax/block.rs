@@ -5,7 +5,7 @@ use super::ast::{Address, Block, Decimal, Item, Unreadable, Word, WordValue};
 use super::number::integer;
 use super::numbers::{MAX_SEQUENCE_NUMBER, continues_number, number_word, window};
 use super::statement::{assignment, keyword, statement};
-use super::token::{Input, LineInput, ReadFailure, ReadResult, fail, next, no_match, spaces};
+use super::token::{Input, LineInput, ReadFailure, ReadResult, fail, is_space, next, no_match, spaces};
 use super::word::{name_word, word};
 use crate::alarm::Alarm;
 use crate::source::Spanned;
@@ -61,7 +61,21 @@ fn unreadable(line: LineInput, from: Input<'_>, error: Err<ReadFailure>) -> Unre
     };
     let at = &from[from.len() - left.min(from.len())..];
     let end = &from[from.len()..];
-    Unreadable { alarm: line.spanned(alarm, at, end), span: line.span(from, end), text: Vec::new() }
+    let behind = match alarm {
+        // The words behind the number are none of its fault.
+        Alarm::IllegalPoint { .. } | Alarm::TooManyDigits => behind_number(at),
+        _ => end,
+    };
+    Unreadable { alarm: line.spanned(alarm, at, behind), span: line.span(from, end), text: Vec::new() }
+}
+
+/// Returns the input behind a letter and the digits and points that follow it.
+fn behind_number(at: Input<'_>) -> Input<'_> {
+    let is_of_number = |byte: &u8| byte.is_ascii_digit() || *byte == b'.' || is_space(*byte);
+    let letter = usize::from(at.first().is_some_and(u8::is_ascii_alphabetic));
+    let length = letter + at[letter..].iter().take_while(|byte| is_of_number(byte)).count();
+    let spaces = at[..length].iter().rev().take_while(|byte| is_space(**byte)).count();
+    &at[length - spaces..]
 }
 
 fn read_item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> ReadResult<'a, ()> {

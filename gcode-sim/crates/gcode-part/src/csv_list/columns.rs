@@ -42,6 +42,20 @@ pub(crate) fn is_csv(text: &str) -> bool {
     is_header || separator == ',' && 1 < names.len() && !first.contains('=')
 }
 
+/// Returns the line and the fault of a list that begins with values instead of the names of its columns; `None` for
+/// another text.
+pub(crate) fn lacking_header(text: &str) -> Option<(usize, String)> {
+    let first = first_line(text);
+    let separator = separator(first);
+    let cells: Vec<&str> = first.split(separator).map(str::trim).collect();
+    let is_number = |cell: &&str| cell.replacen(',', ".", 1).parse::<f64>().is_ok();
+    let numbers = cells.iter().filter(|cell| is_number(cell)).count();
+    let line = text.lines().position(|line| line == first)? + 1;
+    let message = format!("the names of the columns are missing; {}", example(&[], separator));
+    let has_names = cells.iter().any(|cell| column_name(cell) == "x");
+    (1 < numbers && !has_names).then_some((line, message))
+}
+
 /// Returns the first line with columns: Excel may write the separator as a line before it.
 pub(super) fn first_line(text: &str) -> &str {
     let mut lines = text.lines().filter(|line| !line.trim().is_empty());

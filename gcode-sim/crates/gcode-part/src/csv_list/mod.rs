@@ -4,7 +4,10 @@ mod columns;
 mod tests;
 
 pub(super) use columns::is_csv;
+pub(super) use columns::lacking_header;
 use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator};
+
+use std::collections::HashMap;
 
 use super::feature::{DepthTo, Feature, FeatureKind, Hand};
 use super::hole::{Hole, HoleList, Unit};
@@ -70,6 +73,7 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
     };
     let mut cells =
         Cells { columns: &columns, record: csv::StringRecord::new(), has_comma: false, has_point: false };
+    let mut lines_of_ids: HashMap<String, Option<usize>> = HashMap::new();
     while reader.read_record(&mut cells.record).map_err(|e| wrong(&e))? {
         if cells.record.iter().all(|cell| cell.trim().is_empty()) {
             continue;
@@ -81,6 +85,13 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
                 format!("{message}; {}", example(&columns.names, separator)),
             )
         })?;
+        let line = line_of(cells.record.position());
+        if let Some(id) = &hole.hole.id
+            && let Some(first) = lines_of_ids.insert(id.clone(), line)
+        {
+            let first = first.map_or_else(String::new, |first| format!(", in line {first} first"));
+            return Err(error(line, format!("id '{id}' is used twice{first}: give each hole its own")));
+        }
         if hole.is_open {
             list.open_depths.push(index);
         }
@@ -126,7 +137,7 @@ impl Cells<'_> {
         let (has_comma, has_point) = (text.contains(','), text.contains('.'));
         if has_comma && self.columns.separator == ',' {
             return Err(format!(
-                "column '{column}' is '{text}': a number with a point, because commas are separators"
+                "column '{column}' is '{text}': a number with a point is required, because commas are separators"
             ));
         }
         self.has_comma |= has_comma;
@@ -138,13 +149,13 @@ impl Cells<'_> {
             ));
         }
         let number = if has_comma { text.replacen(',', ".", 1).parse() } else { text.parse() };
-        number.map_err(|_| format!("column '{column}' is '{text}': a number"))
+        number.map_err(|_| format!("column '{column}' is '{text}': a number is required"))
     }
 
     fn required(&mut self, column: &str, default: Option<f64>) -> Result<f64, String> {
         match (self.number(column)?, default.filter(|_| !self.columns.has(column))) {
             (Some(number), _) | (None, Some(number)) => Ok(number),
-            (None, None) => Err(format!("column '{column}' is '': a number")),
+            (None, None) => Err(format!("column '{column}' is empty: a number is required")),
         }
     }
 
@@ -167,7 +178,7 @@ impl Cells<'_> {
             through: match self.text("through").to_lowercase().as_str() {
                 "" | "false" | "no" => false,
                 "true" | "yes" => true,
-                other => return Err(format!("column 'through' is '{other}': true or false")),
+                other => return Err(format!("column 'through' is '{other}': true or false is required")),
             },
             ..Hole::default()
         };
@@ -227,12 +238,12 @@ impl Cells<'_> {
             to: match self.text(&to) {
                 "" | "point" => DepthTo::Point,
                 "full" => DepthTo::Full,
-                other => return Err(format!("column '{to}' is '{other}': full or point")),
+                other => return Err(format!("column '{to}' is '{other}': full or point is required")),
             },
             hand: match self.text(&hand) {
                 "" | "right" => Hand::Right,
                 "left" => Hand::Left,
-                other => return Err(format!("column '{hand}' is '{other}': right or left")),
+                other => return Err(format!("column '{hand}' is '{other}': right or left is required")),
             },
             ..Feature::of(kind)
         };

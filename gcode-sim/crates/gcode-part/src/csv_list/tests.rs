@@ -83,17 +83,23 @@ fn an_error_shows_a_line_that_is_right() {
         ("x;y;depth\n3,5;1.250;4\n", "line 2: column 'y' is '1.250': the list has commas and points"),
         (
             "x,y,depth\n\"3,5\",1,4\n",
-            "line 2: column 'x' is '3,5': a number with a point, because commas are separators; a right line: 30.5,10,15",
+            "line 2: column 'x' is '3,5': a number with a point is required, because commas are separators; a right line: 30.5,10,15",
         ),
-        ("x,y,depth\n3.5,left,4\n", "line 2: column 'y' is 'left': a number; a right line: 30.5,10,15"),
-        ("x,y,depth\n3.5,,4\n", "line 2: column 'y' is '': a number; "),
-        ("x,y,z,depth\n3.5,1,,4\n", "line 2: column 'z' is '': a number; "),
+        (
+            "x,y,depth\n3.5,left,4\n",
+            "line 2: column 'y' is 'left': a number is required; a right line: 30.5,10,15",
+        ),
+        ("x,y,depth\n3.5,,4\n", "line 2: column 'y' is empty: a number is required; "),
+        ("x,y,z,depth\n3.5,1,,4\n", "line 2: column 'z' is empty: a number is required; "),
         ("x,y,depth,tap depth\n1,2,20,15\n", "line 2: column 'tap depth' is '15': 'tap' is empty; "),
         (
             "x,y,depth,tap,tap depth\n1,2,20,M9.5,15\n",
             "line 2: M9.5 has no coarse pitch in ISO 261: give one, such as M9.5x1; ",
         ),
-        ("x,y,depth,tap,tap depth\n1,2,20,G1/4,15\n", "line 2: column 'tap' is 'g1/4': a number; "),
+        (
+            "x,y,depth,tap,tap depth\n1,2,20,G1/4,15\n",
+            "line 2: column 'tap' is 'g1/4': a number is required; ",
+        ),
         ("x,y,depth,tap,thread\n1,2,20,M10,M10\n", "line 1: column 'tap' is there twice; "),
         ("x,y,tap,tap depth\n1,2,10,15\n", "line 2: hole 1: its tap has no pitch: give it in mm; "),
         ("x,y,depth\n", "no hole after the header: one line for each; a right line: 30.5,10,15"),

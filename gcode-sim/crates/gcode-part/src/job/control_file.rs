@@ -81,7 +81,7 @@ fn read(text: &str) -> Result<Vec<Entry>, FileError> {
             Value::Float(number) => Ok(number.to_string()),
             Value::Boolean(on) if is_switch(&name) => Ok(u8::from(on).to_string()),
             Value::Boolean(_) | Value::Datetime(_) | Value::Array(_) | Value::Table(_) => {
-                Err(reader.error(&key, format!("key '{name}': a number or a text in quotes")))
+                Err(reader.error(&key, format!("key '{name}': a number or a text in quotes is required")))
             }
         };
         entries.push(Entry { key, name, value });
@@ -234,7 +234,7 @@ mod tests {
                 "line 2: no setting 'NATT' (did you mean 'NAT'?): see `gcode-sim settings`",
             ),
             ("NAT = 2\n", "line 1: setting NAT is '2': 0 or 1"),
-            ("\nNAT = [1]\n", "line 2: key 'NAT': a number or a text in quotes"),
+            ("\nNAT = [1]\n", "line 2: key 'NAT': a number or a text in quotes is required"),
         ] {
             let error = apply(text, &mut Settings::default(), true).unwrap_err();
             assert_eq!(error.to_string(), message);

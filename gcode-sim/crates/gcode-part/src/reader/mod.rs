@@ -90,7 +90,11 @@ impl Reader<'_> {
         {
             return FileError { line: Some(line), message };
         }
-        FileError { line, message: wording::reword(self.text, error.span(), error.message().trim()) }
+        let message = error.message().trim();
+        let list =
+            error.span().and_then(|span| wording::list_of_wrong_length(self.text, span.start, message));
+        let line = list.as_ref().map(|list| self.line(list.start)).or(line);
+        FileError { line, message: wording::reword(self.text, list.or(error.span()), message) }
     }
 
     /// Returns an error at the line of a value.

@@ -63,6 +63,51 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     format!("key '{name}' is {found}: {expected} is required{advice}")
 }
 
+/// Returns the place of the only list in a section that has as many values as the message says: of a section whose key
+/// decides which others it has, the reader of TOML knows no more than the section. `None` for another message or place.
+pub(super) fn list_of_wrong_length(text: &str, start: usize, message: &str) -> Option<Range<usize>> {
+    fn lists(value: &toml::Spanned<DeValue<'_>>, length: usize, found: &mut Vec<Range<usize>>) {
+        match value.get_ref() {
+            DeValue::Table(inner) => inner.values().for_each(|value| lists(value, length, found)),
+            DeValue::Array(all) if all.len() == length && all.iter().all(is_number) => {
+                found.push(value.span())
+            }
+            DeValue::Array(all) => all.iter().for_each(|item| lists(item, length, found)),
+            _ => {}
+        }
+    }
+    fn is_number(value: &toml::Spanned<DeValue<'_>>) -> bool {
+        matches!(value.get_ref(), DeValue::Integer(_) | DeValue::Float(_))
+    }
+    fn sections<'t, 'd>(
+        table: &'t DeTable<'d>,
+        start: usize,
+        found: &mut Vec<&'t toml::Spanned<DeValue<'d>>>,
+    ) {
+        for (key, value) in table.iter() {
+            let items = match value.get_ref() {
+                DeValue::Array(all) => all.iter().collect(),
+                _ => vec![value],
+            };
+            for item in items {
+                if let DeValue::Table(inner) = item.get_ref() {
+                    if [key.span().start, item.span().start].contains(&start) {
+                        found.push(item);
+                    }
+                    sections(inner, start, found);
+                }
+            }
+        }
+    }
+    let (length, _) = message.strip_prefix("invalid length ")?.split_once(", expected ")?;
+    let length = length.parse().ok()?;
+    let (mut named, mut found) = (Vec::new(), Vec::new());
+    let whole = DeTable::parse(text).ok()?;
+    sections(whole.get_ref(), start, &mut named);
+    named.first().into_iter().for_each(|section| lists(section, length, &mut found));
+    found.pop().filter(|_| found.is_empty())
+}
+
 /// Returns the path of the key that begins at this byte, or whose value or an item of it does.
 fn path_at(text: &str, start: usize) -> Option<Vec<String>> {
     fn in_table(table: &DeTable<'_>, start: usize) -> Option<Vec<String>> {

@@ -143,8 +143,12 @@ impl FileHead {
     fn direction(&self, reader: &Reader<'_>) -> Result<Option<Unit<Vector3<f64>>>, FileError> {
         let Some(direction) = &self.direction else { return Ok(None) };
         let unit = Unit::try_new(Vector3::from(direction.as_ref().0), 1e-9).filter(|u| u.norm().is_finite());
-        let allowed = "key 'head.direction' is [x, y, z] from the tip to the spindle, not all 0";
-        unit.map(Some).ok_or_else(|| reader.error(direction, allowed))
+        let [x, y, z] = direction.as_ref().0;
+        let wrong = || {
+            let required = "a vector from the tip to the spindle that is not all 0 is required";
+            reader.error(direction, format!("key 'head.direction' is [{x}, {y}, {z}]: {required}"))
+        };
+        unit.map(Some).ok_or_else(wrong)
     }
 
     /// Rejects a key that has no meaning for this kind of head.

@@ -39,7 +39,7 @@ use gcode_part::Stock;
 use gcode_part::reader::bounds::{Bounded, KeyRange};
 use gcode_part::reader::{FileError, FileKey, FixedArray, Items, Located, Optional, Reader, Section, names};
 
-/// The machine of a program. Every section is optional; without any it is the machine of the paper.
+/// The machine of a program. Every section is optional; without any it has X, Y, Z and a rotary B about Y.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
@@ -208,8 +208,8 @@ impl FileControl {
     fn axes(&self, reader: &Reader<'_>) -> Result<Axes, FileError> {
         let Some(letters) = &self.axes else { return Ok(Axes::default()) };
         Axes::new(letters.as_ref()).filter(|axes| !axes.is_empty()).ok_or_else(|| {
-            let allowed = "1 to 8 different letters of X Y Z A B C U V W, axis 1 first";
-            reader.error(letters, format!("key 'control.axes' is '{}': {allowed}", letters.as_ref()))
+            let required = "1 to 8 different letters of X Y Z A B C U V W are required, axis 1 first";
+            reader.error(letters, format!("key 'control.axes' is '{}': {required}", letters.as_ref()))
         })
     }
 }
