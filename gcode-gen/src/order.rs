@@ -40,7 +40,8 @@ pub(crate) fn passes(job: &PinHoles) -> Vec<ToolPass<'_>> {
 
 /// Returns the settings of one tool, by radius, axial holes before those along normals.
 fn settings<'j>(job: &'j PinHoles, tool: &Tool) -> Vec<HeadSetting<'j>> {
-    let mut holes: Vec<&HoleSpec> = job.holes.iter().filter(|hole| hole.tools.contains(&tool.number)).collect();
+    let mut holes: Vec<&HoleSpec> =
+        job.holes.iter().filter(|hole| hole.tools.contains(&tool.number)).collect();
     holes.sort_by(|one, other| {
         let direction = |hole: &HoleSpec| matches!(hole.axis, AxisDirection::Normal);
         one.radius
@@ -143,7 +144,11 @@ mod tests {
         let by_head = job("order = \"head\"");
         assert_eq!(shown(&by_head), ["T1: e | =d", "T2: =e | =d", "T1: b", "T2: =b", "T1: c a", "T2: =c a"]);
         let settings = |job: &PinHoles| {
-            passes(job).iter().flat_map(|pass| pass.settings.iter().map(|one| one.is_head_set)).filter(|set| !set).count()
+            passes(job)
+                .iter()
+                .flat_map(|pass| pass.settings.iter().map(|one| one.is_head_set))
+                .filter(|set| !set)
+                .count()
         };
         assert_eq!((settings(&by_head), settings(&job(""))), (3, 8));
     }

@@ -57,7 +57,7 @@ fn every_pin_hole_is_as_near_as_rounding_allows() {
     let found = claims[1].found.as_ref().unwrap().0;
     assert!(found > 0.01 && found < bound, "{found}");
     assert!((0.000_707..0.000_708).contains(&claims[2].bound.unwrap()), "{:?}", claims[2].bound);
-    assert!(claims[4].claim.contains("at most 93 blocks"), "{verdicts:?}");
+    assert!(claims[4].claim.contains("at most 95 blocks"), "{verdicts:?}");
 }
 
 #[test]

@@ -6,7 +6,8 @@
 use gcode_lang::control::Dialect;
 use gcode_part::Hand;
 use gcode_part::job::{
-    HoleLayout, HomeReturn, Operation, PatternJob, PatternPlace, PatternSpec, PatternStep, PatternTool, Rotary,
+    HoleLayout, HomeReturn, Operation, PatternJob, PatternPlace, PatternSpec, PatternStep, PatternTool,
+    Rotary,
 };
 
 use super::start::Start;
@@ -278,7 +279,8 @@ fn machine_file(job: &PatternJob) -> String {
             Operation::MillCircle => "kind = \"end-mill\"\n",
             Operation::ThreadMill => "",
         };
-        format!("\n[[tool]]\nnumber = {}\n{kind}diameter = {:?}\n", tool.number, tool.diameter)
+        let hand = if operation_code(tool) == LEFT_TAP { "hand = \"left\"\n" } else { "" };
+        format!("\n[[tool]]\nnumber = {}\n{kind}{hand}diameter = {:?}\n", tool.number, tool.diameter)
     };
     // Without the axes that the machine lacks, nothing of them is left unchecked.
     let axes = match job.place() {

@@ -32,7 +32,8 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
                     value.map_or_else(String::new, |value| format!(", {word} {}", short(value)))
                 };
                 let (peck, depth) = (more("pecks of", tool.peck), more("only to depth", tool.depth));
-                let feed = format!("{} in, {} out{peck}{depth}", short(tool.feed), short(tool.retract_feed()));
+                let feed =
+                    format!("{} in, {} out{peck}{depth}", short(tool.feed), short(tool.retract_feed()));
                 row(format!("T{}", tool.number), &tool.name(), tool.diameter, length, tool.speed, feed)
             })
             .collect(),

@@ -43,7 +43,8 @@ fn check_tools(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     for (pair, nominal, drilled) in comparison.matched() {
         let [entry, out] = [nominal.entry, nominal.axis].map(Vector3::from);
         for pass in drilled.passes() {
-            let specified = pass.tool.and_then(|tool| limits.tool_process(Some(tool))).and_then(|one| one.depth);
+            let specified =
+                pass.tool.and_then(|tool| limits.tool_process(Some(tool))).and_then(|one| one.depth);
             let Some(specified) = specified else { continue };
             let depth = (entry - pass.cut.bottom.coords).dot(&out);
             if !exceeds((depth - specified).abs(), limit) {

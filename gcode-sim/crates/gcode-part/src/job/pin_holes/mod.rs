@@ -446,14 +446,19 @@ depth = 15.0
         let tool = |number: u32, diameter: f64, more: &str| {
             format!("[[tool]]\nnumber = {number}\ndiameter = {diameter}\nspeed = 900\nfeed = 20\n{more}\n")
         };
-        let job = |centre: &str, last: &str| format!("{MINIMAL}{}{}", tool(7, 3.0, centre), tool(3, 6.0, last));
+        let job =
+            |centre: &str, last: &str| format!("{MINIMAL}{}{}", tool(7, 3.0, centre), tool(3, 6.0, last));
         let read = self::job(&job("depth = 2.5\npeck = 1", ""));
         assert_eq!(read.tools[0].depth_in(&read.holes[0]), 2.5);
         assert_eq!(read.tools[1].depth_in(&read.holes[0]), 15.0);
         assert!(Job::parse(&job("depth = 14.99", "")).is_ok());
         for (centre, last, expected) in [
             ("depth = 15", "", "line 25: key 'tool.depth' is 15: below the depth 15 mm of hole '1'"),
-            ("", "depth = 14", "line 31: key 'tool.depth' is for tools before the last one of a hole: tool 3 finishes"),
+            (
+                "",
+                "depth = 14",
+                "line 31: key 'tool.depth' is for tools before the last one of a hole: tool 3 finishes",
+            ),
             ("peck = 0", "", "line 25: key 'tool.peck' is 0: 0.01 to 9999 mm"),
         ] {
             let found = Job::parse(&job(centre, last)).unwrap_err().to_string();
