@@ -93,7 +93,7 @@ mod tests {
 
     use super::*;
 
-    /// Three axial holes and three along normals, each for both tools: `tools` are lines after the control's.
+    /// Two axial holes and three along normals, each for the drill and the end mill; `order` is a line of `[machine]`.
     fn job(order: &str) -> PinHoles {
         let mut text = format!(
             "family = \"pin-holes\"\n[control]\ndialect = \"fanuc-31i\"\nincrement = \"IS-B\"\n[machine]\n\

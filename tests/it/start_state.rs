@@ -130,7 +130,12 @@ fn a_shift_of_the_work_zero_is_an_alarm_before_a_main_program_does_anything() {
                 assert_eq!(events, [], "O{main} behind {shift}, {dialect}");
             }
             // Cancelled, of a rotary that the program's own G52 cancels, or in a work offset that isn't the program's.
-            let rotary = if family == "honeycomb" { "G52 B5.\nG52 B0" } else { "G52 B5." };
+            let rotary = match family {
+                "honeycomb" => "G52 B5.\nG52 B0",
+                // The machine of a plate has no rotary.
+                "pattern" => "G52 Y1.\nG52 Y0",
+                _ => "G52 B5.",
+            };
             for none in ["G52 X1.\nG52 X0", rotary, "G10 L2 P2 X7.\nG55"] {
                 let (run, events) = behind(&bench, none, &start);
                 assert_eq!(alarm(&run), None, "O{main} behind {none}, {dialect}");
