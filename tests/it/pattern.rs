@@ -13,17 +13,19 @@ const PLACES: [&str; 3] = [
 ];
 
 /// Layouts with both senses, negative angles, one hole and holes left out.
-const LAYOUTS: [&str; 6] = [
+const LAYOUTS: [&str; 8] = [
     "circle = { diameter = 80.0, holes = 5, angle = -90.0, clockwise = true }\nskip = [2]",
     "arc = { diameter = 100.0, holes = 3, angle = -30.0, step = -40.0 }",
     "circle = { diameter = 80.0, holes = 1, angle = 200.0 }",
     "grid = { columns = 3, rows = 4, pitch = [25.0, -30.0] }\nskip = [1, 5, 6, 12, 7]",
     "line = { holes = 3, pitch = 30.0 }",
     "points = [[0.0, 0.0], [40.0, -25.0]]",
+    "circle = { diameter = 80.0, holes = 9, angle = 12.5 }\nskip = [1, 2, 3, 4, 6, 7, 8, 9]",
+    "arc = { diameter = 100.0, holes = 1, angle = -200.0, step = 10.0 }",
 ];
 
 /// Operations: the keys of the tool, and what a pattern makes with it. A bore, a tap and a thread mill follow a drill.
-const OPERATIONS: [(&str, &str, f64); 6] = [
+const OPERATIONS: [(&str, &str, f64); 8] = [
     ("operation = \"drill\"\ndiameter = 8.0\nfeed = 200.0", "depth = 20.0", 0.0),
     ("operation = \"peck\"\ndiameter = 8.0\nfeed = 200.0\npeck = 5.0", "depth = 20.0", 0.0),
     (
@@ -35,6 +37,12 @@ const OPERATIONS: [(&str, &str, f64); 6] = [
     ("operation = \"tap\"\ndiameter = 8.0\npitch = 1.25", "depth = 15.0", 6.8),
     (
         "operation = \"thread-mill\"\ndiameter = 8.0\nfeed = 200.0\npitch = 1.5",
+        "depth = 15.0, diameter = 12.0",
+        10.4,
+    ),
+    ("operation = \"tap\"\ndiameter = 8.0\npitch = 1.25\nhand = \"left\"", "depth = 15.0", 6.8),
+    (
+        "operation = \"thread-mill\"\ndiameter = 8.0\nfeed = 200.0\npitch = 1.5\nhand = \"left\"",
         "depth = 15.0, diameter = 12.0",
         10.4,
     ),
@@ -123,4 +131,45 @@ fn wrong_arguments_are_refused_before_anything_moves() {
     }
     let inches = bench.edited(8500, "M08 => G20");
     assert_eq!(alarm(&inches.run(8500, &Placement::default(), &[])), Some(3185));
+}
+
+/// A thread of the other hand, by the call, by the spindle or by the macro, is refused.
+#[test]
+fn a_thread_of_the_other_hand_is_refused() {
+    for (operation, program, edit) in [
+        (4, 8500, "M84. => M74."),
+        (6, 8500, "M74. => M84."),
+        (6, 8503, "G98 G74 => G98 G84"),
+        (5, 8500, "M33. => M34."),
+        (7, 8500, "M34. => M33."),
+        (7, 8503, "THEN #5=2 => THEN #5=3"),
+    ] {
+        let bench = Bench::of(&job("", LAYOUTS[0], OPERATIONS[operation])).edited(program, edit);
+        assert!(!refusals(&bench).is_empty(), "O{program}: {edit}");
+    }
+}
+
+/// Z is home before each of two tools, before the table turns, and at the end.
+#[test]
+fn z_goes_home_before_a_tool_or_the_table_changes() {
+    for (home, block) in [("G28", "G91 G28 Z0."), ("G53", "G53 G00 Z0."), ("none", "")] {
+        let place = PLACES[2].replace("machine = {", &format!("machine = {{ home = \"{home}\","));
+        let bench = Bench::of(&job(&place, LAYOUTS[0], OPERATIONS[4]));
+        assert_eq!(refusals(&bench), Vec::<String>::new(), "{home}");
+        let text = &bench.package.program(8500).unwrap().text;
+        let homes: Vec<usize> = text.match_indices(block).map(|(place, _)| place).collect();
+        if home == "none" {
+            assert!(!text.contains("G28") && !text.contains("G53 "), "{text}");
+            continue;
+        }
+        assert_eq!(homes.len(), 3, "{text}");
+        for code in ["M06\n", "G53.1"] {
+            let changes: Vec<usize> = text.match_indices(code).map(|(place, _)| place).collect();
+            assert_eq!(changes.len(), 2, "{text}");
+            // Between a return and its change nothing leaves home.
+            for (home, change) in homes.iter().zip(&changes) {
+                assert!(home < change && !text[*home..*change].contains("G43"), "{text}");
+            }
+        }
+    }
 }

@@ -204,3 +204,46 @@ fn tools_with_lengths_on_a_head_without_pivot_are_warned_of() {
     assert!(!warned(&[]));
     assert!(warned(&[long]));
 }
+
+/// A centre drill Φ3, 2.5 deep, and pecks of 4 mm of the drill.
+fn centred(order: &str) -> String {
+    let centre = "[[tool]]\nnumber = 7\nname = \"CENTRE DRILL\"\ndiameter = 3.0\nspeed = 2000\nfeed = 50.0\ndepth = 2.5\n\n";
+    let (before, tools) = gcode_gen::families::ALL[0].new_job.split_once("# Tools in").unwrap();
+    let tools = tools.replacen("retract_feed = 200.0", "retract_feed = 200.0\npeck = 4.0", 1);
+    format!("{before}{centre}# Tools in{tools}").replace("order = \"tool\"", &format!("order = \"{order}\""))
+}
+
+/// Axial at radius 420, normal at 760 and 1100: three angles. Three tools make nine settings by tool, three by head.
+#[test]
+fn pecks_and_a_centre_drill_pass_in_both_orders() {
+    for (order, stops) in [("tool", 9), ("head", 3)] {
+        let job = centred(order);
+        passes(&job);
+        let run = Bench::of(&job).run_to(8100, &mut ());
+        assert_eq!(run.control.stops().len(), stops, "{order}");
+    }
+}
+
+/// Depths of 15 in pecks of 4 are 4, 8, 12, 15. The finished holes are the same in all of these programs.
+#[test]
+fn a_wrong_peck_or_depth_of_a_tool_is_refused() {
+    for (program, mark, from, to, finding) in [
+        (8100, "D2.5", "D2.5", "D15.", "T7 goes 15.0"),
+        (8100, "D2.5", "D2.5", "D2.38", "T7 goes 2.3"),
+        (8100, "D2.5", "D2.5", "D2.62", "T7 goes 2.6"),
+        (8100, "K4.", " K4.", " K6.", "mm without retracting; the job specifies pecks of 4 mm"),
+        (8100, "K4.", " K4.", "", "mm without retracting; the job specifies pecks of 4 mm"),
+        (8101, "#10=#10+#6", "#10+#6", "#10+#6*2", "mm without retracting; the job specifies pecks of 4 mm"),
+        (8101, "(TO THE DEPTH)", "#17-#7]", "#17-#7-1]", "T7 goes 3.5"),
+        (8101, "(A PECK)", "F#9", "F#8", "feeds at 200 mm/min; the job specifies 10 mm/min"),
+    ] {
+        let bench = edited(Bench::of(&centred("head")), program, mark, from, to);
+        let refusals = check(&bench.job, &bench.package).unwrap().refusals.concat();
+        assert!(refusals.contains(finding), "{mark}: {from} -> {to}\n{refusals}");
+    }
+    // A tenth is the tolerance of a depth.
+    for to in ["D2.59", "D2.41"] {
+        let bench = edited(Bench::of(&centred("head")), 8100, "D2.5", "D2.5", to);
+        assert_eq!(check(&bench.job, &bench.package).unwrap().refusals, Vec::<String>::new(), "{to}");
+    }
+}

@@ -257,6 +257,8 @@ impl Case<'_> {
     /// Proves the alarms and the blocks that the macros state.
     fn statements(&self, controls: &Controls<'_>) -> Result<Vec<ClaimReport>, String> {
         let stated = Statements::of(self.request.package);
+        // Pecks add blocks to those that the remarks state.
+        let stated = Statements { blocks: stated.blocks.filter(|_| self.tool.peck.is_none()), ..stated };
         let alarms = stated.alarms.join("|");
         let mut texts =
             vec![if alarms.is_empty() { "no-alarm".to_owned() } else { format!("alarm {alarms}") }];

@@ -2,8 +2,8 @@
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_inspect::verify::{Distance, HoleVerdict, Neighbours, Verdict};
 use gcode_lang::units::{Deg, Mm};
-use gcode_part::gauge;
-use gcode_part::job::{Alignment, Job};
+use gcode_part::job::{Alignment, Job, PatternJob, PatternSpec, PatternStep};
+use gcode_part::{Hand, gauge};
 use gcode_sim::report::figures::{rounded, short, signed, signed_to};
 
 use crate::check::PackageVerdict;
@@ -28,7 +28,13 @@ pub(super) fn characteristics(job: &Job, judgement: &PackageVerdict) -> Vec<Char
             Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) | Job::Pattern(_) => Vec::new(),
         },
         PackageVerdict::Holes(verdict) if verdict.holes.len() <= LISTED => {
-            let each = verdict.holes.iter().flat_map(|hole| of_hole(hole, verdict));
+            let each = verdict.holes.iter().flat_map(|hole| {
+                let mut all = of_hole(job, hole, verdict);
+                if let Job::Pattern(job) = job {
+                    all.extend(of_steps(job, hole, verdict.depth_tolerance));
+                }
+                all
+            });
             each.chain(verdict.neighbours.iter().flat_map(of_neighbours)).collect()
         }
         PackageVerdict::Holes(verdict) => of_all(verdict),
@@ -49,11 +55,41 @@ impl Characteristic {
     }
 }
 
-fn of_hole(hole: &HoleVerdict, verdict: &Verdict) -> Vec<Characteristic> {
+fn of_hole(job: &Job, hole: &HoleVerdict, verdict: &Verdict) -> Vec<Characteristic> {
     let reference = format!("hole {}", hole.id);
     let position = format!("Φ{}", rounded(hole.position_deviation, 4));
     let actual = format!("{} ({})", rounded(hole.actual.depth, 4), signed(hole.depth_error));
-    hole_characteristics(&reference, hole, verdict, position, actual)
+    // A mill goes round a hole that is wider than itself.
+    let width_by = if is_milled(job, hole) { "path and tool" } else { "the tool's" };
+    hole_characteristics(&reference, hole, verdict, position, actual, width_by)
+}
+
+/// Returns true if the tool that finishes a hole goes round it.
+fn is_milled(job: &Job, hole: &HoleVerdict) -> bool {
+    let Job::Pattern(job) = job else { return false };
+    hole.from.tool.and_then(|tool| job.tool(tool)).is_some_and(|tool| tool.operation.is_milling())
+}
+
+/// Returns the diameters and threads of a hole that several tools make, or that is a thread, with the depth of each.
+fn of_steps(job: &PatternJob, hole: &HoleVerdict, tolerance: f64) -> Vec<Characteristic> {
+    let reference = format!("hole {}", hole.id);
+    let is_its = |pattern: &&PatternSpec| hole.id.rsplit_once('-').is_some_and(|(id, _)| id == pattern.id);
+    let pattern = job.patterns.iter().find(is_its).filter(|_| hole.nominal.diameter.is_none());
+    let steps = pattern.into_iter().flat_map(|pattern| &pattern.steps);
+    let made = if hole.ok { "as programmed" } else { "not as programmed: see the findings" };
+    let of = |step: &PatternStep| {
+        let tool = job.tool(step.tool)?;
+        let (diameter, depth) = (short(step.diameter(tool)), rounded(step.depth, 3));
+        let depth = format!("{depth} ±{tolerance} deep");
+        Some(if tool.operation.is_threading() {
+            let hand = if tool.hand() == Hand::Left { " LH" } else { "" };
+            let size = format!("M{diameter} × {}{hand}, {depth}; gauge", short(tool.increment()));
+            Characteristic::new(&reference, "thread", size, made)
+        } else {
+            Characteristic::new(&reference, "diameter", format!("Φ{diameter}, {depth}"), made)
+        })
+    };
+    steps.filter_map(of).collect()
 }
 
 /// Returns position, depth and diameter; the nominal values are those of `hole`.
@@ -63,6 +99,7 @@ fn hole_characteristics(
     verdict: &Verdict,
     position: String,
     depth: String,
+    width_by: &str,
 ) -> Vec<Characteristic> {
     let tolerance = format!("Φ{} (ISO 1101)", verdict.tolerance);
     let nominal = format!("{} ±{}", rounded(hole.nominal.depth, 3), verdict.depth_tolerance);
@@ -71,7 +108,7 @@ fn hole_characteristics(
         Characteristic::new(reference, "depth", nominal, depth),
     ];
     all.extend(hole.nominal.diameter.map(|nominal| {
-        let tool = |d: f64| format!("Φ{} (the tool's)", rounded(d, 3));
+        let tool = |d: f64| format!("Φ{} ({width_by})", rounded(d, 3));
         let tool = hole.actual.diameter.map_or("unknown".to_owned(), tool);
         let limits = format!("Φ{}, limits: see the drawing", rounded(nominal, 3));
         Characteristic::new(reference, "diameter", limits, tool)
@@ -87,7 +124,7 @@ fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
     let (least, most) = (errors().fold(f64::INFINITY, f64::min), errors().fold(f64::NEG_INFINITY, f64::max));
     let off = format!("{} to {}", signed(least), signed(most));
     let Some(first) = verdict.holes.first() else { return Vec::new() };
-    let mut all = hole_characteristics(&reference, first, verdict, worst, off);
+    let mut all = hole_characteristics(&reference, first, verdict, worst, off, "the tool's");
     all.extend(verdict.neighbours.iter().flat_map(of_neighbours));
     all
 }

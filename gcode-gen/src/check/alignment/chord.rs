@@ -60,8 +60,8 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     check_touched_candidates(bench, &mut tried)?;
     let count = job.chord.candidates;
     tried.report(format!(
-        "of {count} by {count} candidates the pair of the exhaustive search; after the correction E and F are \
-         {off:.4} mm from their model positions"
+        "the pair of points that fits the model best, of all {count} by {count}; after the correction E and F are {off:.4} mm \
+         from their model positions"
     ));
     Ok(tried)
 }

@@ -53,7 +53,7 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
     }
     warnings(table).for_each(|warning| tried.warn(warning));
     tried.report(format!(
-        "the sine table's height for each tilt within {worst:.4} mm; half a step of {} is {}",
+        "the sine table's height right within {worst:.4} mm at each tilt; the gauge blocks of {} allow {}, half a step",
         table.gauge_blocks.name,
         step / 2.0
     ));

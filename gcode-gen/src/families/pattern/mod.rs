@@ -4,8 +4,10 @@
 //! See `docs/methods/pattern.md`. The main program has the numbers of the drawing alone: changing one of them moves the holes to
 //! their correct places.
 use gcode_lang::control::Dialect;
+use gcode_part::Hand;
 use gcode_part::job::{
-    HoleLayout, Operation, PatternJob, PatternPlace, PatternSpec, PatternStep, PatternTool, Rotary,
+    HoleLayout, HomeReturn, Operation, PatternJob, PatternPlace, PatternSpec, PatternStep, PatternTool,
+    Rotary,
 };
 
 use super::start::Start;
@@ -24,6 +26,9 @@ const HOLE: u32 = 8503;
 
 /// π with as many digits as all three dialects accept in one number.
 const PI: &str = "3.14159265";
+
+/// Argument M of a left-hand tap.
+const LEFT_TAP: f64 = 74.0;
 
 const MACROS: &[&[Macro]] = &[&[
     Macro { number: CIRCLE, file: "O8501_circle.nc", text: include_str!("circle.nc") },
@@ -76,15 +81,33 @@ fn main(job: &PatternJob) -> String {
     text.remarks(header(job));
     text.remarks(start.remarks());
     start.blocks(&mut text);
+    text.block("G98");
     job.tools.iter().for_each(|tool| tool_blocks(job, tool, &mut text));
-    text.block("M30");
+    home(job, &mut text);
+    text.blocks(["G49", "M30"]);
     text.finish()
+}
+
+/// Writes the return of Z before the tool or the table changes.
+fn home(job: &PatternJob, text: &mut ProgramText) {
+    match job.machine.home {
+        HomeReturn::G28 => {
+            text.block(Block::of("G91 G28 Z0.").comment("HOME, CLEAR OF THE PART"));
+            text.block("G90");
+        }
+        HomeReturn::G53 => text.block(Block::of("G53 G00 Z0.").comment("HOME, CLEAR OF THE PART")),
+        HomeReturn::None => {}
+    }
 }
 
 /// Writes the blocks of one tool.
 fn tool_blocks(job: &PatternJob, tool: &PatternTool, text: &mut ProgramText) {
     text.remark(format!("T{} {} DIAMETER {}", tool.number, tool.name(), number(tool.diameter)));
-    text.blocks([format!("T{} M06", tool.number), format!("S{:.0} M03", tool.speed)]);
+    home(job, text);
+    text.block(format!("T{} M06", tool.number));
+    // A left-hand tap goes in counterclockwise; a mill cuts clockwise whatever the thread.
+    let spindle = if operation_code(tool) == LEFT_TAP { "M04" } else { "M03" };
+    text.block(format!("S{:.0} {spindle}", tool.speed));
     let face = match job.place() {
         PatternPlace::Face { face, .. } => Some(face),
         PatternPlace::Plate | PatternPlace::Cylinder { .. } => None,
@@ -135,10 +158,16 @@ fn header(job: &PatternJob) -> Vec<String> {
         "S AND K HOLES LEFT OUT, TWO DIGITS EACH, R RADIUS OF A CYLINDER".to_owned(),
         "C CLEARANCE, F FEED, Q PECK OR PITCH, T TOOL, U SIGN OF THE ROTARY".to_owned(),
         "V RETRACT, W DIAMETER TO MILL, X Y PLACE, Z DEPTH, M OPERATION".to_owned(),
-        "M81. DRILL, 83. PECK, 84. TAP, 85. BORE, 12. CIRCLE, 33. THREAD".to_owned(),
+        "M81. DRILL, 83. PECK, 84. TAP, 74. LEFT-HAND TAP, 85. BORE".to_owned(),
+        "M12. MILLED CIRCLE, 33. MILLED THREAD, 34. LEFT-HAND".to_owned(),
         format!("ALARMS {k}175-{k}195 BY THE MACROS"),
         "START WITH THE TOOL CLEAR OF THE PART".to_owned(),
     ]);
+    lines.push(match job.machine.home {
+        HomeReturn::G28 => "M06 COMES AT THE REFERENCE POSITION OF Z".to_owned(),
+        HomeReturn::G53 => "M06 COMES AT MACHINE ZERO OF Z".to_owned(),
+        HomeReturn::None => "M06 MUST RETRACT Z BY ITSELF".to_owned(),
+    });
     if let Some(clamp) = job.machine.clamp {
         lines.push(format!("M{} RELEASES THE ROTARY BEFORE IT TURNS, M{} CLAMPS IT", clamp.off, clamp.on));
     }
@@ -154,7 +183,7 @@ fn calls(job: &PatternJob, pattern: &PatternSpec, step: &PatternStep, tool: &Pat
     let [skip, more] = skip_codes(&pattern.skip);
     let width = if tool.operation.is_milling() { step.diameter(tool) } else { 0.0 };
     let operation = [
-        ('M', operation_code(tool.operation)),
+        ('M', operation_code(tool)),
         ('Z', step.depth),
         ('C', job.machine.clearance()),
         ('V', job.machine.retract()),
@@ -210,8 +239,10 @@ fn skip_codes(skip: &[u32]) -> [f64; 2] {
 }
 
 /// Returns the argument M.
-fn operation_code(operation: Operation) -> f64 {
-    match operation {
+fn operation_code(tool: &PatternTool) -> f64 {
+    match tool.operation {
+        Operation::Tap if tool.hand() == Hand::Left => LEFT_TAP,
+        Operation::ThreadMill if tool.hand() == Hand::Left => 34.0,
         Operation::Drill => 81.0,
         Operation::Peck => 83.0,
         Operation::Tap => 84.0,
@@ -248,10 +279,17 @@ fn machine_file(job: &PatternJob) -> String {
             Operation::MillCircle => "kind = \"end-mill\"\n",
             Operation::ThreadMill => "",
         };
-        format!("\n[[tool]]\nnumber = {}\n{kind}diameter = {:?}\n", tool.number, tool.diameter)
+        let hand = if operation_code(tool) == LEFT_TAP { "hand = \"left\"\n" } else { "" };
+        format!("\n[[tool]]\nnumber = {}\n{kind}{hand}diameter = {:?}\n", tool.number, tool.diameter)
+    };
+    // Without the axes that the machine lacks, nothing of them is left unchecked.
+    let axes = match job.place() {
+        PatternPlace::Plate => "XYZ".to_owned(),
+        PatternPlace::Cylinder { rotary, .. } => format!("XYZ{}", rotary.letter),
+        PatternPlace::Face { tilt, rotary, .. } => format!("XYZ{}{}", tilt.letter, rotary.letter),
     };
     format!(
-        "{}{tables}\n\
+        "{}axes = \"{axes}\"\n{tables}\n\
          # The spindle is along z.\n\
          [head]\n\
          kind = \"fixed\"\n\

@@ -4,6 +4,8 @@
 //! The method is that of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*; see
 //! `docs/methods/pin-holes.md`. The main program contains no number that follows from a, b, r and the
 //! azimuth: changing R moves the hole to its correct new position.
+use std::collections::BTreeSet;
+
 use gcode_part::job::{AxisDirection, HeadKind, HoleSpec, PinHoles, Tool};
 
 use super::start::Start;
@@ -40,8 +42,11 @@ pub(super) fn emit(job: &PinHoles) -> Package {
     let mut text = ProgramText::new(MAIN, "PIN HOLES ON AN ELLIPSOID OF REVOLUTION", job.control.dialect);
     text.remarks(header(job));
     text.remarks(start.remarks());
+    let mut named = BTreeSet::new();
     for ToolPass { tool, .. } in &passes {
-        text.remark(format!("{} LENGTH {}", tool_remark(tool), number(tool.length)));
+        if named.insert(tool.number) {
+            text.remark(format!("{}{}", tool_remark(tool), length_remark(tool)));
+        }
     }
     start.blocks(&mut text);
     let angle_set = job.macros.common + 1;
@@ -56,7 +61,7 @@ pub(super) fn emit(job: &PinHoles) -> Package {
 }
 
 /// Returns the remarks at the head: conditions for the run.
-fn header(job: &PinHoles) -> [String; 18] {
+fn header(job: &PinHoles) -> [String; 19] {
     let (a, b) = (number(job.surface.a), number(job.surface.b));
     let rotary = job.machine.rotary;
     let head = match job.machine.head.kind() {
@@ -79,12 +84,24 @@ fn header(job: &PinHoles) -> [String; 18] {
         format!("O{HEAD} CALL ABOVE, WHERE THE HEAD DOES NOT SUIT A HOLE O{HOLE}"),
         format!("CALLS O{HEAD} ITSELF BEFORE IT CUTS"),
         "A EQUATORIAL RADIUS, B POLAR RADIUS, C CLEARANCE, D DEPTH".to_owned(),
-        "E FEED OUT, F FEED IN, H 0. NORMAL 1. AXIAL, Q PIVOT TO TIP".to_owned(),
+        "E FEED OUT, F FEED IN, H 0. NORMAL 1. AXIAL, K PECK, Q PIVOT TO TIP".to_owned(),
         format!("R RADIUS, T TOOL DIAMETER, U SIGN OF {}, V RETRACT, W AZIMUTH", rotary.letter),
         format!("COMMON VARIABLES #{common} HEAD ANGLE TO SET, #{} ANGLE SET", common + 1),
-        format!("ALARMS {k}001-{k}019 BY O{HOLE}, {k}021-{k}030 BY O{HEAD}"),
+        "M06 COMES AT Y = B+Q+V, CLEAR OF THE PART, WITH THE SPINDLE STOPPED".to_owned(),
+        format!("ALARMS {k}001-{k}020 BY O{HOLE}, {k}021-{k}030 BY O{HEAD}"),
         "START WITH THE TOOL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
     ]
+}
+
+/// Returns the length of a tool and its depth and peck where it has any.
+fn length_remark(tool: &Tool) -> String {
+    let lengths = [
+        (" LENGTH ", Some(tool.length).filter(|length| *length != 0.0)),
+        (" DEPTH ", tool.depth),
+        (" PECK ", tool.peck),
+    ];
+    let words = lengths.into_iter().filter_map(|(name, value)| Some(format!("{name}{}", number(value?))));
+    words.collect()
 }
 
 fn tool_remark(tool: &Tool) -> String {
@@ -97,7 +114,9 @@ fn tool_blocks(job: &PinHoles, pass: &ToolPass<'_>, next: Option<&ToolPass<'_>>,
     text.remark(tool_remark(tool));
     text.blocks([format!("T{} M06", tool.number), format!("S{:.0} M03", tool.speed), "M08".to_owned()]);
     for setting in &pass.settings {
-        text.block(head_call(job, tool, setting));
+        if !setting.is_head_set {
+            text.block(head_call(job, tool, setting));
+        }
         text.blocks(setting.holes.iter().map(|hole| hole_call(job, tool, hole)));
     }
     text.block("M09");
@@ -132,14 +151,14 @@ fn hole_call(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> Block {
 }
 
 /// Returns the macro of one hole, and its arguments.
-pub(crate) fn hole_arguments(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> (u32, [(char, f64); 13]) {
-    let arguments = [
+pub(crate) fn hole_arguments(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> (u32, Vec<(char, f64)>) {
+    let mut arguments = vec![
         ('A', job.surface.a),
         ('B', job.surface.b),
         ('R', hole.radius),
         ('W', hole.azimuth),
         ('H', axial_flag(hole.axis)),
-        ('D', hole.depth),
+        ('D', tool.depth_in(hole)),
         ('C', job.machine.clearance()),
         ('V', job.machine.retract()),
         ('F', tool.feed),
@@ -148,6 +167,7 @@ pub(crate) fn hole_arguments(job: &PinHoles, tool: &Tool, hole: &HoleSpec) -> (u
         ('U', f64::from(job.machine.rotary.sign)),
         ('Q', reach(job, tool)),
     ];
+    arguments.extend(tool.peck.map(|peck| ('K', peck)));
     (HOLE, arguments)
 }
 

@@ -28,7 +28,12 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
                 } else {
                     cell(short(tool.length))
                 };
-                let feed = format!("{} in, {} out", short(tool.feed), short(tool.retract_feed()));
+                let more = |word: &str, value: Option<f64>| {
+                    value.map_or_else(String::new, |value| format!(", {word} {}", short(value)))
+                };
+                let (peck, depth) = (more("pecks of", tool.peck), more("only to depth", tool.depth));
+                let feed =
+                    format!("{} in, {} out{peck}{depth}", short(tool.feed), short(tool.retract_feed()));
                 row(format!("T{}", tool.number), &tool.name(), tool.diameter, length, tool.speed, feed)
             })
             .collect(),
@@ -127,7 +132,11 @@ pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
         vec![
             html! { (index + 1) },
             html! { "T" (setting.tool) },
-            cell(setting.angle.map_or("-".to_owned(), short)),
+            cell(match (setting.angle, setting.is_head_set) {
+                (None, _) => "-".to_owned(),
+                (Some(angle), false) => short(angle),
+                (Some(angle), true) => format!("{} as before", short(angle)),
+            }),
             cell(short(setting.radius)),
             cell(setting.holes.join(", ")),
         ]
@@ -147,6 +156,7 @@ struct Setting {
     angle: Option<f64>,
     radius: f64,
     holes: Vec<String>,
+    is_head_set: bool,
 }
 
 fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
@@ -164,6 +174,7 @@ fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
                 tool: pass.tool.number,
                 angle: setting.holes.first().and_then(|hole| angle(&hole.id)),
                 radius: setting.radius,
+                is_head_set: setting.is_head_set,
                 holes: setting.holes.iter().map(|hole| hole.id.clone()).collect(),
             });
         }

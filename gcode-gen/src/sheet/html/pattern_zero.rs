@@ -2,7 +2,7 @@
 use gcode_draw::{Align, Pen};
 use gcode_inspect::verify::Verdict;
 use gcode_lang::units::Deg;
-use gcode_part::job::{PatternJob, PatternPlace};
+use gcode_part::job::{HomeReturn, PatternJob, PatternPlace};
 use gcode_sim::report::figures::short;
 use maud::Markup;
 
@@ -46,6 +46,18 @@ pub(super) fn words(job: &PatternJob) -> Vec<String> {
     if let Some(clamp) = job.machine.clamp {
         all.push(format!("M{} releases the rotary before it rotates, M{} clamps it.", clamp.off, clamp.on));
     }
+    let home = match job.machine.home {
+        HomeReturn::G28 => Some("G91 G28 Z0."),
+        HomeReturn::G53 => Some("G53 G00 Z0."),
+        HomeReturn::None => None,
+    };
+    all.push(home.map_or_else(
+        || {
+            "Before a tool change the program leaves Z at the retract height: M06 must retract by itself."
+                .to_owned()
+        },
+        |block| format!("Z goes home before each tool change and at the end: {block}"),
+    ));
     all.push("Tool lengths: H of each tool has its own number, called by G43.".to_owned());
     all.push(format!(
         "Between holes the tool is {} mm above the surface: clamps and fixtures end below that. Start with the tool \
@@ -76,8 +88,16 @@ pub(super) fn drawing(job: &PatternJob, verdict: &Verdict) -> Markup {
     drawing.zero([0.0, 0.0], 12.0, -20.0, "G54");
     for (hole, place) in verdict.holes.iter().zip(&points) {
         // A width in mm has no meaning along an axis of angles.
-        let radius = hole.nominal.diameter.filter(|_| !is_cylinder).map_or(4.0 * unit, |d| d / 2.0);
+        let radius = widest(job, &hole.id).filter(|_| !is_cylinder).map_or(4.0 * unit, |width| width / 2.0);
         drawing.circle(*place, radius);
     }
     drawing.markup("The entries of the holes from above with the work zero")
+}
+
+/// Returns the largest diameter that the tools make in a hole, mm.
+fn widest(job: &PatternJob, hole: &str) -> Option<f64> {
+    let (id, _) = hole.rsplit_once('-')?;
+    let pattern = job.patterns.iter().find(|pattern| pattern.id == id)?;
+    let widths = pattern.steps.iter().filter_map(|step| Some(step.diameter(job.tool(step.tool)?)));
+    widths.reduce(f64::max)
 }

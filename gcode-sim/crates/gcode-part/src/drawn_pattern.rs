@@ -56,6 +56,7 @@ fn process_limits(job: &PatternJob) -> ProcessLimits {
         speed: Some(tool.speed),
         feed: tool.feed(),
         peck: Some(tool.increment()).filter(|_| tool.operation == Operation::Peck),
+        depth: None,
     };
     ProcessLimits {
         clearance: Some(job.machine.clearance()),
@@ -103,6 +104,7 @@ fn feature(step: &PatternStep, tool: &PatternTool, deepest: f64) -> Feature {
         diameter: step.diameter(tool),
         depth: Some(step.depth),
         pitch: Some(tool.increment()).filter(|_| kind == FeatureKind::Tap),
+        hand: tool.hand(),
         ..Feature::of(kind)
     }
 }

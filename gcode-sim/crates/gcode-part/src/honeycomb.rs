@@ -75,6 +75,7 @@ fn process_limits(job: &Honeycomb) -> ProcessLimits {
             feed,
             // Shallower holes are drilled without pecks.
             peck: job.drill.peck.filter(|_| 3.0 * diameter < depth),
+            depth: None,
         }],
         ..ProcessLimits::default()
     }

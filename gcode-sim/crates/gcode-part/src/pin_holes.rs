@@ -41,7 +41,8 @@ fn process_limits(job: &PinHoles) -> ProcessLimits {
         offset: Some(tool.number),
         speed: Some(tool.speed),
         feed: Some(tool.feed),
-        peck: None,
+        peck: tool.peck,
+        depth: tool.depth,
     };
     ProcessLimits {
         clearance: Some(job.machine.clearance()),

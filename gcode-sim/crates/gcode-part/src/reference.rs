@@ -148,6 +148,8 @@ pub struct ToolProcess {
     pub feed: Option<f64>,
     /// Largest depth of cut before a retract, mm.
     pub peck: Option<f64>,
+    /// Depth of its tip in every hole, mm; `None` for that of the hole or feature.
+    pub depth: Option<f64>,
 }
 
 impl ProcessLimits {

@@ -169,7 +169,7 @@ pub(super) fn hole_mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
     let shown = hole.shown()?;
     let actual = hole.actual.as_ref().filter(|_| hole.nominal.is_some());
     Some(Mark {
-        radius: shown.diameter.unwrap_or(0.0) / 2.0,
+        radius: shown.diameter.or_else(|| widest(shown)).unwrap_or(0.0) / 2.0,
         depth: shown.depth,
         label: view.label(hole),
         direction: Some(shown.axis),
@@ -177,6 +177,12 @@ pub(super) fn hole_mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
         actual: actual.map(|actual| actual.entry),
         ..Mark::new(shown.entry, hole.status)
     })
+}
+
+/// Returns the diameter of the widest feature of a hole, threads left out.
+fn widest(hole: &Hole) -> Option<f64> {
+    let features = hole.features.iter().filter(|feature| feature.kind != FeatureKind::Tap);
+    features.map(|feature| feature.diameter).reduce(f64::max)
 }
 
 impl TopView {

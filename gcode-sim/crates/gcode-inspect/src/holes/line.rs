@@ -317,6 +317,12 @@ impl CuttingLine {
         None
     }
 
+    /// Returns true if a point on the line is above the bottom of its strokes, by more than rounding: a feed that ends there after
+    /// a peck cuts nothing.
+    pub(super) fn is_above_cut(&self, to: &Point3<f64>) -> bool {
+        self.depth_of(to) + 2.0 * self.half_increment + MIN_DEPTH_GAIN < self.cut_depth()
+    }
+
     /// Returns true if a point on the line is deeper than the cut, by more than rounding.
     pub(super) fn is_beyond_cut(&self, to: &Point3<f64>) -> bool {
         self.cut_depth() + 2.0 * self.half_increment + MIN_DEPTH_GAIN < self.depth_of(to)

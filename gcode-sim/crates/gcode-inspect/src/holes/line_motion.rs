@@ -37,7 +37,7 @@ impl HoleExtractor<'_> {
                 let mut free_from = is_beyond.then_some(if before > 0.0 { line.start } else { from });
                 let again = match kind {
                     MotionKind::Feed => {
-                        if line.depth_of(&from) < line.depth_of(&tip) {
+                        if line.depth_of(&from) < line.depth_of(&tip) && !line.is_above_cut(&tip) {
                             self.record_line_feed(event, &mut line, &from);
                         }
                         line.feed_to(&tip, event.backtrace(), &self.axis_position)

@@ -26,11 +26,11 @@ pub use burr::{
 };
 pub use honeycomb::{Clamp, CombMachine, Cylinder, Drill, HolePattern, Honeycomb, Metric, Spacing};
 pub use pattern::{
-    HoleArc, HoleCircle, HoleGrid, HoleLayout, HoleLine, Operation, PatternJob, PatternMachine, PatternPlace,
-    PatternSpec, PatternStep, PatternTool, TiltedFace,
+    HoleArc, HoleCircle, HoleGrid, HoleLayout, HoleLine, HomeReturn, Operation, PatternJob, PatternMachine,
+    PatternPlace, PatternSpec, PatternStep, PatternTool, TiltedFace,
 };
 pub use pin_holes::{
-    AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool,
+    AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool, WorkOrder,
 };
 pub use sheet::{AlternativeMachine, Minutes, Rates, SheetInfo};
 

@@ -2,10 +2,12 @@
 use super::*;
 use crate::findings::HOLE_DEPTH;
 use crate::holes::PassCut;
+use crate::machine::tool_name;
 use gcode_lang::motion::Backtrace;
 use gcode_part::{Feature, NOISE};
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    check_tools(inspection, findings);
     let comparison = &inspection.comparison;
     for (pair, nominal, drilled) in comparison.matched() {
         let error = pair.deviation.depth_error;
@@ -31,6 +33,32 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             .with_backtrace(deepest_pass(drilled).clone());
         let note = mistaken_factor(nominal.depth, depth);
         findings.add(Subject::Nominal(pair.nominal), note.into_iter().fold(finding, Diagnostic::note));
+    }
+}
+
+/// Reports tools that go deeper or less deep than their own specified depth, as a centre drill that is fed through.
+fn check_tools(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    let (comparison, limits) = (&inspection.comparison, &inspection.reference.process_limits);
+    let limit = comparison.tolerances.depth;
+    for (pair, nominal, drilled) in comparison.matched() {
+        let [entry, out] = [nominal.entry, nominal.axis].map(Vector3::from);
+        for pass in drilled.passes() {
+            let specified =
+                pass.tool.and_then(|tool| limits.tool_process(Some(tool))).and_then(|one| one.depth);
+            let Some(specified) = specified else { continue };
+            let depth = (entry - pass.cut.bottom.coords).dot(&out);
+            if !exceeds((depth - specified).abs(), limit) {
+                continue;
+            }
+            let (tool, id) = (tool_name(pass.tool), comparison.id(pair.nominal));
+            let message = format!(
+                "{tool} goes {depth:.3} mm deep in hole {id}, nominal {specified} for this tool (tolerance ±{limit})"
+            );
+            let finding = Diagnostic::new(&HOLE_DEPTH, message)
+                .help("correct the depth in the call of this tool, or the tool's depth in the job")
+                .with_backtrace(pass.backtrace.clone());
+            findings.add(Subject::Nominal(pair.nominal), finding);
+        }
     }
 }
 

@@ -16,7 +16,7 @@ use super::{
     retract_height,
 };
 use crate::reader::bounds::{Angle, Depth, Length, MachinePoint, Retract};
-use crate::reader::{FileKey, FixedArray, Items, Optional, Section};
+use crate::reader::{FileKey, FixedArray, Items, Optional, Section, Word, WordList};
 use gcode_lang::control::Dialect;
 
 /// Patterns of holes whose points the control computes from the numbers of the drawing.
@@ -74,6 +74,30 @@ pub struct PatternMachine {
     /// The M codes that clamp and release the rotary, for a cylinder [default: none].
     #[serde(default, with = "Optional::<Section<Clamp>>")]
     pub clamp: Option<Clamp>,
+    /// How Z goes home before a tool change, before G53.1 turns a table, and at the end: G28, G53, or none where M06 does it
+    /// and the retract is enough for the rest [default: G28].
+    #[serde(default, with = "Word::<HomeReturn>")]
+    pub home: HomeReturn,
+}
+
+/// Way in which Z goes home.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HomeReturn {
+    /// To the reference position, by G91 G28 Z0.
+    #[default]
+    G28,
+    /// To machine zero, by G53 Z0.
+    G53,
+    /// Not by the program.
+    None,
+}
+
+impl WordList for HomeReturn {
+    type Value = Self;
+
+    fn all() -> Vec<(&'static str, Self)> {
+        vec![("G28", Self::G28), ("G53", Self::G53), ("none", Self::None)]
+    }
 }
 
 /// The cylinder round which patterns lie.

@@ -3,6 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::PatternJob;
+use crate::feature::Hand;
 use crate::job::{FileError, Reader};
 use crate::reader::bounds::{Depth, DrillNumber, FeedRate, Length, SpindleSpeed};
 use crate::reader::{FileKey, Optional, Word, WordList};
@@ -14,13 +15,13 @@ pub enum Operation {
     Drill,
     /// Drills in pecks: G83.
     Peck,
-    /// Taps a right-hand thread rigidly: G84.
+    /// Taps a thread rigidly: G84, or G74 for a left-hand one.
     Tap,
     /// Bores, and feeds out: G85.
     Bore,
     /// Mills a hole by a helix and a circle.
     MillCircle,
-    /// Mills a right-hand thread from its bottom upwards.
+    /// Mills a thread from its bottom upwards.
     ThreadMill,
 }
 
@@ -65,7 +66,7 @@ pub struct PatternTool {
     /// Its number, and that of its length offset; unique.
     #[serde(with = "DrillNumber")]
     pub number: u32,
-    /// Its name in comments and on the sheet [default: the operation].
+    /// Its name in comments and on the sheet [default: DRILL, TAP, BORING BAR, END MILL or THREAD MILL].
     name: Option<String>,
     /// What it does.
     #[serde(with = "Word::<Operation>")]
@@ -85,6 +86,20 @@ pub struct PatternTool {
     /// Pitch of the thread of `tap` and `thread-mill`, mm.
     #[serde(default, with = "Optional::<Depth>")]
     pitch: Option<f64>,
+    /// Hand of the thread of `tap` and `thread-mill` [default: right].
+    #[serde(default, with = "Optional::<Word<ThreadHand>>")]
+    hand: Option<Hand>,
+}
+
+/// The words of a thread's hand.
+enum ThreadHand {}
+
+impl WordList for ThreadHand {
+    type Value = Hand;
+
+    fn all() -> Vec<(&'static str, Hand)> {
+        vec![("right", Hand::Right), ("left", Hand::Left)]
+    }
 }
 
 /// One operation on every hole of a pattern.
@@ -105,7 +120,19 @@ pub struct PatternStep {
 impl PatternTool {
     /// Returns the name in comments and on the set-up sheet.
     pub fn name(&self) -> String {
-        self.name.clone().unwrap_or_else(|| self.operation.name().replace('-', " ").to_uppercase())
+        let of_operation = match self.operation {
+            Operation::Drill | Operation::Peck => "DRILL",
+            Operation::Tap => "TAP",
+            Operation::Bore => "BORING BAR",
+            Operation::MillCircle => "END MILL",
+            Operation::ThreadMill => "THREAD MILL",
+        };
+        self.name.clone().unwrap_or_else(|| of_operation.to_owned())
+    }
+
+    /// Returns the hand of its thread.
+    pub fn hand(&self) -> Hand {
+        self.hand.unwrap_or_default()
     }
 
     /// Returns the feed, mm/min; `None` for a tap.
@@ -121,10 +148,12 @@ impl PatternTool {
     pub(super) fn check(&self, reader: &Reader<'_>, key: &str) -> Result<(), FileError> {
         let operation = self.operation;
         let needs_peck = matches!(operation, Operation::Peck | Operation::MillCircle);
+        let threads = operation.is_threading();
         let keys = [
+            ("hand", self.hand.is_some(), self.hand.is_some() && threads),
             ("feed", self.feed.is_some(), operation != Operation::Tap),
             ("peck", self.peck.is_some(), needs_peck),
-            ("pitch", self.pitch.is_some(), operation.is_threading()),
+            ("pitch", self.pitch.is_some(), threads),
         ];
         for (name, is_there, is_needed) in keys {
             let of = format!("operation = \"{}\"", operation.name());

@@ -71,6 +71,10 @@ pub struct PinMachine {
     /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
     #[serde(default, with = "Optional::<Retract>")]
     pub(crate) retract: Option<f64>,
+    /// What stays set while the other changes: tool, each tool makes all its holes before it is changed; head, all tools
+    /// work at one angle of the head before it is set again [default: tool].
+    #[serde(default = "WorkOrder::by_tool", with = "Word::<WorkOrder>")]
+    pub order: WorkOrder,
 }
 
 /// A head that inclines the tool in the xy plane.
@@ -87,6 +91,15 @@ pub struct Head {
     /// From the head's pivot to the spindle's gauge line, mm.
     #[serde(default = "ToolLength::default", with = "ToolLength")]
     pub pivot: f64,
+}
+
+/// Order of the work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WorkOrder {
+    /// Each tool makes all its holes.
+    Tool,
+    /// All tools work at one angle of the head.
+    Head,
 }
 
 /// Setting of the head.
@@ -176,6 +189,20 @@ impl WordList for HeadKind {
 
     fn all() -> Vec<(&'static str, bool)> {
         vec![("manual", false), ("axis", true)]
+    }
+}
+
+impl WorkOrder {
+    fn by_tool() -> Self {
+        Self::Tool
+    }
+}
+
+impl WordList for WorkOrder {
+    type Value = Self;
+
+    fn all() -> Vec<(&'static str, Self)> {
+        vec![("tool", Self::Tool), ("head", Self::Head)]
     }
 }
 
@@ -412,6 +439,36 @@ depth = 15.0
         assert_eq!(diameters, [(1, 5.9), (2, 6.0), (3, 7.9), (4, 8.0)]);
         assert_eq!(job.holes[0].tools, [1, 2]);
         assert_eq!(job.holes[1].tools, [3, 4]);
+    }
+
+    #[test]
+    fn a_depth_of_a_tool_is_above_the_bottom_of_its_holes() {
+        let tool = |number: u32, diameter: f64, more: &str| {
+            format!("[[tool]]\nnumber = {number}\ndiameter = {diameter}\nspeed = 900\nfeed = 20\n{more}\n")
+        };
+        let job =
+            |centre: &str, last: &str| format!("{MINIMAL}{}{}", tool(7, 3.0, centre), tool(3, 6.0, last));
+        let read = self::job(&job("depth = 2.5\npeck = 1", ""));
+        assert_eq!(read.tools[0].depth_in(&read.holes[0]), 2.5);
+        assert_eq!(read.tools[1].depth_in(&read.holes[0]), 15.0);
+        assert!(Job::parse(&job("depth = 14.99", "")).is_ok());
+        for (centre, last, expected) in [
+            ("depth = 15", "", "line 25: key 'tool.depth' is 15: below the depth 15 mm of hole '1'"),
+            (
+                "",
+                "depth = 14",
+                "line 31: key 'tool.depth' is for tools before the last one of a hole: tool 3 finishes",
+            ),
+            ("peck = 0", "", "line 25: key 'tool.peck' is 0: 0.01 to 9999 mm"),
+        ] {
+            let found = Job::parse(&job(centre, last)).unwrap_err().to_string();
+            assert!(found.starts_with(expected), "{found}");
+        }
+        let order = MINIMAL.replace("sign = 1 }", "sign = 1 }\norder = \"radius\"");
+        assert_eq!(
+            Job::parse(&order).unwrap_err().to_string(),
+            "line 7: key 'machine.order' is 'radius': one of tool, head"
+        );
     }
 
     #[test]

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::PinHoles;
+use super::{HoleSpec, PinHoles};
 use crate::job::{FileError, Reader};
-use crate::reader::bounds::{FeedRate, Length, SpindleSpeed, ToolLength, ToolNumber};
+use crate::reader::bounds::{Depth, FeedRate, Length, SpindleSpeed, ToolLength, ToolNumber};
 use crate::reader::{FileKey, Optional};
 
 /// A tool.
@@ -31,6 +31,12 @@ pub struct Tool {
     /// Feed out of the hole, mm/min [default: 200, or feed if that is more].
     #[serde(default, with = "Optional::<FeedRate>")]
     retract_feed: Option<f64>,
+    /// Depth of a peck, mm: after each the tool comes out of the hole [default: none, it drills in one go].
+    #[serde(default, with = "Optional::<Depth>")]
+    pub peck: Option<f64>,
+    /// Depth of its tip in every hole, mm, as of a centre drill: less than that of the hole [default: that of the hole].
+    #[serde(default, with = "Optional::<Depth>")]
+    pub depth: Option<f64>,
     /// Its name in messages and on the sheet [default: TOOL and its number].
     name: Option<String>,
 }
@@ -44,6 +50,11 @@ impl Tool {
     /// Returns the name in messages and on the set-up sheet.
     pub fn name(&self) -> String {
         self.name.clone().unwrap_or_else(|| format!("TOOL {}", self.number))
+    }
+
+    /// Returns the depth of its tip in a hole, mm.
+    pub fn depth_in(&self, hole: &HoleSpec) -> f64 {
+        self.depth.unwrap_or(hole.depth)
     }
 }
 
@@ -113,10 +124,36 @@ impl PinHoles {
             };
             let is_made = of_hole.last().is_some_and(|last| last.diameter == diameter);
             reader.check(is_made, &format!("hole.{place}.diameter"), diameter, allowed)?;
+            for tool in &of_hole {
+                check_depth(reader, tools, tool, hole, of_hole.last().is_some_and(|last| last == tool))?;
+            }
             hole.tools = of_hole.iter().map(|tool| tool.number).collect();
         }
         Ok(())
     }
+}
+
+/// Checks that a tool with a depth of its own stays above the bottom of a hole, which the hole's last tool makes.
+fn check_depth(
+    reader: &Reader<'_>,
+    tools: &[Tool],
+    tool: &Tool,
+    hole: &HoleSpec,
+    is_last: bool,
+) -> Result<(), FileError> {
+    let Some(depth) = tool.depth else { return Ok(()) };
+    let index = tools.iter().position(|one| one.number == tool.number).unwrap_or_default();
+    let key = format!("tool.{index}.depth");
+    if is_last {
+        let message = format!(
+            "key 'tool.depth' is for tools before the last one of a hole: tool {} finishes hole '{}', whose own depth counts; \
+             remove it",
+            tool.number, hole.id
+        );
+        return Err(reader.error_at(&key, message));
+    }
+    let allowed = format_args!("below the depth {} mm of hole '{}'", hole.depth, hole.id);
+    reader.check(depth < hole.depth, &key, depth, allowed)
 }
 
 fn tool(number: u32, diameter: f64, name: &str) -> Tool {
@@ -127,6 +164,8 @@ fn tool(number: u32, diameter: f64, name: &str) -> Tool {
         speed: 1500.0,
         feed: 10.0,
         retract_feed: None,
+        peck: None,
+        depth: None,
         name: Some(name.to_owned()),
     }
 }
