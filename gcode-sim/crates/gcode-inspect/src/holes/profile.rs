@@ -24,19 +24,6 @@ impl Profile {
         Self { parts, radius, is_certain: true }
     }
 
-    /// Returns true if the tool is nowhere narrower than below: a deeper path of it holds one that is less deep.
-    pub(super) fn is_open_upwards(&self) -> bool {
-        let (first, others) = match self.parts.split_first() {
-            Some((first, others)) => (first, others),
-            None => return false,
-        };
-        let is_cylinder = first.to == f64::INFINITY && first.taper.slope == 0.0;
-        let is_cone_below = |part: &ToolPart| {
-            0.0 <= part.taper.slope && part.radius() <= first.radius() && first.from <= part.to
-        };
-        is_cylinder && others.iter().all(is_cone_below)
-    }
-
     /// Returns a flat tool.
     pub(super) fn flat(radius: f64, is_certain: bool) -> Self {
         Self { parts: vec![ToolPart::flutes(0.0, f64::INFINITY, radius)], radius, is_certain }

@@ -1,7 +1,5 @@
 //! Metal that feeds have removed: volumes that the tool sweeps, and the parts of a travel that they cover.
 use std::cell::RefCell;
-use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
 
 use nalgebra::{Point3, Unit, Vector3};
 
@@ -35,15 +33,7 @@ struct Sweep {
     /// Direction of the tool, out of the part.
     axis: Unit<Vector3<f64>>,
     profile: u32,
-    /// Number of another sweep that covers this one, as that of the next layer does; [`NONE`] without one.
-    covered_by: u32,
 }
-
-/// Number of no sweep.
-const NONE: u32 = u32::MAX;
-
-/// Step to which places are rounded that are looked up, mm.
-const GRID: f64 = 1e-4;
 
 /// Volumes that the tool has swept in feeds.
 #[derive(Debug)]
@@ -52,8 +42,6 @@ pub(super) struct RemovedMetal {
     profiles: Vec<Profile>,
     /// Boxes about the sweeps.
     boxes: BoxTree,
-    /// The last complete sweep on each path, seen along the tool, by a hash of the path.
-    on_path: HashMap<u64, u32>,
     /// The next feed may lengthen the last sweep.
     is_last_open: bool,
     /// Direction of its first feed.
@@ -73,7 +61,6 @@ impl RemovedMetal {
             sweeps: Vec::new(),
             profiles: Vec::new(),
             boxes: BoxTree::default(),
-            on_path: HashMap::new(),
             is_last_open: false,
             heading: None,
             common_axis: None,
@@ -104,30 +91,12 @@ impl RemovedMetal {
                 self.is_full = true;
                 return;
             }
-            self.complete_last();
-            self.sweeps.push(Sweep { from, to, axis, profile, covered_by: NONE });
+            self.sweeps.push(Sweep { from, to, axis, profile });
             self.common_axis = Some(self.common_axis.unwrap_or(Some(axis)).filter(|common| *common == axis));
             self.is_last_open = true;
             self.heading = Unit::try_new(to - from, ROUNDING);
         }
         self.enclose_last();
-    }
-
-    /// Marks the last sweep, or the one before it on the same path, if the other covers it: it is the layer above.
-    fn complete_last(&mut self) {
-        let Some(last) = self.sweeps.last().filter(|_| self.is_last_open) else { return };
-        if !self.profiles[last.profile as usize].is_open_upwards() {
-            return;
-        }
-        let (number, last) = (self.sweeps.len() as u32 - 1, *last);
-        let deepest = self.on_path.entry(last.path()).or_insert(number);
-        let known = self.sweeps[*deepest as usize];
-        if *deepest != number && known.covers(&last) {
-            self.sweeps[number as usize].covered_by = *deepest;
-        } else if *deepest != number && last.covers(&known) {
-            self.sweeps[*deepest as usize].covered_by = number;
-            *deepest = number;
-        }
     }
 
     /// Widens the boxes about the last sweep.
@@ -188,7 +157,6 @@ impl RemovedMetal {
 
     /// Keeps later feeds from lengthening the last sweep; returns the number of sweeps.
     pub(super) fn close(&mut self) -> u32 {
-        self.complete_last();
         self.is_last_open = false;
         self.sweeps.len() as u32
     }
@@ -222,9 +190,6 @@ impl FirstSweeps<'_> {
         let mut recent = self.recent.borrow_mut();
         let cover = |index: usize, shares: &mut Shares| {
             let Some(sweep) = self.sweeps.get(index) else { return false };
-            if (sweep.covered_by as usize) < self.sweeps.len() {
-                return false;
-            }
             let profile = &self.removed.profiles[sweep.profile as usize];
             let mut has_covered = false;
             for part in profile.parts.iter().filter(|_| profile.is_certain || !is_certain) {
@@ -260,31 +225,6 @@ impl FirstSweeps<'_> {
 }
 
 impl Sweep {
-    /// Returns a hash of the path as seen along the tool, with the tool.
-    fn path(&self) -> u64 {
-        let mut hash = DefaultHasher::new();
-        self.profile.hash(&mut hash);
-        for end in [self.from, self.to] {
-            let across = end.coords - self.axis.into_inner() * end.coords.dot(&self.axis);
-            across.iter().for_each(|value| ((value / GRID).round() as i64).hash(&mut hash));
-        }
-        hash.finish()
-    }
-
-    /// Returns true if this sweep covers another one of the same tool that is nowhere deeper on the same path. The profile has
-    /// to be open upwards.
-    fn covers(&self, other: &Self) -> bool {
-        let is_below = |p: Point3<f64>, q: Point3<f64>| {
-            let (between, axis) = (q - p, self.axis.into_inner());
-            let height = between.dot(&axis);
-            -NOISE <= height && (between - axis * height).norm() < NOISE
-        };
-        self.axis == other.axis
-            && self.profile == other.profile
-            && is_below(self.from, other.from)
-            && is_below(self.to, other.to)
-    }
-
     /// Lengthens the sweep by a feed of the same tool along its axis; a feed out of the part adds nothing. Returns false
     /// for other feeds.
     fn lengthen_along_axis(&mut self, from: &Point3<f64>, to: &Point3<f64>) -> bool {
@@ -426,34 +366,6 @@ mod tests {
         assert_eq!(rest_of(&removed, p(3.0, 0.0, 0.0), p(3.0, 0.0, -40.0)), [[0.50025, 1.0]]);
     }
 
-    /// The second layer of a slot, 1 mm deeper, covers the first; a slot beside it covers nothing, and a third layer that is
-    /// less deep is covered by the second. What the first sweep alone has removed stays known.
-    #[test]
-    fn a_deeper_layer_covers_the_one_above_it() {
-        let bounds = [p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)];
-        let mut removed = RemovedMetal::new(bounds);
-        let mut mill = |y: f64, z: f64| {
-            removed.add(p(0.0, y, z), p(40.0, y, z), Vector3::z_axis(), &Profile::flat(5.0, true));
-            removed.close();
-        };
-        for (y, z) in [(0.0, -5.0), (0.0, -6.0), (20.0, -7.0), (0.0, -5.5)] {
-            mill(y, z);
-        }
-        let covered: Vec<u32> = removed.sweeps.iter().map(|sweep| sweep.covered_by).collect();
-        assert_eq!(covered, [1, NONE, NONE, 1]);
-        let rest = |count: u32, z: f64| {
-            let mut shares = Shares::default();
-            shares.extend([[0.0, 1.0]]);
-            removed.first(count).uncover(&Strip::line([p(5.0, 0.0, z), p(35.0, 0.0, z)]), true, &mut shares);
-            shares.pieces().to_vec()
-        };
-        assert_eq!(rest(1, -4.0), []);
-        assert_eq!(rest(1, -5.9), [[0.0, 1.0]]);
-        assert_eq!(rest(2, -5.9), []);
-        assert_eq!(rest(4, -5.9), []);
-        assert_eq!(rest(4, -6.1), [[0.0, 1.0]]);
-    }
-
     /// A thousand steps of 0.05 along a line are one sweep; on a circle of 10 no sweep leaves it by more than 0.01.
     #[test]
     fn small_steps_along_a_line_are_one_sweep() {
@@ -501,7 +413,7 @@ mod tests {
                 ..ToolPart::flutes(low, low + length, 0.0)
             };
             let parts = if slope == 0.0 { vec![ToolPart::flutes(low, low + length, radius)] } else { vec![cone, cylinder] };
-            let sweep = Sweep { from, to, axis, profile: 0, covered_by: NONE };
+            let sweep = Sweep { from, to, axis, profile: 0 };
             let (a, b) = (p(travel[0], travel[1], travel[2]), p(travel[3], travel[4], travel[5]));
             let covered: Vec<_> = parts.iter().filter_map(|part| sweep.covered(part, &[a, b])).collect();
             for s in 0..=50 {
