@@ -120,7 +120,7 @@ fn fall(
 /// Returns true if the tip is above the part at any angle of the head, whose pivot is at a height.
 fn is_above(forms: &mut ExactForms<'_>, y: NodeId, tip: &Tip<'_>, conditions: &[Condition]) -> bool {
     let reach = Polynomial::constant(-tip.reach);
-    let mut is_above = |node: NodeId| {
+    let is_above = |node: NodeId| {
         let height = forms.form(node).real;
         let above = forms.combine(&[(1.0, &[&height]), (1.0, &[&reach]), (-1.0, &[tip.top])]);
         above.is_some_and(|(above, lost)| forms.least(&above) - lost - forms.error(node) >= 0.0)
@@ -130,7 +130,7 @@ fn is_above(forms: &mut ExactForms<'_>, y: NodeId, tip: &Tip<'_>, conditions: &[
         Relation::Le | Relation::Lt if condition.right == y => Some(condition.left),
         _ => None,
     });
-    std::iter::once(y).chain(lower).any(|node| is_above(node))
+    std::iter::once(y).chain(lower).any(is_above)
 }
 
 /// Returns the distance of a point above the entry along the hole, if it is on its axis.
