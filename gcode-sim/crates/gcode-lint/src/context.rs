@@ -18,8 +18,8 @@ use super::ControlKnowledge;
 use super::calls::{self, CallSite};
 use super::components::strongly_connected_components;
 use super::control_flow::ControlFlowGraph;
+use super::locals::States;
 use super::possible_modes::PossibleModes;
-use super::vacancy::{self, Locals, States};
 use super::variables::{self, VariableRead};
 
 const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
@@ -93,7 +93,8 @@ pub(crate) struct ProgramUnit<'a> {
     /// Variables that each block reads, see `variables`.
     reads: OnceCell<Vec<Vec<VariableRead>>>,
     components: OnceCell<Vec<usize>>,
-    states_without_arguments: OnceCell<States>,
+    /// States without arguments, see `vacancy`.
+    pub states_without_arguments: OnceCell<States>,
     /// Sequence numbers of the blocks that are left out, in the order of the blocks.
     pub left_out_numbers: Vec<LeftOutNumber>,
 }
@@ -308,11 +309,6 @@ impl<'a> ProgramUnit<'a> {
     /// Returns the component of each node of the control flow, see `components`.
     pub(crate) fn components(&self) -> &[usize] {
         self.components.get_or_init(|| strongly_connected_components(&self.flow))
-    }
-
-    /// Returns the states of a program whose locals are all unset at its first block.
-    pub(crate) fn states_without_arguments(&self) -> &States {
-        self.states_without_arguments.get_or_init(|| vacancy::states(self, Locals::UNSET))
     }
 
     pub(crate) fn op(&self, block: OpIndex) -> &Op {

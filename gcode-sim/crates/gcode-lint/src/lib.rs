@@ -26,6 +26,7 @@ mod control_flow;
 mod expressions;
 mod first_reach;
 mod literal;
+mod locals;
 mod main_programs;
 mod modes;
 mod parameters;

@@ -10,42 +10,13 @@ use gcode_lang::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Fun
 
 use super::context::ProgramUnit;
 use super::control_flow::raises_alarm;
+pub(crate) use super::locals::{ANY_VALUE, Locals, NUMBER, States, UNSET, VACANT};
 use super::{literal, variables};
 
-/// Possible values of a local, as bits.
-pub(crate) const UNSET: u8 = 1;
-pub(crate) const VACANT: u8 = 2;
-pub(crate) const NUMBER: u8 = 4;
-pub(crate) const ANY_VALUE: u8 = VACANT | NUMBER;
-
-/// States of the locals #1 to #33; element 0 is unused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Locals(pub [u8; 34]);
-
-impl Locals {
-    pub(crate) const UNSET: Self = Self([UNSET; 34]);
-    pub(crate) const ANYTHING: Self = Self([ANY_VALUE; 34]);
-
-    pub(super) fn bits_of(&self, number: u32) -> u8 {
-        match number {
-            // [#_EMPTY] is #3100.
-            0 | 3100 => VACANT,
-            1..=33 => self.0[number as usize],
-            _ => ANY_VALUE,
-        }
-    }
-
-    fn join(&mut self, other: Self) {
-        self.0.iter_mut().zip(other.0).for_each(|(mine, others)| *mine |= others);
-    }
-
-    fn add_bits(&mut self, bits: u8) {
-        self.0.iter_mut().for_each(|local| *local |= bits);
-    }
+/// Returns the states of a program whose locals are all unset at its first block.
+pub(crate) fn states_without_arguments<'u>(unit: &'u ProgramUnit<'_>) -> &'u States {
+    unit.states_without_arguments.get_or_init(|| states(unit, Locals::UNSET))
 }
-
-/// State at each node of the control flow graph; `None` if the node is unreachable.
-pub(crate) type States = Vec<Option<Locals>>;
 
 /// Computes the states of a program whose locals are `entry` at its first block.
 pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {

@@ -5,7 +5,7 @@ use gcode_lang::syntax::ast::Statement;
 
 use crate::control_flow::raises_alarm;
 use crate::prelude::*;
-use crate::vacancy::{Locals, states, truth};
+use crate::vacancy::{Locals, states, states_without_arguments, truth};
 use crate::variables;
 
 pub(super) static RULE: Rule =
@@ -18,7 +18,7 @@ fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     // The result must hold for all calls of a program, also those outside the check.
     let of_any_call = OnceCell::new();
     let states = match unit.role {
-        Role::Main => unit.states_without_arguments(),
+        Role::Main => states_without_arguments(unit),
         Role::Called | Role::Resident => of_any_call.get_or_init(|| states(unit, Locals::ANYTHING)),
     };
     let mut found = Vec::new();

@@ -8,7 +8,7 @@ use gcode_lang::source::Span;
 use crate::expressions::ValueUse;
 use crate::prelude::*;
 use crate::unset_reads::{entry_locals, unset_reads};
-use crate::vacancy::states;
+use crate::vacancy::{states, states_without_arguments};
 
 use super::missing_argument::factor_reads;
 
@@ -22,7 +22,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         // Without an end it may be a part of a program, or a macro.
         Role::Main if !unit.flow.block_successors.iter().any(|block| block.is_exit) => {}
         Role::Main => {
-            unset.extend(unset_reads(unit, unit.states_without_arguments()));
+            unset.extend(unset_reads(unit, states_without_arguments(unit)));
         }
         Role::Called => {
             // Calls with the same arguments leave the same locals unset.
