@@ -2,8 +2,8 @@
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_inspect::verify::{Distance, HoleVerdict, Neighbours, Verdict};
 use gcode_lang::units::{Deg, Mm};
+use gcode_part::gauge;
 use gcode_part::job::{Alignment, Job, PatternJob, PatternSpec, PatternStep};
-use gcode_part::{Hand, gauge};
 use gcode_sim::report::figures::{rounded, short, signed, signed_to};
 
 use crate::check::PackageVerdict;
@@ -82,7 +82,7 @@ fn of_steps(job: &PatternJob, hole: &HoleVerdict, tolerance: f64) -> Vec<Charact
         let (diameter, depth) = (short(step.diameter(tool)), rounded(step.depth, 3));
         let depth = format!("{depth} ±{tolerance} deep");
         Some(if tool.operation.is_threading() {
-            let hand = if tool.hand() == Hand::Left { " LH" } else { "" };
+            let hand = if tool.is_left_hand() { " LH" } else { "" };
             let size = format!("M{diameter} × {}{hand}, {depth}; gauge", short(tool.increment()));
             Characteristic::new(&reference, "thread", size, made)
         } else {

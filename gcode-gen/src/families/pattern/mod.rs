@@ -4,7 +4,6 @@
 //! See `docs/methods/pattern.md`. The main program has the numbers of the drawing alone: changing one of them moves the holes to
 //! their correct places.
 use gcode_lang::control::Dialect;
-use gcode_part::Hand;
 use gcode_part::job::{
     HoleLayout, HomeReturn, Operation, PatternJob, PatternPlace, PatternSpec, PatternStep, PatternTool,
     Rotary,
@@ -241,8 +240,8 @@ fn skip_codes(skip: &[u32]) -> [f64; 2] {
 /// Returns the argument M.
 fn operation_code(tool: &PatternTool) -> f64 {
     match tool.operation {
-        Operation::Tap if tool.hand() == Hand::Left => LEFT_TAP,
-        Operation::ThreadMill if tool.hand() == Hand::Left => 34.0,
+        Operation::Tap if tool.is_left_hand() => LEFT_TAP,
+        Operation::ThreadMill if tool.is_left_hand() => 34.0,
         Operation::Drill => 81.0,
         Operation::Peck => 83.0,
         Operation::Tap => 84.0,

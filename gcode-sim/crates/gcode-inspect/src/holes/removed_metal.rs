@@ -52,6 +52,8 @@ pub(super) struct RemovedMetal {
     bounds: [Point3<f64>; 2],
     /// True once sweeps are missing.
     pub is_full: bool,
+    /// The last sweeps that have covered something: one motion after the other is in the same metal.
+    recent: RefCell<Vec<usize>>,
 }
 
 impl RemovedMetal {
@@ -66,6 +68,7 @@ impl RemovedMetal {
             common_axis: None,
             bounds,
             is_full: false,
+            recent: RefCell::default(),
         }
     }
 
@@ -163,31 +166,25 @@ impl RemovedMetal {
 
     /// Returns the first sweeps, for the strips of one motion.
     pub(super) fn first(&self, count: u32) -> FirstSweeps<'_> {
-        FirstSweeps {
-            sweeps: &self.sweeps[..self.sweeps.len().min(count as usize)],
-            removed: self,
-            recent: RefCell::default(),
-        }
+        FirstSweeps { sweeps: &self.sweeps[..self.sweeps.len().min(count as usize)], removed: self }
     }
 }
 
 /// Number of the sweeps that are tried before all others.
 const MAX_RECENT: usize = 8;
 
-/// The first sweeps: of them, those that have covered something of the motion are tried before the others.
+/// The first sweeps.
 #[derive(Debug)]
 pub(super) struct FirstSweeps<'r> {
     sweeps: &'r [Sweep],
     removed: &'r RemovedMetal,
-    /// The last ones that have covered something.
-    recent: RefCell<Vec<usize>>,
 }
 
 impl FirstSweeps<'_> {
     /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included. `is_certain` leaves
     /// out tools of unknown diameter.
     pub(super) fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
-        let mut recent = self.recent.borrow_mut();
+        let mut recent = self.removed.recent.borrow_mut();
         let cover = |index: usize, shares: &mut Shares| {
             let Some(sweep) = self.sweeps.get(index) else { return false };
             let profile = &self.removed.profiles[sweep.profile as usize];

@@ -1,6 +1,6 @@
 //! Depth of each hole.
 use super::*;
-use crate::findings::HOLE_DEPTH;
+use crate::findings::{FEATURE_DEPTH, HOLE_DEPTH};
 use crate::holes::PassCut;
 use crate::machine::tool_name;
 use gcode_lang::motion::Backtrace;
@@ -54,7 +54,7 @@ fn check_tools(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
             let message = format!(
                 "{tool} goes {depth:.3} mm deep in hole {id}, nominal {specified} for this tool (tolerance ±{limit})"
             );
-            let finding = Diagnostic::new(&HOLE_DEPTH, message)
+            let finding = Diagnostic::new(&FEATURE_DEPTH, message)
                 .help("correct the depth in the call of this tool, or the tool's depth in the job")
                 .with_backtrace(pass.backtrace.clone());
             findings.add(Subject::Nominal(pair.nominal), finding);

@@ -131,7 +131,7 @@ impl PatternTool {
     }
 
     /// Returns the hand of its thread.
-    pub fn hand(&self) -> Hand {
+    pub(crate) fn hand(&self) -> Hand {
         self.hand.unwrap_or_default()
     }
 
@@ -143,6 +143,11 @@ impl PatternTool {
     /// Returns the depth of cut or of a turn, or the pitch, mm; 0 for operations without either.
     pub fn increment(&self) -> f64 {
         self.peck.or(self.pitch).unwrap_or(0.0)
+    }
+
+    /// Returns true if its thread is left-hand.
+    pub fn is_left_hand(&self) -> bool {
+        self.hand() == Hand::Left
     }
 
     pub(super) fn check(&self, reader: &Reader<'_>, key: &str) -> Result<(), FileError> {
