@@ -213,14 +213,21 @@ fn centred(order: &str) -> String {
     format!("{before}{centre}# Tools in{tools}").replace("order = \"tool\"", &format!("order = \"{order}\""))
 }
 
-/// Axial at radius 420, normal at 760 and 1100: three angles. Three tools make nine settings by tool, three by head.
+/// Axial at radius 420, normal at 760 and 1100: three angles. Three tools make nine settings by tool, three by head. Where X and Y
+/// are the tip, each of the two other tools at an angle stops too, for its tip; with a pivot and lengths none does.
 #[test]
 fn pecks_and_a_centre_drill_pass_in_both_orders() {
-    for (order, stops) in [("tool", 9), ("head", 3)] {
+    for (order, settings, tips) in [("tool", 9, 0), ("head", 3, 6)] {
         let job = centred(order);
-        passes(&job);
-        let run = Bench::of(&job).run_to(8100, &mut ());
-        assert_eq!(run.control.stops().len(), stops, "{order}");
+        let measured = job.replace("pivot = 0.0", "pivot = 180.0").replace("length = 0.0", "length = 95.0");
+        for (job, tips) in [(job, tips), (measured, 0)] {
+            passes(&job);
+            let bench = Bench::of(&job);
+            let text = &bench.package.program(8100).unwrap().text;
+            assert_eq!(text.matches("M00 (SET THE TIP").count(), tips, "{order}");
+            let run = bench.run_to(8100, &mut ());
+            assert_eq!(run.control.stops().len(), settings + tips, "{order}");
+        }
     }
 }
 

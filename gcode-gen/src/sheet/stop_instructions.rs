@@ -43,7 +43,7 @@ fn set_head(job: &PinHoles, angle: f64) -> Vec<String> {
             job.macros.common
         ),
     ];
-    if tip_is_programmed(job) {
+    if job.is_tip_programmed() {
         steps.push(
             "Set the tool tip's position again in X and Y: the job has no pivot and no tool lengths, so \
              the programmed point is the tip."
@@ -120,9 +120,4 @@ fn shim() -> String {
          supports in Z. A shimmed part also moves in Z: correct #581 after the next measurement.",
         rounded(1000.0 * Deg(0.01).sin(), 4)
     )
-}
-
-/// Returns true if X and Y are programmed for the tool's tip instead of the head's pivot.
-pub(super) fn tip_is_programmed(job: &PinHoles) -> bool {
-    job.machine.head.pivot == 0.0 && job.tools.iter().all(|tool| tool.length == 0.0)
 }

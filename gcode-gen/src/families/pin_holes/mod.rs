@@ -112,7 +112,12 @@ fn tool_remark(tool: &Tool) -> String {
 fn tool_blocks(job: &PinHoles, pass: &ToolPass<'_>, next: Option<&ToolPass<'_>>, text: &mut ProgramText) {
     let tool = pass.tool;
     text.remark(tool_remark(tool));
-    text.blocks([format!("T{} M06", tool.number), format!("S{:.0} M03", tool.speed), "M08".to_owned()]);
+    text.block(format!("T{} M06", tool.number));
+    // Without lengths only the operator knows where the new tip is, and no stop for the head follows.
+    if job.is_tip_programmed() && pass.settings.first().is_some_and(|setting| setting.is_head_set) {
+        text.block(Block::of("M00").comment("SET THE TIP AGAIN IN X AND Y, HEAD AS IT IS"));
+    }
+    text.blocks([format!("S{:.0} M03", tool.speed), "M08".to_owned()]);
     for setting in &pass.settings {
         if !setting.is_head_set {
             text.block(head_call(job, tool, setting));

@@ -11,7 +11,6 @@ use crate::check::PackageVerdict;
 use crate::order::passes;
 use crate::sheet::Sheet;
 use crate::sheet::settings::MAX_BLOCKS;
-use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
     let row = |number: String, name: &str, diameter: f64, length: Markup, speed: f64, feed: String| {
@@ -23,7 +22,7 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
             .iter()
             .filter(|tool| sheet.record.tools.contains(&tool.number))
             .map(|tool| {
-                let length = if tip_is_programmed(job) {
+                let length = if job.is_tip_programmed() {
                     html! { "–" }
                 } else {
                     cell(short(tool.length))
@@ -109,7 +108,7 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
                 }
             }
             @if let Job::PinHoles(job) = sheet.job {
-                @if tip_is_programmed(job) {
+                @if job.is_tip_programmed() {
                     p.note { "No tool lengths in this job: X and Y are the tip, whose position is set again after each rotation of the head." }
                 } @else {
                     p.note { "Lengths are from the spindle's gauge line to the tip; the head's pivot is " (short(job.machine.head.pivot)) " mm from the gauge line. The program includes them: no G43." }

@@ -10,7 +10,6 @@ use super::drawing::{Drawing, WIDTH};
 use super::pattern_zero;
 use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
-use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn zero(sheet: &Sheet<'_>) -> Markup {
     let (picture, words) = match (sheet.job, &sheet.checked.verdict) {
@@ -57,7 +56,7 @@ fn pin_holes(job: &PinHoles) -> Vec<String> {
              mirrored."
         ),
     ];
-    all.push(match tip_is_programmed(job) {
+    all.push(match job.is_tip_programmed() {
         true => "X and Y are the tip of the tool.".to_owned(),
         false => "X and Y are the pivot of the head; the program includes the pivot's distance and the \
                   tool's length."

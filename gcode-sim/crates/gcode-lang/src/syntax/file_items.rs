@@ -289,7 +289,12 @@ fn fill_alarm_text(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
     let Unreadable { alarm, span, text } = unreadable;
     *span = trimmed(span.source, bytes, span.start as usize, end);
     *text = bytes[span.start as usize..span.end as usize].to_vec();
-    alarm.span.end = span.end.max(alarm.span.start);
+    let of_rest = span.end.max(alarm.span.start);
+    alarm.span.end = match alarm.node {
+        // Their spans are those of the number.
+        Alarm::IllegalPoint { .. } | Alarm::TooManyDigits => alarm.span.end.min(of_rest),
+        _ => of_rest,
+    };
     if let Alarm::NotAWord { text } | Alarm::Expression { text } | Alarm::AxisAddress { text } =
         &mut alarm.node
     {

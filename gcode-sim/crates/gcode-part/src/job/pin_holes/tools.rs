@@ -59,6 +59,11 @@ impl Tool {
 }
 
 impl PinHoles {
+    /// Returns true if X and Y are programmed for the tool's tip instead of the head's pivot.
+    pub fn is_tip_programmed(&self) -> bool {
+        self.machine.head.pivot == 0.0 && self.tools.iter().all(|tool| tool.length == 0.0)
+    }
+
     /// Adds the tools of the paper, a pair for each diameter of the job.
     ///
     /// The paper uses a drill Φ5.9, then a three-flute end mill Φ6, at 1500 r/min and 10 mm/min along the axis.
