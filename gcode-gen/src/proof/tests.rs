@@ -114,7 +114,10 @@ fn a_head_that_is_set_wrong_is_refuted() {
 #[test]
 fn rapids_through_the_part_are_not_proved() {
     for (from, to) in [
-        ("\nX[#18+[#17+#3]*#26] Y[#24+[#17+#3]*#27]\nG01", "\nX[#18+[#17-#3]*#26] Y[#24+[#17-#3]*#27]\nG01"),
+        (
+            "X[#18+[#17+#3]*#26] Y[#24+[#17+#3]*#27] (DOWN TO C)",
+            "X[#18+[#17-#3]*#26] Y[#24+[#17-#3]*#27] (DOWN TO C)",
+        ),
         ("X[[#5001+#28+ABS[#5001-#28]]/2] Y[[#5002+#29+ABS[#5002-#29]]/2] Z0.", "X#28 Y#29 Z0."),
     ] {
         let claims = proved(&job(), (from, to), &PART, 0.035);
