@@ -53,7 +53,7 @@ fn a_fault_put_into_an_example_is_found() {
         (
             "N380 M30",
             "N370 M30",
-            "doubled-n: N370 is already defined in line 64: a search finds one of the two",
+            "doubled-n: N370 is already defined in line 65: a search finds one of the two",
         ),
     ];
     for (right, wrong, found) in faults {

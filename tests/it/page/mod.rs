@@ -109,7 +109,7 @@ fn a_person_sorts_the_holes_and_goes_to_a_block() {
 
     // A click anywhere in its row leads to the block that made it, and marks the call with the wrong digit.
     browser.click(".holes tbody tr:first-child td.state");
-    lands(&browser, "new-2-58 G01 X[#18+[#17-#7]*#26] Y[#24+[#17-#7]*#27] F#9");
+    lands(&browser, "new-2-67 G01 X[#18+[#17-#7]*#26] Y[#24+[#17-#7]*#27] F#9");
     let seen = browser.run(
         "const box = document.querySelector('.half.at').getBoundingClientRect(); \
          const viewer = document.getElementById('viewer').getBoundingClientRect(); \
@@ -119,7 +119,7 @@ fn a_person_sorts_the_holes_and_goes_to_a_block() {
     let caller = browser.run("return document.querySelector('.half.from code').textContent");
     assert!(caller.as_str().unwrap().contains("W15.2385"), "{caller}");
     assert!(
-        picked(&browser).contains("hole 5") && picked(&browser).contains("O8100:60"),
+        picked(&browser).contains("hole 5") && picked(&browser).contains("O8100:61"),
         "{}",
         picked(&browser)
     );
@@ -138,9 +138,9 @@ fn all_can_be_done_with_keys() {
     assert_eq!(column(&browser, 1)[0], "5", "moved the farthest");
     browser.run("document.querySelector('.holes tbody a').focus()");
     browser.press(&[key::DOWN, key::UP, key::ENTER].concat());
-    lands(&browser, "new-2-58 ");
+    lands(&browser, "new-2-67 ");
     let focus = browser.run("return document.activeElement.id");
-    assert_eq!(focus, "new-2-58", "reading goes on at the block");
+    assert_eq!(focus, "new-2-67", "reading goes on at the block");
 
     // The drawing: turned, zoomed, put back; both canvases look from the same side.
     browser.run("document.getElementById('canvas-new').focus()");
@@ -225,7 +225,7 @@ fn a_telephone_the_dark_and_paper_are_served() {
     let wide = browser.run("return document.documentElement.scrollWidth");
     assert_eq!(wide, 375, "nothing sticks out to the side");
     browser.click(".holes tbody tr:first-child a.go");
-    lands(&browser, "new-2-58 ");
+    lands(&browser, "new-2-67 ");
     is_quiet(&browser);
 }
 
@@ -458,7 +458,7 @@ fn a_program_alone_has_a_page_too() {
     browser.open(&judged);
     assert_eq!(column(&browser, 1), ["1", "2", "3", "4", "5"]);
     browser.click(".holes tbody tr:nth-child(2) a.go");
-    lands(&browser, "new-2-58 ");
+    lands(&browser, "new-2-67 ");
     is_quiet(&browser);
 }
 

@@ -12,7 +12,20 @@ use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_inspect::verify::{Tolerances, Verdict};
 use gcode_lang::motion::EventSink;
 use gcode_lang::program::Library;
-use gcode_part::{Flutes, Reference};
+use gcode_part::{Flutes, Metal, Reference};
+
+impl Request {
+    /// Returns the request with the limits of the process that a reference specifies.
+    #[must_use]
+    pub fn for_reference(&self, reference: &Reference) -> Self {
+        Self { process_limits: reference.process_limits.clone(), ..self.clone() }
+    }
+
+    /// Returns what is known to be metal of a reference: its stock overrides that of the machine.
+    pub fn metal(&self, reference: &Reference) -> Metal {
+        reference.metal(self.machine.stock.as_ref())
+    }
+}
 
 /// What the holes of a program are judged by.
 #[derive(Clone, Copy, Debug)]

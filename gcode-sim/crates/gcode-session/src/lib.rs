@@ -113,17 +113,6 @@ impl Request {
             progress: None,
         }
     }
-
-    /// Returns the request with the limits of the process that a reference specifies.
-    #[must_use]
-    pub fn for_reference(&self, reference: &Reference) -> Self {
-        Self { process_limits: reference.process_limits.clone(), ..self.clone() }
-    }
-
-    /// Returns what is known to be metal of a reference: its stock overrides that of the machine.
-    pub fn metal(&self, reference: &Reference) -> Metal {
-        reference.metal(self.machine.stock.as_ref())
-    }
 }
 
 /// A finished run with the control in its end state.

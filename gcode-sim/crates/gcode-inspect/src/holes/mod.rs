@@ -400,10 +400,7 @@ impl<'m> HoleExtractor<'m> {
         let free_from = self.update_line(event, kind, before.tip);
         self.follow_bar_shift(event, kind, &before.tip);
         match (kind, free_from) {
-            (MotionKind::Rapid, start) => {
-                self.check_lost_offset(event);
-                self.check_rapid_motion(event, (&from, to), start, &before.tip);
-            }
+            (MotionKind::Rapid, start) => self.check_rapid_motion(event, (&from, to), start, &before.tip),
             (MotionKind::Feed, start) => {
                 // What a feed cuts is recorded before it is removed.
                 if let Some(start) = start {
@@ -422,17 +419,6 @@ impl<'m> HoleExtractor<'m> {
             self.check_upright(&from);
         }
         self.update_start();
-    }
-
-    /// Applies a known start, or a known end of a motion.
-    fn update_start(&mut self) {
-        self.has_left_start |= self.positions.is_known(self.machine);
-    }
-
-    /// Applies a known position outside the part before the first motion.
-    fn update_outside(&mut self) {
-        let is_outside = self.surface.is_some_and(|surface| surface.value(&self.pose.tip) > 0.0);
-        self.has_left_start |= is_outside && self.positions.is_known(self.machine);
     }
 
     /// Applies a change of the tool, its offset or the head, which moves the tip.

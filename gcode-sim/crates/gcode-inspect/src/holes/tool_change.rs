@@ -91,6 +91,7 @@ impl HoleExtractor<'_> {
         if !self.checks_rapids {
             return;
         }
+        self.check_lost_offset(event);
         let counted = self.change_retract.rapids.number();
         let way = self.pose.tip - before;
         let along = self.tool_direction().map_or(0.0, |axis| way.dot(&axis));

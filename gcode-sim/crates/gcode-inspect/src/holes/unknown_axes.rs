@@ -241,7 +241,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the distance of the tip below the top of the body, seen along the tool, with the axes at a position; `None` if it is
-    /// beside the body, or if its height is unknown. Linear axes in `unknown` may be anywhere.
+    /// beside the body, or if its height is unknown. Linear axes in `unknown` may be anywhere; without any it is the depth.
     pub(super) fn depth_below_top(&self, surface: &Surface, at: &Position, unknown: u8) -> Option<f64> {
         let pose = self.machine.forward(at, &self.setup);
         let (tip, out) = (pose.tip, pose.axis.or_else(|| self.tool_direction())?);
@@ -258,12 +258,16 @@ impl HoleExtractor<'_> {
             }
             open.push(by);
         }
+        if open.is_empty() {
+            return Some(surface.depth(&tip));
+        }
         let reach = self.body_radius();
         let [low, high] = surface.bounds();
         let is_over = (0..3).all(|i| {
             let is_open = open.iter().any(|by| MAX_SINE < by[i].abs());
             let margin = reach * (1.0 - out[i] * out[i]).max(0.0).sqrt();
-            is_open || MAX_SINE < out[i].abs() || (low[i] - margin..=high[i] + margin).contains(&tip[i])
+            let is_along = 1.0 - MAX_SINE < out[i].abs();
+            is_open || is_along || (low[i] - margin..=high[i] + margin).contains(&tip[i])
         });
         let top: f64 = (0..3).map(|i| (out[i] * low[i]).max(out[i] * high[i])).sum();
         is_over.then(|| top - tip.coords.dot(&out))
@@ -298,6 +302,17 @@ impl HoleExtractor<'_> {
             );
             Diagnostic::new(kind, message).help(format!("command {letters} in G90 above the part before it"))
         });
+    }
+
+    /// Applies a known start, or a known end of a motion.
+    pub(super) fn update_start(&mut self) {
+        self.has_left_start |= self.positions.is_known(self.machine);
+    }
+
+    /// Applies a known position outside the part before the first motion.
+    pub(super) fn update_outside(&mut self) {
+        let is_outside = self.surface.is_some_and(|surface| surface.value(&self.pose.tip) > 0.0);
+        self.has_left_start |= is_outside && self.positions.is_known(self.machine);
     }
 
     /// Returns true if all these axes move the tool along the line: out of the hole, since machine zero is outside the

@@ -1,10 +1,9 @@
 //! Cutting conditions of each tool: spindle, speed, feed, pecks and length offset as the reference specifies them.
 use std::collections::BTreeSet;
 
-use super::reach::{deviation_of_tip, explains};
 use super::*;
 use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFSET, SPINDLE_REVERSED};
-use crate::holes::{CutConditions, LengthMismatch};
+use crate::holes::CutConditions;
 use crate::machine::{ToolKind, tool_name};
 use gcode_lang::motion::{LengthCompensation, SpindleDirection};
 use gcode_part::Hand;
@@ -67,14 +66,18 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         }
     }
     for cut in conditions {
-        for finding in [without_offset(cut, &offsets, inspection), with_other_length(cut, inspection)] {
-            finding.into_iter().for_each(|finding| report(finding, cut));
+        if let Some(finding) = without_offset(cut, &offsets, inspection) {
+            report(finding, cut);
         }
     }
     for (finding, count) in reported {
-        let note = (count != 1).then(|| format!("in {count} cuts; this is the first"));
-        findings.add(Subject::Motion, note.into_iter().fold(finding, Diagnostic::note));
+        findings.add(Subject::Motion, counted(finding, count));
     }
+}
+
+/// Adds the number of cuts to the finding on the first.
+pub(super) fn counted(finding: Diagnostic, count: u64) -> Diagnostic {
+    if count == 1 { finding } else { finding.note(format!("in {count} cuts; this is the first")) }
 }
 
 /// Returns the first cut of each tool with each length offset.
@@ -331,28 +334,6 @@ fn length(cut: &CutConditions, limits: &ProcessLimits, machine: &Machine) -> Opt
     let note = "the machine file does not give the tool's length, so the simulated holes do not depend on \
                 the length offset";
     Some(Diagnostic::new(&LENGTH_OFFSET, message).with_severity(severity).note(note).help(help))
-}
-
-/// Reports the length offset of another tool of known length: one that is as long in the machine file may differ on the machine.
-/// Where the difference explains depths that are wrong, another finding says so.
-fn with_other_length(cut: &CutConditions, inspection: &HoleInspection<'_>) -> Option<Diagnostic> {
-    let HoleInspection { comparison, machine, extraction, .. } = inspection;
-    let length = machine.length_of(cut.tool).filter(|length| 0.0 < *length)?;
-    let LengthCompensation::Plus(h) = cut.compensation else { return None };
-    let number = cut.tool.filter(|number| *number != h)?;
-    let other = machine.find_tool(h)?.length;
-    let is_own = |one: &&LengthMismatch| (one.tool, one.compensation) == (number, cut.compensation);
-    let note = match extraction.length_mismatches.iter().find(is_own) {
-        Some(one) if explains(comparison, one) => return None,
-        Some(one) => format!("its tip is {} than programmed", deviation_of_tip(one.length_excess)),
-        None if other == Some(length) => {
-            format!("both are {length} mm long in the machine file: on the machine they may differ")
-        }
-        None => return None,
-    };
-    let message = format!("{} cuts with H{h}, the number of another tool", tool_name(cut.tool));
-    let finding = Diagnostic::new(&LENGTH_OFFSET, message).with_severity(Severity::Warning).note(note);
-    Some(finding.help(format!("command H{number}, if offsets have the numbers of their tools")))
 }
 
 /// Reports a tool of unknown length that cuts without a length offset where the program uses lengths: another tool of unknown

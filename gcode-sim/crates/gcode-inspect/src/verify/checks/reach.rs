@@ -1,8 +1,9 @@
 //! A length offset that is not the tool's length, if this error alone explains why its holes miss their depth.
-use super::cutting::round_thousandth;
+use super::cutting::{counted, round_thousandth};
 use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING, HOLES_ALIKE, LENGTH_OFFSET};
-use crate::holes::{LengthMismatch, MAX_LINE_OFFSET};
+use crate::holes::{CutConditions, LengthMismatch, MAX_LINE_OFFSET};
+use crate::machine::tool_name;
 use gcode_lang::motion::LengthCompensation;
 use gcode_part::{PARALLEL_COSINE, POINT_LENGTH};
 
@@ -10,6 +11,22 @@ use gcode_part::{PARALLEL_COSINE, POINT_LENGTH};
 const DEPTH_KINDS: [&FindingKind; 5] = [&HOLE_MISSING, &HOLE_EXTRA, &HOLE_DEPTH, &HOLES_ALIKE, &HOLE_IN_AIR];
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
+    explain_depths(inspection, findings);
+    let mut reported: Vec<(Diagnostic, u64)> = Vec::new();
+    for cut in &inspection.extraction.cut_conditions {
+        let Some(finding) = with_other_length(cut, inspection) else { continue };
+        match reported.iter_mut().find(|(other, _)| other.message == finding.message) {
+            Some((_, count)) => *count += cut.count,
+            None => reported.push((finding.with_backtrace(cut.backtrace.clone()), cut.count)),
+        }
+    }
+    for (finding, count) in reported {
+        findings.add(Subject::Motion, counted(finding, count));
+    }
+}
+
+/// Reports the wrong length offsets that explain all depths of their tools.
+fn explain_depths(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let HoleInspection { comparison, machine, extraction, reference, .. } = inspection;
     let mismatches = extraction.length_mismatches.iter();
     let wrong: Vec<&LengthMismatch> = mismatches.filter(|one| explains(comparison, one)).collect();
@@ -73,14 +90,36 @@ fn finding(mismatch: &LengthMismatch, limits: &ProcessLimits, machine: &Machine)
         .with_backtrace(mismatch.backtrace.clone())
 }
 
+/// Reports the length offset of another tool of known length: one that is as long in the machine file may differ on the machine.
+/// Where the difference explains depths that are wrong, another finding says so.
+fn with_other_length(cut: &CutConditions, inspection: &HoleInspection<'_>) -> Option<Diagnostic> {
+    let HoleInspection { comparison, machine, extraction, .. } = inspection;
+    let length = machine.length_of(cut.tool).filter(|length| 0.0 < *length)?;
+    let LengthCompensation::Plus(h) = cut.compensation else { return None };
+    let number = cut.tool.filter(|number| *number != h)?;
+    let other = machine.find_tool(h)?.length;
+    let is_own = |one: &&LengthMismatch| (one.tool, one.compensation) == (number, cut.compensation);
+    let note = match extraction.length_mismatches.iter().find(is_own) {
+        Some(one) if explains(comparison, one) => return None,
+        Some(one) => format!("its tip is {} than programmed", deviation_of_tip(one.length_excess)),
+        None if other == Some(length) => {
+            format!("both are {length} mm long in the machine file: on the machine they may differ")
+        }
+        None => return None,
+    };
+    let message = format!("{} cuts with H{h}, the number of another tool", tool_name(cut.tool));
+    let finding = Diagnostic::new(&LENGTH_OFFSET, message).with_severity(Severity::Warning).note(note);
+    Some(finding.help(format!("command H{number}, if offsets have the numbers of their tools")))
+}
+
 /// Returns how far the tip of a tool is off, `2 mm higher`, by its length minus its offset.
-pub(super) fn deviation_of_tip(excess: f64) -> String {
+fn deviation_of_tip(excess: f64) -> String {
     format!("{} mm {}", round_thousandth(excess.abs()), if excess > 0.0 { "deeper" } else { "higher" })
 }
 
 /// Returns true if the tool's holes miss the nominal depth, and half of them would not with the tip at the programmed
 /// point. A through hole has no nominal depth: there the tip is deeper than programmed.
-pub(super) fn explains(comparison: &Comparison<'_>, mismatch: &LengthMismatch) -> bool {
+fn explains(comparison: &Comparison<'_>, mismatch: &LengthMismatch) -> bool {
     let tolerance = comparison.tolerances.depth;
     let is_right = |(depth, nominal): (f64, &Hole)| match nominal.through {
         true => !exceeds(nominal.depth, depth) && !exceeds(depth, longest_break_through(nominal)),
