@@ -21,7 +21,7 @@ const RAPID_DETAIL: u32 = 1 << 8;
 const LOW_RAPID_DETAIL: u32 = 1 << 9;
 
 /// Step between the angles at which a part of unknown angle is compared, degrees.
-const ANGLE_STEP: u32 = 10;
+const ANGLE_STEP: u32 = 5;
 
 /// Largest displacement of a hole by an axis that has no effect on it, mm.
 const MAX_DISPLACEMENT: f64 = 1e-6;
@@ -205,9 +205,15 @@ impl HoleExtractor<'_> {
         }
         let positions = self.angles_of(axes.uncommanded);
         let depths = positions.iter().map(|at| self.depth_below_top(&surface, at, axes.uncommanded));
-        // It is below the top at every angle of the part.
-        let least = depths.reduce(|least, depth| Some(least?.min(depth?)));
-        let Some(below) = least.flatten().filter(|below| -CONTACT_CLEARANCE < *below) else { return };
+        let is_placed = (0..self.machine.axes.len())
+            .all(|axis| axes.uncommanded >> axis & 1 == 0 || self.machine.axes.is_rotary(axis));
+        let below = match is_placed {
+            // It is in the part at every angle.
+            true => depths.reduce(|least, depth| Some(least?.min(depth?))).flatten(),
+            // It may be anywhere over the part, at any angle.
+            false => depths.flatten().reduce(f64::max),
+        };
+        let Some(below) = below.filter(|below| -CONTACT_CLEARANCE < *below) else { return };
         let letters = self.machine.axes.names(axes.uncommanded);
         self.findings.add_in_program(&START_UNKNOWN, &event.backtrace(), LOW_RAPID_DETAIL, 1, |kind| {
             let place = match below {
@@ -222,10 +228,13 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Returns the position of the axes, with rotaries of unknown position at each of their angles.
+    /// Returns the position of the axes, with rotaries of unknown position that carry the part at each of their angles.
     fn angles_of(&self, unknown: u8) -> Vec<Position> {
         let mut positions = vec![self.axis_position];
-        let is_unknown = |axis: &AxisIndex| unknown >> axis & 1 == 1 && self.machine.axes.is_rotary(*axis);
+        let is_unknown = |axis: &AxisIndex| {
+            let is_rotary = self.machine.axes.is_rotary(*axis) && self.machine.table.has_axis(*axis);
+            unknown >> axis & 1 == 1 && is_rotary
+        };
         for axis in (0..self.machine.axes.len()).filter(is_unknown) {
             let turned = |at: &Position| {
                 let at = *at;

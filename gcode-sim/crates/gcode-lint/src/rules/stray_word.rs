@@ -1,10 +1,11 @@
 //! Rule: a word that no block of this control accepts: `X10., Y5.` (PS0053), `X1E3` and missing axes
-//! (PS0009).
+//! (PS0009). A block that a jump or an end can leave out may be for another machine that has the axis.
 use gcode_lang::control::Dialect;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Motion;
 use gcode_lang::program::{LoweredWord, Words};
 
+use crate::control_flow::Successors;
 use crate::prelude::*;
 
 pub(super) static RULE: Rule =
@@ -12,12 +13,15 @@ pub(super) static RULE: Rule =
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
+    let can_be_left_out = blocks_that_can_be_left_out(unit);
     for (block, words) in unit.reached_words() {
         if unit.call_in(block).is_some() {
             continue;
         }
         let stray = words.list.iter().filter_map(|word| Some((word, alarm(context, words, word)?)));
-        found.extend(stray.map(|(word, alarm)| {
+        let is_known =
+            |(word, _): &(&LoweredWord, Alarm)| word.comma || word.letter == b'E' || !can_be_left_out[block];
+        found.extend(stray.filter(is_known).map(|(word, alarm)| {
             let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm.located_at(word.span));
             match (word.comma, word.letter) {
                 (true, _) => finding.help("remove the comma: words are not separated by commas"),
@@ -30,6 +34,18 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         }));
     }
     found
+}
+
+/// Returns for each block whether a block before it can jump over it, or end the program.
+fn blocks_that_can_be_left_out(unit: &ProgramUnit<'_>) -> Vec<bool> {
+    let (mut farthest, mut may_end) = (0, false);
+    let after = |(block, successors): (usize, &Successors)| {
+        let can_be_left_out = may_end || block < farthest;
+        farthest = successors.jumps.iter().copied().fold(farthest, usize::max);
+        may_end |= successors.is_exit || successors.jumps_anywhere;
+        can_be_left_out
+    };
+    unit.flow.block_successors.iter().enumerate().map(after).collect()
 }
 
 fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Option<Alarm> {
@@ -61,6 +77,16 @@ mod tests {
         assert_eq!(lines(&RULE, text), [2, 3, 4]);
         let found = messages(&RULE, text);
         assert!(found[0].starts_with("PS0053: ") && found[1].starts_with("PS0009: "), "{found:?}");
+    }
+
+    #[test]
+    fn a_missing_axis_in_a_block_that_can_be_left_out_is_accepted() {
+        let text = "O1\nIF[#1 NE 0]GOTO 20\nG0 X1.\nGOTO 30\nN20 G0 U5.\nN30 M30\n";
+        assert_eq!(lines(&RULE, text), NOWHERE);
+        let both = "O1\nIF[#1 NE 0]GOTO 20\nG0 X1.\nN20 G0 U5.\nM30\n";
+        assert_eq!(lines(&RULE, both), [4], "both ways lead through it");
+        let guarded = "O1\nIF[#1 EQ 0]THEN #3000=1(NO A)\nG0 U5.\nM30\n";
+        assert_eq!(lines(&RULE, guarded), NOWHERE);
     }
 
     #[test]
