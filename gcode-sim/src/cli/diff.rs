@@ -5,9 +5,10 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
+use super::options::EqualityArguments;
 use super::picture_file::PictureFile;
 use super::project::{self, Project};
-use super::{ExitStatus, UsageError, common, options, output, page, progress, render, unused_machine};
+use super::{ExitStatus, UsageError, options, output, page, progress, render, unused_machine};
 use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
@@ -29,15 +30,8 @@ pub(super) struct Arguments {
     #[arg(long = "old-lib", value_name = "DIR")]
     old_libraries: Vec<PathBuf>,
 
-    /// Tolerance for equality, mm or degrees
-    #[arg(
-        long,
-        value_name = "MM",
-        default_value_t = 0.0001,
-        allow_negative_numbers = true,
-        value_parser = common::number
-    )]
-    tolerance: f64,
+    #[command(flatten)]
+    equality: EqualityArguments,
 
     /// Also draw the new holes over the old ones to this file
     #[arg(long, value_name = "OUT.png", value_parser = PictureFile::parser())]
@@ -61,7 +55,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
+    let tolerance = arguments.equality.tolerance()?;
     let programs = [arguments.old.as_path(), arguments.new.as_path()];
     let files: Vec<&Path> =
         programs.into_iter().chain(arguments.run.files()).chain(arguments.reference.as_deref()).collect();

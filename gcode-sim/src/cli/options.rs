@@ -1,9 +1,11 @@
 //! Builds the request for a session from the command-line arguments.
 use std::path::Path;
 
+use clap::Args;
+
 use super::conditions::ProgramArguments;
 use super::library::Folders;
-use super::{UsageError, input, output, overwrite_guard, page, unused_machine};
+use super::{UsageError, common, input, output, overwrite_guard, page, unused_machine};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_lang::motion::{Axes, AxisIndex};
@@ -185,6 +187,27 @@ pub(super) fn read_holes(
     let nominal = path.map(|path| read_nominal(path, request, library)).transpose()?;
     let refused = |nominal: NominalPart| nominal.into_holes().ok_or_else(|| UsageError::new(refusal));
     nominal.map(refused).transpose()
+}
+
+/// Tolerance of the commands that compare two runs.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct EqualityArguments {
+    /// Tolerance for equality, mm or degrees
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 0.0001,
+        allow_negative_numbers = true,
+        value_parser = common::number
+    )]
+    tolerance: f64,
+}
+
+impl EqualityArguments {
+    /// Returns the tolerance; an error unless it is a length above 0.
+    pub(super) fn tolerance(self) -> Result<f64, UsageError> {
+        Ok(tolerance("--tolerance", Some(self.tolerance))?.unwrap_or_default())
+    }
 }
 
 /// Checks the value of a tolerance flag.

@@ -14,7 +14,8 @@ use clap::Args;
 use self::case::{Case, CaseResult, Terms};
 use super::conditions::DenyArguments;
 use super::format::TestFormat;
-use super::{ExitStatus, UsageError, common, options, output, progress};
+use super::options::EqualityArguments;
+use super::{ExitStatus, UsageError, output, progress};
 use crate::report::junit;
 use crate::report::test_report::{CaseAnswer, Shard, TestReport};
 use gcode_review::Record;
@@ -56,15 +57,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     deny: DenyArguments,
 
-    /// Tolerance for equality, mm or degrees
-    #[arg(
-        long,
-        value_name = "MM",
-        default_value_t = 0.0001,
-        allow_negative_numbers = true,
-        value_parser = common::number
-    )]
-    tolerance: f64,
+    #[command(flatten)]
+    equality: EqualityArguments,
 
     /// Output format
     #[arg(long, value_enum, default_value_t = TestFormat::Text)]
@@ -83,7 +77,7 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
+    let tolerance = arguments.equality.tolerance()?;
     if arguments.watch {
         return watch::run(arguments, tolerance);
     }

@@ -2,9 +2,10 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::line::CuttingLine;
+use super::unknown_axes::place_below_top;
 use super::{CONTACT_CLEARANCE, HoleExtractor};
 use crate::findings::RAPID_INTO_PART;
-use crate::machine::{TOUCH_DEPTH, tool_name};
+use crate::machine::tool_name;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, LengthCompensation};
 
@@ -62,10 +63,7 @@ impl HoleExtractor<'_> {
         };
         let Some(depth) = depth.filter(|depth| -CONTACT_CLEARANCE < *depth) else { return };
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
-            let place = match depth {
-                _ if TOUCH_DEPTH < depth => format!("{depth:.3} mm below the top of the part"),
-                _ => "on the top of the part".to_owned(),
-            };
+            let place = place_below_top(depth);
             let message = format!(
                 "a rapid without a length offset ends {place}: {} goes into it by its length",
                 tool_name(tool)

@@ -204,22 +204,21 @@ impl HoleExtractor<'_> {
             return;
         }
         let positions = self.angles_of(axes.uncommanded);
-        let depths = positions.iter().map(|at| self.depth_below_top(&surface, at, axes.uncommanded));
+        let mut depths = positions.map(|at| self.depth_below_top(&surface, &at, axes.uncommanded));
         let is_placed = (0..self.machine.axes.len())
             .all(|axis| axes.uncommanded >> axis & 1 == 0 || self.machine.axes.is_rotary(axis));
         let below = match is_placed {
-            // It is in the part at every angle.
-            true => depths.reduce(|least, depth| Some(least?.min(depth?))).flatten(),
+            // It is in the part at every angle: the first that is clear decides.
+            true => depths.try_fold(f64::INFINITY, |least, depth| {
+                depth.filter(|depth| -CONTACT_CLEARANCE < *depth).map(|depth| least.min(depth))
+            }),
             // It may be anywhere over the part, at any angle.
             false => depths.flatten().reduce(f64::max),
         };
         let Some(below) = below.filter(|below| -CONTACT_CLEARANCE < *below) else { return };
         let letters = self.machine.axes.names(axes.uncommanded);
         self.findings.add_in_program(&START_UNKNOWN, &event.backtrace(), LOW_RAPID_DETAIL, 1, |kind| {
-            let place = match below {
-                _ if TOUCH_DEPTH < below => format!("{below:.3} mm below the top of the part"),
-                _ => "on the top of the part".to_owned(),
-            };
+            let place = place_below_top(below);
             let message = format!(
                 "a rapid ends {place} with {letters} at an unknown position: it may be over the part"
             );
@@ -229,24 +228,21 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the position of the axes, with rotaries of unknown position that carry the part at each of their angles.
-    fn angles_of(&self, unknown: u8) -> Vec<Position> {
-        let mut positions = vec![self.axis_position];
+    fn angles_of(&self, unknown: u8) -> impl Iterator<Item = Position> + use<> {
         let is_unknown = |axis: &AxisIndex| {
             let is_rotary = self.machine.axes.is_rotary(*axis) && self.machine.table.has_axis(*axis);
             unknown >> axis & 1 == 1 && is_rotary
         };
-        for axis in (0..self.machine.axes.len()).filter(is_unknown) {
-            let turned = |at: &Position| {
-                let at = *at;
-                (0..360 / ANGLE_STEP).map(move |step| {
-                    let mut beside = at;
-                    beside[axis] = f64::from(step * ANGLE_STEP);
-                    beside
-                })
-            };
-            positions = positions.iter().flat_map(turned).collect();
-        }
-        positions
+        let axes: Vec<AxisIndex> = (0..self.machine.axes.len()).filter(is_unknown).collect();
+        let (at, steps) = (self.axis_position, (360 / ANGLE_STEP) as usize);
+        (0..steps.pow(axes.len() as u32)).map(move |mut place| {
+            let mut beside = at;
+            for axis in &axes {
+                beside[*axis] = ((place % steps) as u32 * ANGLE_STEP).into();
+                place /= steps;
+            }
+            beside
+        })
     }
 
     /// Returns the distance of the tip below the top of the body, seen along the tool, with the axes at a position; `None` if it is
@@ -334,6 +330,14 @@ impl HoleExtractor<'_> {
             by.cross(&line.out).norm() <= MAX_SINE * by.norm()
         };
         self.machine.axes.iter().filter(|(axis, _)| axes >> axis & 1 == 1).all(|(axis, _)| is_along(axis))
+    }
+}
+
+/// Returns the place of a tip at a depth below the top of the part, in words.
+pub(super) fn place_below_top(depth: f64) -> String {
+    match depth {
+        _ if TOUCH_DEPTH < depth => format!("{depth:.3} mm below the top of the part"),
+        _ => "on the top of the part".to_owned(),
     }
 }
 

@@ -180,12 +180,12 @@ pub struct Expr {
     pub span: Span,
 }
 
-impl Expr {
-    /// Iterates over the direct parts in the order written: operands, arguments, the number of a variable.
-    pub fn operands(&self) -> impl Iterator<Item = &Self> {
-        let (first, second, third) = match &self.kind {
+/// Direct parts of an expression, borrowed as its kind is; `$borrow` borrows a part that may be missing.
+macro_rules! operands {
+    ($kind:expr, $borrow:ident) => {{
+        let (first, second, third) = match $kind {
             ExprKind::Literal(_) | ExprKind::AxisNumber(_) => (None, None, None),
-            ExprKind::Named(name) => (name.index.as_ref(), None, None),
+            ExprKind::Named(name) => (name.index.$borrow(), None, None),
             ExprKind::Variable(part)
             | ExprKind::Negate(part)
             | ExprKind::Plus(part)
@@ -195,9 +195,21 @@ impl Expr {
             | ExprKind::Call(_, CallForm::Slash(left, right) | CallForm::Comma(left, right)) => {
                 (Some(left), Some(right), None)
             }
-            ExprKind::Parameter { number, bit, axis } => (Some(number), bit.as_ref(), axis.as_ref()),
+            ExprKind::Parameter { number, bit, axis } => (Some(number), bit.$borrow(), axis.$borrow()),
         };
-        [first, second, third].into_iter().flatten().map(|part| &**part)
+        [first, second, third].into_iter().flatten()
+    }};
+}
+
+impl Expr {
+    /// Iterates over the direct parts in the order written: operands, arguments, the number of a variable.
+    pub fn operands(&self) -> impl Iterator<Item = &Self> {
+        operands!(&self.kind, as_ref).map(|part| &**part)
+    }
+
+    /// Iterates over the direct parts as [`Self::operands`] does.
+    pub(super) fn operands_mut(&mut self) -> impl Iterator<Item = &mut Self> {
+        operands!(&mut self.kind, as_mut).map(|part| &mut **part)
     }
 }
 

@@ -1,5 +1,5 @@
 //! Shift of a tree: its places after an edit in front of it.
-use super::ast::{Block, CallForm, Condition, Expr, ExprKind, Item, PrintPart, Statement, WordValue};
+use super::ast::{Block, Condition, Expr, Item, PrintPart, Statement, WordValue};
 use crate::source::Span;
 
 impl Block {
@@ -91,19 +91,5 @@ fn shift_condition(condition: &mut Condition, delta: i64) {
 
 fn shift_expr(expr: &mut Expr, delta: i64) {
     shift_span(&mut expr.span, delta);
-    let (first, second, third) = match &mut expr.kind {
-        ExprKind::Literal(_) | ExprKind::AxisNumber(_) => (None, None, None),
-        ExprKind::Named(name) => (name.index.as_mut(), None, None),
-        ExprKind::Variable(part)
-        | ExprKind::Negate(part)
-        | ExprKind::Plus(part)
-        | ExprKind::Bracket(part)
-        | ExprKind::Call(_, CallForm::One(part)) => (Some(part), None, None),
-        ExprKind::Binary(_, left, right)
-        | ExprKind::Call(_, CallForm::Slash(left, right) | CallForm::Comma(left, right)) => {
-            (Some(left), Some(right), None)
-        }
-        ExprKind::Parameter { number, bit, axis } => (Some(number), bit.as_mut(), axis.as_mut()),
-    };
-    [first, second, third].into_iter().flatten().for_each(|part| shift_expr(part, delta));
+    expr.operands_mut().for_each(|part| shift_expr(part, delta));
 }

@@ -1,5 +1,7 @@
 //! Rule: a word that no block of this control accepts: `X10., Y5.` (PS0053), `X1E3` and missing axes
 //! (PS0009). A block that a jump or an end can leave out may be for another machine that has the axis.
+use std::cell::LazyCell;
+
 use gcode_lang::control::Dialect;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Motion;
@@ -13,7 +15,7 @@ pub(super) static RULE: Rule =
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    let can_be_left_out = blocks_that_can_be_left_out(unit);
+    let can_be_left_out = LazyCell::new(|| blocks_that_can_be_left_out(unit));
     for (block, words) in unit.reached_words() {
         if unit.call_in(block).is_some() {
             continue;

@@ -41,15 +41,7 @@ const LEAST_PECK_SHARE: f64 = 0.005;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let (conditions, limits) = (&inspection.extraction.cut_conditions, &inspection.reference.process_limits);
-    let mut reported: Vec<(Diagnostic, u64)> = Vec::new();
-    let mut known: BTreeMap<String, usize> = BTreeMap::new();
-    let mut report = |finding: Diagnostic, cut: &CutConditions| {
-        let index = *known.entry(finding.message.clone()).or_insert(reported.len());
-        if index == reported.len() {
-            reported.push((finding.with_backtrace(cut.backtrace.clone()), 0));
-        }
-        reported[index].1 += cut.count;
-    };
+    let mut reported = CutFindings::default();
     let offsets = offsets_of_tools(conditions);
     for check in [reversed, speed, feed, feed_per_turn, rubbing_feed, peck, fine_peck, length, tool] {
         for cut in conditions {
@@ -62,22 +54,39 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                     .note(format!("T{owner} cuts with it too: two tools have two lengths")),
                 None => finding,
             };
-            report(finding, cut);
+            reported.add(finding, cut);
         }
     }
     for cut in conditions {
         if let Some(finding) = without_offset(cut, &offsets, inspection) {
-            report(finding, cut);
+            reported.add(finding, cut);
         }
     }
-    for (finding, count) in reported {
-        findings.add(Subject::Motion, counted(finding, count));
-    }
+    reported.finish(findings);
 }
 
-/// Adds the number of cuts to the finding on the first.
-pub(super) fn counted(finding: Diagnostic, count: u64) -> Diagnostic {
-    if count == 1 { finding } else { finding.note(format!("in {count} cuts; this is the first")) }
+/// Findings on cuts: those with one message are one, at the first cut, with the number of all.
+#[derive(Default)]
+pub(super) struct CutFindings {
+    list: Vec<(Diagnostic, u64)>,
+    by_message: BTreeMap<String, usize>,
+}
+
+impl CutFindings {
+    pub(super) fn add(&mut self, finding: Diagnostic, cut: &CutConditions) {
+        let index = *self.by_message.entry(finding.message.clone()).or_insert(self.list.len());
+        if index == self.list.len() {
+            self.list.push((finding.with_backtrace(cut.backtrace.clone()), 0));
+        }
+        self.list[index].1 += cut.count;
+    }
+
+    pub(super) fn finish(self, findings: &mut HoleFindings) {
+        for (finding, count) in self.list {
+            let note = (count != 1).then(|| format!("in {count} cuts; this is the first"));
+            findings.add(Subject::Motion, note.into_iter().fold(finding, Diagnostic::note));
+        }
+    }
 }
 
 /// Returns the first cut of each tool with each length offset.

@@ -1,5 +1,5 @@
 //! A length offset that is not the tool's length, if this error alone explains why its holes miss their depth.
-use super::cutting::{counted, round_thousandth};
+use super::cutting::{CutFindings, round_thousandth};
 use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING, HOLES_ALIKE, LENGTH_OFFSET};
 use crate::holes::{CutConditions, LengthMismatch, MAX_LINE_OFFSET};
@@ -12,17 +12,13 @@ const DEPTH_KINDS: [&FindingKind; 5] = [&HOLE_MISSING, &HOLE_EXTRA, &HOLE_DEPTH,
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     explain_depths(inspection, findings);
-    let mut reported: Vec<(Diagnostic, u64)> = Vec::new();
+    let mut reported = CutFindings::default();
     for cut in &inspection.extraction.cut_conditions {
-        let Some(finding) = with_other_length(cut, inspection) else { continue };
-        match reported.iter_mut().find(|(other, _)| other.message == finding.message) {
-            Some((_, count)) => *count += cut.count,
-            None => reported.push((finding.with_backtrace(cut.backtrace.clone()), cut.count)),
+        if let Some(finding) = with_other_length(cut, inspection) {
+            reported.add(finding, cut);
         }
     }
-    for (finding, count) in reported {
-        findings.add(Subject::Motion, counted(finding, count));
-    }
+    reported.finish(findings);
 }
 
 /// Reports the wrong length offsets that explain all depths of their tools.
