@@ -110,6 +110,12 @@ async function open(file) {
 const squiggles = () => page.locator(".squiggly-error, .squiggly-warning").count();
 const position = async () => (await page.locator("#status\\.editor\\.selection").textContent()) ?? "";
 const saved = (name) => readFileSync(join(folder, name), "latin1");
+// The line, from 1, of a saved program that holds a text; a text that no line holds is an error.
+function lineOf(name, text) {
+  const line = saved(name).split(/\r?\n/).findIndex((each) => each.includes(text));
+  assert(line >= 0, `no line of ${name} holds ${text}`);
+  return line + 1;
+}
 const stoppedLine = async () => (await page.locator(".debug-call-stack .monaco-list-row.selected, .debug-call-stack .monaco-list-row").allTextContents()).join(" | ");
 
 const stepBack = () => page.locator(".codicon-debug-step-back").first().click();
@@ -166,20 +172,19 @@ const steps = {
     await open("O8100.nc");
     await command("G-code: Show the Part Beside the Text");
     await until("the part", async () => (await partText()) !== "", 60);
-    const call = saved("O8100.nc").split(/\r?\n/).findIndex((text) => text.includes("(HOLE 5)")) + 1;
+    const call = lineOf("O8100.nc", "(HOLE 5)");
     await goToLine(call);
     await until("the moves of the call", async () => /O8100:\d+ .*HOLE 5/.test(await partText()));
     // A macro of the run is followed in the same drawing.
     await open("O8101.nc");
-    const feed = saved("O8101.nc").split(/\r?\n/).findIndex((text) => text.startsWith("G01 X[")) + 1;
+    const feed = lineOf("O8101.nc", "(TO THE DEPTH)");
     await goToLine(feed);
     await until("the moves of a block of the macro", async () => /^10 moves\. .*O8101:/.test(await partText()));
     await shot("4-part");
   },
   async "a breakpoint in O8101 stops, and a step goes in and back"() {
     await open("O8101.nc");
-    const lines = saved("O8101.nc").split(/\r?\n/);
-    const feed = lines.findIndex((text) => text.startsWith("G01 X[")) + 1;
+    const feed = lineOf("O8101.nc", "(TO THE DEPTH)");
     await goToLine(feed);
     await command("Debug: Toggle Breakpoint");
     await until("the breakpoint", async () => (await page.locator(".codicon-debug-breakpoint").count()) > 0);
