@@ -1,7 +1,7 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
-use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
+use std::sync::OnceLock;
 
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
@@ -89,12 +89,12 @@ pub(crate) struct ProgramUnit<'a> {
     pub reaches_end: bool,
     pub role: Role,
     /// Modes before each block, see `modes`.
-    pub modes: OnceCell<Vec<Option<PossibleModes>>>,
+    pub modes: OnceLock<Vec<Option<PossibleModes>>>,
     /// Variables that each block reads, see `variables`.
-    reads: OnceCell<Vec<Vec<VariableRead>>>,
-    components: OnceCell<Vec<usize>>,
+    reads: OnceLock<Vec<Vec<VariableRead>>>,
+    components: OnceLock<Vec<usize>>,
     /// States without arguments, see `vacancy`.
-    pub states_without_arguments: OnceCell<States>,
+    pub states_without_arguments: OnceLock<States>,
     /// Sequence numbers of the blocks that are left out, in the order of the blocks.
     pub left_out_numbers: Vec<LeftOutNumber>,
 }
@@ -274,10 +274,10 @@ impl<'a> ProgramUnit<'a> {
             is_reached: Vec::new(),
             reaches_end: false,
             role: Role::Main,
-            modes: OnceCell::new(),
-            reads: OnceCell::new(),
-            components: OnceCell::new(),
-            states_without_arguments: OnceCell::new(),
+            modes: OnceLock::new(),
+            reads: OnceLock::new(),
+            components: OnceLock::new(),
+            states_without_arguments: OnceLock::new(),
             left_out_numbers: Vec::new(),
             program,
         }

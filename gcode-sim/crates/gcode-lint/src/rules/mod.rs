@@ -28,9 +28,12 @@ mod unreachable_alarm;
 mod unreadable;
 mod unset_variable;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
 use gcode_lang::diag::{Diagnostic, FindingKind};
 
-use super::context::CheckContext;
+use super::context::{CheckContext, ProgramUnit};
 pub use super::rule::Rule;
 use super::suppression::suppressions;
 
@@ -84,12 +87,35 @@ pub(super) fn findings(context: &CheckContext<'_>) -> Vec<Diagnostic> {
     let mut all = Vec::new();
     for unit in &context.units {
         let off = suppressions(unit);
-        let mut found: Vec<_> = ALL.iter().flat_map(|rule| (rule.find)(context, unit)).collect();
+        let mut found = findings_in(context, unit);
         found.retain(|finding| !off.iter().any(|suppression| suppression.suppresses(finding)));
         found.sort_by_key(|finding| finding.backtrace.as_ref().map(|place| place.block.start));
         all.extend(found);
     }
     all
+}
+
+/// Number of blocks from which several threads share the rules: fewer are checked sooner than a thread starts.
+const MIN_BLOCKS_TO_SHARE: usize = 2000;
+
+/// Returns the findings in one program, rule by rule.
+fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let threads = if unit.blocks.len() < MIN_BLOCKS_TO_SHARE { 1 } else { cores.min(ALL.len()) };
+    let next = AtomicUsize::new(0);
+    let find_next = || {
+        let place = next.fetch_add(1, Ordering::Relaxed);
+        ALL.get(place).map(|rule| (place, (rule.find)(context, unit)))
+    };
+    let find_rest = || std::iter::from_fn(find_next).collect::<Vec<_>>();
+    let mut found = thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(find_rest)).collect();
+        let own = find_rest();
+        let joined = others.into_iter().map(|other| other.join().unwrap_or_else(|e| std::panic::resume_unwind(e)));
+        own.into_iter().chain(joined.flatten()).collect::<Vec<_>>()
+    });
+    found.sort_by_key(|(place, _)| *place);
+    found.into_iter().flat_map(|(_, findings)| findings).collect()
 }
 
 #[cfg(test)]
