@@ -203,7 +203,9 @@ const steps = {
     await stepBack();
     await until("the block before", async () => (await position()).includes(`Ln ${feed},`));
     await stepBack();
-    await until("the block before it", async () => (await position()).includes(`Ln ${feed - 1},`));
+    // The loop of the pecks has no turn here: the block that ran before it is its WHILE.
+    const loop = lineOf("O8101.nc", "WHILE[");
+    await until("the block before it", async () => (await position()).includes(`Ln ${loop},`));
     await shot("7-back");
     await page.keyboard.press("Shift+F5");
     await until("the end of the session", async () => (await page.locator(".debug-toolbar:visible").count()) === 0);
