@@ -241,8 +241,8 @@ impl Planner<'_> {
         self.check_stroke(plan)
     }
 
-    /// Handles a word that nothing has read: with an M code of the machine builder and without axes it goes to that code's
-    /// logic; P and Q of a straight move have no effect; any other raises an alarm.
+    /// Handles a word that nothing has read: with M06 or an M code of the machine builder and without axes it goes to that
+    /// code's logic; P and Q of a straight move have no effect; any other raises an alarm.
     #[inline(never)]
     fn pass_to_machine_builder(
         &self,
@@ -250,7 +250,9 @@ impl Planner<'_> {
         moves_straight: bool,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
-        match plan.builder_m_codes.last() {
+        // The builder's logic, often a macro, changes the tool.
+        let changes_tool = || self.words.m_codes.iter().map(|(code, _)| code).find(|code| **code == 6);
+        match plan.builder_m_codes.last().or_else(changes_tool) {
             None if moves_straight && matches!(letter, 'P' | 'Q') => {
                 plan.notes.push(Note::WordIgnored(letter));
                 Ok(())

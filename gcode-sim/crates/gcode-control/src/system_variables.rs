@@ -105,6 +105,7 @@ const ROWS: &[VariableRow] = &[
 const NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (4401, 4530, "the codes of a block that a macro interrupted"),
     (8000, 8999, "tool management"),
+    (26_000, 26_005, "the workpiece setting error that all have in common"),
     (100_001, 100_200, "positions of more than 20 axes"),
 ];
 
@@ -329,6 +330,10 @@ impl Registers {
                     return Err(Alarm::NotSimulated { what });
                 }
                 154.0
+            }
+            101..=126 if self.data.settings.codes == Dialect::HaasNgc => {
+                let what = format!("#{} (a word of the previous block)", 4000 + item);
+                return Err(Alarm::NotSimulated { what });
             }
             // Group 23 is that of a Haas.
             23 if self.data.settings.codes != Dialect::HaasNgc => {

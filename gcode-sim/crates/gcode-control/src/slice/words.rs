@@ -256,7 +256,8 @@ impl Slice {
                     let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
                     self.machine.rest |= marks;
                 }
-                None if settings.declared_codes.find(b'M', 10 * code).is_some() => {}
+                None if settings.declared_codes.find(b'M', 10 * code).is_some()
+                    || m_codes::is_auxiliary(code, settings.codes) => {}
                 None if settings.code_calls.find_call(b'M', 10 * code).is_none()
                     && !self.stated.codes.contains(&code) =>
                 {

@@ -137,7 +137,7 @@ impl Alarm {
             Self::SetNamesFormat => (&PS1139, "SETVN needs a variable's number and names in brackets".into(), Some("write SETVN510[NAME,NAME]")),
             Self::NameCharacter => (&PS1141, "a variable name consists of letters, digits and _".into(), None),
             Self::NameTooLong { name } => (&PS1142, format!("variable name {name} is longer than 8 characters"), None),
-            Self::PrintFormat => (&PS1143, "DPRNT and BPRNT need a text in square brackets, each variable with its digits".into(), Some("write DPRNT[TEXT#1[44]] or BPRNT[TEXT#1[3]]; eight digits at most")),
+            Self::PrintFormat => (&PS1143, "DPRNT and BPRNT need a text in square brackets, each variable with its digits".into(), Some("write DPRNT[TEXT#1[44]] or BPRNT[TEXT#1[3]]; PRINT-DIGITS states the most digits, 8 on a Fanuc")),
             Self::NoInverseTime => (&PS1202, "no F in a cutting block of G93 (inverse time feed)".into(), Some("write F, one divided by the minutes the block takes, in every such block")),
             Self::PositionOverflow { letter, value } => (&PS1160, format!("position {letter}{value} is out of range"), Some("check the work offset, the tool length and the target; a position has at most nine digits in increments")),
             Self::EndOfRecord => (&PS5010, "the program ends without M02, M30 or M99".into(), None),

@@ -31,11 +31,11 @@ const DIALECTS: &[DialectRow] = &[
         ("CODES", "fanuc-0i-f"), ("WORK-SYSTEMS", "48"),
     ] },
     // Nine macro levels in all; offsets: #2001 length and #2201 its wear, #2401 D and #2601 its wear;
-    // #3000=n shows 1000 + n; DPRNT prints all digits, its format has at most seven; IF without THEN.
+    // #3000=n shows 1000 + n; DPRNT prints all digits, nine before the point and nine behind it; IF without THEN.
     DialectRow { dialect: Dialect::HaasNgc, base: None, settings: &[
         ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
         ("MORE-COMMONS", "10000-10999"), ("ALIASED-COMMONS", "1"), ("VARIABLE-BITS", "1"), ("OFFSET-VARIABLES", "haas"),
-        ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"),
+        ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "18"),
         ("PLAIN-IF", "1"), ("VALUE-CONDITIONS", "1"), ("THEN-WORDS", "1"), ("THEN-GOTO", "1"), ("G67-ALARM", "1"),
         ("NEW-WORDS", "0"), ("MORE-FUNCTIONS", "0"), ("G10-PARAMETERS", "0"), ("REPEATS-IN-P", "0"), ("M97-CALLS", "1"),
         ("CYCLE-REPEATS", "L"), ("MOVE-REPEATS", "1"), ("S-POINT", "1"), ("K0-MOVES", "1"), ("HOME-ALL", "1"), ("DWELL-SECONDS", "1"), ("FEED-INCREMENTS", "1"), ("PECK-IJK", "1"),

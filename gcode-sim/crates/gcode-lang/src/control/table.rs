@@ -213,7 +213,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("PRT", "6001#1: DPRNT omits the blanks before a number", omits_print_blanks),
     switch!("PRINT-EXPANDS", "DPRNT prints all digits of a number, also beyond its format", print_expands),
     switch!("PRINT-NEEDS-POPEN", "DPRNT and BPRNT without POPEN raise an alarm", print_needs_open),
-    whole!("PRINT-DIGITS", "the most digits that DPRNT's format allows", 1, 15, |s, v| s.print_digits = v),
+    whole!("PRINT-DIGITS", "the most digits that DPRNT's format allows", 1, 18, |s, v| s.print_digits = v),
     switch!("ODI", "5004#2, setting 40 of a Haas: the offsets of D are diameters", |s, on| s.offsets_are_diameters = Some(on)),
     switch!("OFH", "5001#2: the offset of G45 to G48 is that of H, not of D", tool_offset_is_h),
     switch!("EVR", "5001#4: a changed offset of D applies from the next block", applies_radius_at_once),

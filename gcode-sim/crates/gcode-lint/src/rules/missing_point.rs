@@ -23,6 +23,9 @@ pub(super) static RULE: Rule = Rule::new(
 /// Number of increments from which a peck or a dwell may be intended: many programs write `G4 X500`.
 const MIN_INTENDED_INCREMENTS: u64 = 100;
 
+/// Feed in mm or inch a minute from which a number of increments may be intended.
+const MIN_INTENDED_FEED: f64 = 1.0;
+
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let settings = context.settings;
     if settings.uses_calculator_input || counts_in_increments(unit, settings) {
@@ -43,6 +46,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             let is_peck = word.letter == b'Q' && words.call().is_none() && !codes.mills_pocket();
             let is_count = is_peck || codes.measured == Measured::Seconds;
             if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
+                continue;
+            }
+            if word.letter == b'F' && codes.value(word.letter, number, settings, is_inch) >= MIN_INTENDED_FEED {
                 continue;
             }
             let written = spelled(word.letter, number);
@@ -154,6 +160,8 @@ impl<'w> BlockCodes<'w> {
                     |effect: &Effect| matches!(effect, Effect::Cycle(Some(cycle)) if cycle.uses_q());
                 self.mills_pocket() || self.has(is_peck)
             }
+            // Setting 77 of a Haas.
+            (Measured::AsInMove | Measured::Axes, b'F') => settings.feed_in_increments,
             // J of a tapping cycle of a Haas multiplies the speed of the retract.
             (Measured::AsInMove, b'J') if self.taps() => false,
             (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => true,
@@ -164,21 +172,30 @@ impl<'w> BlockCodes<'w> {
 
     /// Returns the value of a number with its unit, `0.003 mm`.
     fn meaning(&self, letter: u8, number: Decimal, settings: &Settings, inch: bool) -> String {
-        let is_angle = match letter {
-            b'A' | b'B' | b'C' => true,
-            letter => self.rows.iter().any(|row| row.facts.words.angles.has(letter)),
-        };
-        let is_dwell = self.measured == Measured::Seconds;
-        let finer = if inch && !is_angle && !is_dwell { 10.0 } else { 1.0 };
-        let per_unit = settings.increment.per_unit() * finer;
         let unit = match () {
             () if self.words.call().is_some() => "for the macro",
-            () if is_dwell => "seconds",
-            () if is_angle => "degrees",
+            () if self.measured == Measured::Seconds => "seconds",
+            () if self.is_angle(letter) => "degrees",
+            () if letter == b'F' && inch => "inch/min",
+            () if letter == b'F' => "mm/min",
             () if inch => "inch",
             () => "mm",
         };
-        format!("{} {unit}", number.value() / per_unit)
+        format!("{} {unit}", self.value(letter, number, settings, inch))
+    }
+
+    /// Returns the value of a number in its unit.
+    fn value(&self, letter: u8, number: Decimal, settings: &Settings, inch: bool) -> f64 {
+        let is_dwell = self.measured == Measured::Seconds;
+        let finer = if inch && !self.is_angle(letter) && !is_dwell { 10.0 } else { 1.0 };
+        number.value() / (settings.increment.per_unit() * finer)
+    }
+
+    fn is_angle(&self, letter: u8) -> bool {
+        match letter {
+            b'A' | b'B' | b'C' => true,
+            letter => self.rows.iter().any(|row| row.facts.words.angles.has(letter)),
+        }
     }
 }
 
@@ -218,6 +235,23 @@ mod tests {
             found,
             ["Z-3 is -0.003 mm", "X2 is 0.002 seconds", "B90 is 0.09 degrees", "A5 is 0.005 for the macro"]
         );
+    }
+
+    /// Setting 77 of a Haas: F10 is 0.001 inch/min. From 1 inch or mm a minute on the increments may be meant.
+    #[test]
+    fn a_feed_of_a_haas_without_a_point_is_reported_below_one_unit_a_minute() {
+        let messages = |text: &str| {
+            let mut settings = Settings::default();
+            settings.apply_dialect(gcode_lang::control::Dialect::HaasNgc);
+            let found = check("O1.nc", text.as_bytes(), &settings, &mut NoLibrary).findings;
+            let of_rule = found.into_iter().filter(|finding| finding.code() == "missing-point");
+            of_rule.map(|finding| finding.message).collect::<Vec<_>>()
+        };
+        assert_eq!(messages("O1\nG20\nG1 X1.5 F10\nM30\n"), ["F10 is 0.001 inch/min"]);
+        assert_eq!(messages("O1\nG21\nG1 X1.5 F999\nM30\n"), ["F999 is 0.999 mm/min"]);
+        assert_eq!(messages("O1\nG21\nG1 X1.5 F1000\nX2.5 F10.\nM30\n"), [""; 0]);
+        assert_eq!(messages("O1\nG20\nG1 X1.5 F10000\nX2.5 F#1\nM30\n"), [""; 0]);
+        assert_eq!(lines(&RULE, "O1\nG1 X1.5 F10\nM30\n"), NOWHERE, "a Fanuc");
     }
 
     #[test]

@@ -31,7 +31,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         let alarm = planner.certain_alarm(words, unit.op(block).span, modes.in_force());
         if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node, words)) {
             let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
-            found.push(if has_builder_code(context, words) {
+            // Older controls, and others by FCV (0001#1), repeat a cycle L times.
+            let is_repeat = matches!(alarm.node, Alarm::ImproperAddress { letter: 'L' });
+            found.push(if is_repeat || has_builder_code(context, words) {
                 context.unless_optional(finding)
             } else {
                 finding

@@ -67,6 +67,7 @@ fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String,
             let fault = match m_codes::find(code, settings.codes) {
                 Some(MCodeEffect::NotSimulated) => "is not simulated",
                 Some(_) => return None,
+                None if m_codes::is_auxiliary(code, settings.codes) => return None,
                 None if settings.codes == Dialect::HaasNgc => "is not simulated: its effect is unknown",
                 None => "is a code of the machine builder: its effect is unknown",
             };

@@ -1,7 +1,8 @@
 //! Rule: blocks that are never reached: after M30, M99, GOTO or #3000, without a jump to them.
-use gcode_lang::program::Statement;
+use gcode_lang::program::{LoweredWord, Statement, m_codes};
 
 use crate::control_flow::raises_alarm;
+use crate::literal;
 use crate::prelude::*;
 
 pub(super) static RULE: Rule =
@@ -17,7 +18,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             continue;
         }
         let end = (block..ops.len()).find(|next| unit.is_reached[*next]).unwrap_or(ops.len());
-        // Comments and numbers alone have no effect, nor has an end or a jump after an end or an alarm; an
+        // Comments and numbers alone have no effect, nor has an end, a stop or a jump after an end or an alarm; an
         // unreachable alarm has its own rule.
         let missed: Vec<_> = (block..end).filter(|b| !is_harmless(unit, *b)).collect();
         if let (Some(first), Some(last)) = (missed.first(), missed.last())
@@ -54,7 +55,13 @@ fn is_harmless(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     let kind = unit.op(block).kind();
     match kind {
         OpKind::Empty => true,
-        OpKind::Words(words) => unit.flow.block_successors[block].is_exit && words.list.len() <= 1,
+        OpKind::Words(words) => {
+            let stops = |word: &LoweredWord| {
+                word.letter == b'M' && literal::word_count(word).is_some_and(m_codes::ends_or_stops)
+            };
+            words.list.len() <= 1
+                && (unit.flow.block_successors[block].is_exit || words.list.iter().any(stops))
+        }
         OpKind::Statement(Statement::Goto(_)) => true,
         // A loop that is always left by a jump still requires its END.
         OpKind::Statement(Statement::End { start, .. }) => unit.is_reached[*start],
@@ -81,6 +88,8 @@ mod tests {
     #[test]
     fn an_end_after_an_alarm_is_accepted() {
         assert_eq!(lines(&RULE, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\n#3000=1(NO)\nM00\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\n#3000=1(NO)\nM00 X1.\nM30\n"), [3]);
         assert_eq!(lines(&RULE, "O1\n#3000=1(NO)\nG0 X1.\nM30\n"), [3]);
         assert_eq!(lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 8\nN7 #3000=1(NO)\nGOTO 7\nN8 M30\n"), NOWHERE);
         let left = "O1\nN3 WHILE[#500 LT 3]DO1\n#500=#500+1\nGOTO 3\nEND1\nM30\n";
