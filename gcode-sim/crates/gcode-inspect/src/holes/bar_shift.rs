@@ -61,7 +61,10 @@ impl HoleExtractor<'_> {
             Some(home) if split(&home).1 <= TOUCH_DEPTH => self.bar_shift.next = Some((None, event.block)),
             Some(_) => self.bar_shift.home = None,
             None if is_on_line => self.bar_shift.home = Some(*from),
-            None if along <= TOUCH_DEPTH && across <= MAX_BAR_SHIFT => {
+            None if along <= TOUCH_DEPTH
+                && across <= MAX_BAR_SHIFT
+                && self.tool_radius().is_none_or(|radius| across < radius) =>
+            {
                 self.bar_shift.next = Some((Some(*from), event.block));
             }
             None => {}

@@ -20,12 +20,23 @@ pub struct PassCut {
     pub direction: SpindleDirection,
     /// True if the spindle reverses in the hole, as it does for a tap.
     pub is_tapping: bool,
+    /// Deepest motion of a tap out of its thread whose feed a revolution is not that of the feed in; `None` if all are alike.
+    pub uneven_retract: Option<TapRetract>,
     /// Run of rigid tapping: in one run the spindle keeps its angle at each height; 0 outside.
     pub rigid_run: u32,
     /// Figures of a mill's circle; `None` for a stroke.
     pub milled: Option<MilledCut>,
     /// Place among all passes of holes, in the order of the program.
     pub order: usize,
+}
+
+/// Motion of a tap out of its thread.
+#[derive(Clone, Copy, Debug)]
+pub struct TapRetract {
+    /// Point at which it begins, in the part's frame.
+    pub from: Point3<f64>,
+    /// Feed, and the speed of the spindle; `None` for a rapid.
+    pub feed: Option<(MmPerMin, Rpm)>,
 }
 
 /// Figures of a circle that a mill cuts, mm.
@@ -62,8 +73,18 @@ impl PassCut {
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
         let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);
-        let (feed, is_tapping, rigid_run) = (None, false, 0);
-        Self { start, bottom, feed, speed, direction, is_tapping, rigid_run, milled: None, order: 0 }
+        Self {
+            start,
+            bottom,
+            feed: None,
+            speed,
+            direction,
+            is_tapping: false,
+            uneven_retract: None,
+            rigid_run: 0,
+            milled: None,
+            order: 0,
+        }
     }
 }
 

@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent, widen};
-use super::drill_pass::{DrillPass, PassCut};
+use super::drill_pass::{DrillPass, PassCut, TapRetract};
 use super::{HoleExtractor, MotionKind};
 use crate::machine::TOUCH_DEPTH;
 use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
@@ -12,6 +12,9 @@ use gcode_lang::units::MmPerMin;
 
 /// Least additional depth of a stroke that cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
+
+/// Largest relative deviation of a thread's feed a revolution from its pitch: rounding of F.
+pub(crate) const PITCH_TOLERANCE: f64 = 0.005;
 
 /// Largest shift of a boring bar off the wall, mm.
 pub(super) const MAX_BAR_SHIFT: f64 = 5.0;
@@ -69,6 +72,8 @@ pub(super) struct CuttingLine {
     pub is_fed_stopped: bool,
     /// True if the spindle has reversed after the last feed that cuts.
     pub is_tapping: bool,
+    /// Deepest motion out of the hole, after the reversal, at another feed a revolution than that of the last feed that cuts.
+    uneven_retract: Option<TapRetract>,
     /// Largest change of the spindle while the tool was in the hole.
     pub spindle: SpindleInHole,
     /// Deepest point of the finished strokes.
@@ -147,6 +152,7 @@ impl CuttingLine {
             pecks: PeckExtent::default(),
             is_fed_stopped: false,
             is_tapping: false,
+            uneven_retract: None,
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
@@ -163,6 +169,7 @@ impl CuttingLine {
         self.is_fed_stopped |= state.spindle_direction == SpindleDirection::Off;
         self.cutting_state = state;
         self.is_tapping = false;
+        self.uneven_retract = None;
         let [min, max] = self.feed_range.unwrap_or([feed, feed]);
         self.last_feed = Some(feed);
         let own = [(feed, state.speed); 2];
@@ -170,6 +177,19 @@ impl CuttingLine {
             self.extremes = Some(self.extremes.map_or(own, |all| widen(all, own)));
         }
         self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
+    }
+
+    /// Records a motion out of the hole of a tap, by its feed and speed; a rapid has none.
+    pub(super) fn record_retract(&mut self, from: &Point3<f64>, feed: Option<FeedAtSpeed>) {
+        let Some(into) = self.last_feed.filter(|_| self.is_tapping) else { return };
+        let (into, speed) =
+            (into.0 / self.cutting_state.speed.0, |(feed, speed): FeedAtSpeed| feed.0 / speed.0);
+        let is_even = feed.map(speed).is_some_and(|out| (out - into).abs() <= PITCH_TOLERANCE * into);
+        let is_deepest =
+            self.uneven_retract.is_none_or(|known| self.depth_of(&known.from) < self.depth_of(from));
+        if !is_even && is_deepest {
+            self.uneven_retract = Some(TapRetract { from: *from, feed });
+        }
     }
 
     /// Returns the slowest and the fastest feed that cuts, and those that cut least and most in a revolution with their speeds.
@@ -237,13 +257,16 @@ impl CuttingLine {
     }
 
     /// Applies a rapid with the spindle stopped that shifts a boring bar perpendicular to the line, off the wall or back
-    /// (G76). Returns false for other rapids.
-    pub(super) fn try_bar_shift(&mut self, to: &Point3<f64>) -> bool {
+    /// (G76), by less than its radius: the bar stands in the wall else. Returns false for other rapids.
+    pub(super) fn try_bar_shift(&mut self, to: &Point3<f64>, radius: Option<f64>) -> bool {
         let depth = self.depth_of(to);
         let aside = to - self.start + self.out.into_inner() * depth;
         let is_square = (depth - self.depth).abs() <= 2.0 * self.half_increment;
-        let is_shift =
-            is_square && self.is_below_start() && self.is_off_line(to) && aside.norm() <= MAX_BAR_SHIFT;
+        let is_shift = is_square
+            && self.is_below_start()
+            && self.is_off_line(to)
+            && aside.norm() <= MAX_BAR_SHIFT
+            && radius.is_none_or(|radius| aside.norm() < radius);
         if is_shift {
             self.bar_shift = aside;
         }
@@ -391,6 +414,7 @@ impl CuttingLine {
                 speed: self.cutting_state.speed,
                 direction: self.cutting_state.spindle_direction,
                 is_tapping: self.is_tapping,
+                uneven_retract: self.uneven_retract,
                 rigid_run: end.rigid_run,
                 milled: None,
                 order: 0,

@@ -3,7 +3,7 @@ use nalgebra::Point3;
 
 use super::line::ToolExit;
 use super::{HoleExtractor, MotionKind};
-use gcode_lang::motion::Event;
+use gcode_lang::motion::{Event, EventKind};
 
 impl HoleExtractor<'_> {
     /// Follows a straight motion from `from` along the current line. Returns the point from which the tool moved freely;
@@ -25,7 +25,7 @@ impl HoleExtractor<'_> {
             return Some(from);
         }
         let may_be_shifted = kind == MotionKind::Rapid && self.may_be_shifted();
-        if may_be_shifted && line.is_inward() && line.try_bar_shift(&tip) {
+        if may_be_shifted && line.is_inward() && line.try_bar_shift(&tip, self.tool_radius()) {
             self.current_line = Some(line);
             return None;
         }
@@ -35,6 +35,13 @@ impl HoleExtractor<'_> {
                 let (before, after) = (line.depth_of(&from), line.depth_of(&tip));
                 let is_beyond = kind == MotionKind::Rapid && after < 0.0 && after < before;
                 let mut free_from = is_beyond.then_some(if before > 0.0 { line.start } else { from });
+                if after < before {
+                    let feed = match event.kind {
+                        EventKind::Feed { rate, .. } => Some((*rate, self.cutting_state.speed)),
+                        _ => None,
+                    };
+                    line.record_retract(&from, feed);
+                }
                 let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) && !line.is_above_cut(&tip) {

@@ -48,7 +48,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
-            if word.letter == b'F' && codes.value(word.letter, number, settings, is_inch) >= MIN_INTENDED_FEED {
+            if word.letter == b'F' && codes.value(word.letter, number, settings, is_inch) >= MIN_INTENDED_FEED
+            {
                 continue;
             }
             let written = spelled(word.letter, number);

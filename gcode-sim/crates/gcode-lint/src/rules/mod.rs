@@ -111,7 +111,8 @@ fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagno
     let mut found = thread::scope(|scope| {
         let others: Vec<_> = (1..threads).map(|_| scope.spawn(find_rest)).collect();
         let own = find_rest();
-        let joined = others.into_iter().map(|other| other.join().unwrap_or_else(|e| std::panic::resume_unwind(e)));
+        let joined =
+            others.into_iter().map(|other| other.join().unwrap_or_else(|e| std::panic::resume_unwind(e)));
         own.into_iter().chain(joined.flatten()).collect::<Vec<_>>()
     });
     found.sort_by_key(|(place, _)| *place);

@@ -27,6 +27,7 @@ mod signs;
 mod start_unknown;
 pub(super) mod stock;
 mod stopped;
+mod tap_motion;
 mod threads;
 mod through;
 mod tool_idle;

@@ -1,17 +1,15 @@
 //! Threads: the hole is drilled deeper than its thread, before it, and no wider than the thread leaves metal; feed and speed
 //! give the pitch, and the spindle the hand.
 use super::features::{Judgement, ShapeGap};
+use super::tap_motion;
 use super::*;
 use crate::findings::{FEATURE_DEPTH, HOLE_ROUNDNESS, TAP_DRILL, TAP_HAND, TAP_PITCH};
-use crate::holes::Helix;
+use crate::holes::{Helix, PITCH_TOLERANCE};
 use crate::machine::PointShape;
 use crate::verify::hole_cuts::{Cut, assign};
 use crate::verify::outline::{CutShape, Outline};
 use gcode_lang::motion::SpindleDirection;
 use gcode_part::{Feature, FeatureKind, Hand, NOISE, POINT_LENGTH};
-
-/// Largest relative deviation of the pitch: rounding of F.
-const PITCH_TOLERANCE: f64 = 0.005;
 
 /// Largest deviation of a milled turn from the pitch, mm.
 const LEAD_TOLERANCE: f64 = 1e-3;
@@ -20,7 +18,7 @@ const LEAD_TOLERANCE: f64 = 1e-3;
 const MAX_STEP: f64 = 0.05;
 
 /// Depth of an internal thread by its pitch, in diameter (ISO 724).
-const THREAD_DEPTH: f64 = 1.082_532;
+pub(super) const THREAD_DEPTH: f64 = 1.082_532;
 
 /// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
@@ -54,6 +52,8 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         let turns = turns(judged, feature, cut);
         let faults = [
             turns.iter().find_map(|cut| pitch(id, feature, cut)),
+            tap_motion::uneven_retract(judged, cut),
+            tap_motion::narrow(judged, feature, cut),
             turns.iter().find_map(|cut| hand(id, feature, cut)),
             turns.iter().find_map(|cut| tapered(id, cut, width)),
         ];
@@ -199,7 +199,7 @@ fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize, slack
 }
 
 /// Part of a thread's depth from which on a cut after the tap belongs to the hole for the thread, and not to its mouth.
-const CORE_SHARE: f64 = 0.75;
+pub(super) const CORE_SHARE: f64 = 0.75;
 
 /// Reports a thread in a hole that is drilled to its width only afterwards.
 fn drilled_after(

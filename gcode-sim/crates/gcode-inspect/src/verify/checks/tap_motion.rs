@@ -1,0 +1,67 @@
+//! Taps: they leave their thread as they came, at its pitch, and the hole before them is wide enough.
+use super::features::Judgement;
+use super::threads::{CORE_SHARE, THREAD_DEPTH};
+use super::*;
+use crate::findings::{TAP_DRILL, TAP_PITCH};
+use crate::verify::hole_cuts::Cut;
+use gcode_part::{Feature, NOISE};
+
+/// Depth of a Whitworth thread by its pitch, in diameter (ISO 228-1): that of a metric thread, ISO 724, is less.
+const WHITWORTH_DEPTH: f64 = 1.280_654;
+
+/// Largest depth of a thread by its pitch, in diameter: the small end of a taper pipe thread.
+const MAX_THREAD_DEPTH: f64 = 2.0;
+
+/// Reports a tap that leaves its thread by a rapid, or at another feed a revolution than it came in.
+pub(super) fn uneven_retract(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<Diagnostic> {
+    let retract = cut.pass.cut.uneven_retract?;
+    let Hole { entry, axis, .. } = judged.nominal;
+    let depth = (Point3::from(*entry) - retract.from).dot(&Vector3::from(*axis));
+    // Above the entry it is free.
+    if depth <= NOISE {
+        return None;
+    }
+    let how = match retract.feed {
+        None => "in rapid".to_owned(),
+        Some((feed, speed)) => {
+            format!("at {:.4} mm a revolution ({} mm/min at S{})", feed.0 / speed.0, feed.0, speed.0)
+        }
+    };
+    let message = format!(
+        "hole {}: {} leaves its thread {how}, not as it came in: it tears the thread",
+        judged.id,
+        cut.name()
+    );
+    let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
+    Some(finding.help("feed out at the feed and the speed of the feed in, or tap with G84 or G74"))
+}
+
+/// Reports a tap in a hole that is narrower than the thread's own core: a warning where it may be that of a taper pipe thread.
+pub(super) fn narrow(judged: &Judgement<'_>, feature: &Feature, tap: &Cut<'_>) -> Option<Diagnostic> {
+    let pitch = feature.pitch.filter(|_| tap.thread.is_none())?;
+    // A wider drill behind the tap has its own finding.
+    let drilled = judged.near.iter().filter(|cut| !cut.is_thread() && tap.tip * CORE_SHARE <= cut.tip);
+    let widths: Option<Vec<f64>> = drilled.map(|cut| cut.pass.diameter).collect();
+    let widest = widths?.into_iter().reduce(f64::max)?;
+    let missing = |depth: f64| feature.diameter - depth * pitch - widest;
+    let tolerance = judged.comparison.tolerances.diameter;
+    if !exceeds(missing(WHITWORTH_DEPTH), tolerance) {
+        return None;
+    }
+    let message = format!(
+        "hole {}: {} taps where Φ{widest} is drilled: the core of Φ{}×{pitch} is {:.3} mm wider",
+        judged.id,
+        tap.name(),
+        feature.diameter,
+        feature.diameter - THREAD_DEPTH * pitch - widest
+    );
+    let finding = Diagnostic::new(&TAP_DRILL, message).with_backtrace(tap.pass.backtrace.clone());
+    let help = "drill the hole for the thread wider: the tap breaks in it";
+    Some(match exceeds(missing(MAX_THREAD_DEPTH), tolerance) {
+        true => finding.help(help),
+        false => finding
+            .with_severity(Severity::Warning)
+            .note("only a taper pipe thread has so narrow a hole")
+            .help(help),
+    })
+}
