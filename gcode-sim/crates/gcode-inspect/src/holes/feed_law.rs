@@ -91,7 +91,21 @@ impl HoleExtractor<'_> {
                 rim(&axis, &along, full.radius()).into_iter().any(|offset| is_cut(offset + above))
             })
         };
-        Some(cuts || axis.is_some_and(cuts_at_rim))
+        Some(cuts || axis.is_some_and(|axis| cuts_at_rim(axis) || self.cuts_with_side(&[*from, *to], &axis)))
+    }
+
+    /// Returns true if the side of the tool cuts metal that is known, deeper than it fits in a hole of its diameter: a countersink in
+    /// a hole, or a mill whose end is below the part.
+    fn cuts_with_side(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> bool {
+        if self.pose.axis.is_none() || self.tool_radius().is_none() {
+            return false;
+        }
+        let cutters = self.tool_body.iter().filter(|part| part.is_cutter);
+        let narrower = cutters.map(|part| ToolPart { taper: part.taper.grown(-FIT), ..*part });
+        narrower.filter(|part| self.may_cut(part, travel, axis)).any(|part| {
+            let found = contact(&part, axis, &TipPaths::line(travel), &self.metal, Judged::Uncut(None));
+            matches!(found, Contact::Metal(_))
+        })
     }
 
     /// Removes the metal that a feed through points sweeps, and reports a gouge where the positions of the axes are known.
