@@ -49,6 +49,8 @@ pub struct HoleExtraction {
     pub(crate) covered_entries: Vec<usize>,
     /// Number of strokes of mills that count as milling.
     pub(crate) milled_strokes: u64,
+    /// First and last block of each run of blocks that mill stated pockets.
+    pub(crate) milled_blocks: Vec<[Span; 2]>,
     /// Ends of the first feeds along the tool that go beside the part.
     pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
     /// Warnings about drilling cycles that cut nothing.

@@ -27,6 +27,7 @@ mod low_rapid;
 mod machine_requests;
 mod metal;
 mod milled;
+mod milled_blocks;
 mod milling;
 mod near_metal;
 pub(crate) mod per_block;
@@ -79,6 +80,7 @@ use self::line::CuttingLine;
 use self::low_rapid::LowRapid;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
+use self::milled_blocks::MilledBlocks;
 use self::milling::MillingRates;
 use self::per_block::Findings;
 use self::profile::Profile;
@@ -149,6 +151,8 @@ pub struct HoleExtractor<'m> {
     close_motions: CloseMotions,
     cut_conditions: CutConditionsByBlock,
     milling: MillingRates,
+    /// Blocks that mill stated pockets.
+    milled_blocks: MilledBlocks,
     length_mismatches: Vec<LengthMismatch>,
     /// Tools that have had a length offset.
     offset_tools: BTreeSet<Option<u32>>,
@@ -215,6 +219,7 @@ impl<'m> HoleExtractor<'m> {
             close_motions: CloseMotions::default(),
             cut_conditions: CutConditionsByBlock::default(),
             milling: MillingRates::default(),
+            milled_blocks: MilledBlocks::default(),
             length_mismatches: Vec::new(),
             offset_tools: BTreeSet::new(),
             probe_count: 0,
@@ -313,6 +318,7 @@ impl<'m> HoleExtractor<'m> {
             unsized_mills: self.unsized_mills,
             covered_entries,
             milled_strokes,
+            milled_blocks: self.milled_blocks.finish(),
             feeds_in_air: self.feeds_in_air,
             cycles_in_air: self.cycles_in_air.finish(),
             is_removal_cut_short: self.metal.removed.is_full,
@@ -376,7 +382,7 @@ impl<'m> HoleExtractor<'m> {
                     if !is_rotating {
                         self.remove_by_arc(event, &travel, is_known);
                     }
-                    let is_allowed = is_rotating && self.remove_while_turning(&travel, is_known);
+                    let is_allowed = is_rotating && self.remove_while_turning(event, &travel, is_known);
                     if !is_allowed && !self.check_curved(event, &travel, kind) && is_rotating {
                         self.check_turning_feed(event, (&from, to));
                     }
@@ -454,6 +460,7 @@ impl EventSink for HoleExtractor<'_> {
                 self.report_low_rapid();
                 self.check_tool_known(event, *number);
                 self.begin_change(event);
+                self.milled_blocks.end_tool();
                 self.update_setup(|setup| setup.tool = Some(*number));
                 self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
             }
