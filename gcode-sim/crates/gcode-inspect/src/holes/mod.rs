@@ -59,7 +59,7 @@ pub use drill_pass::{Helix, MilledCut, PassCut};
 pub use extraction::HoleExtraction;
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
-pub(crate) use length_mismatch::LengthMismatch;
+pub(crate) use length_mismatch::{LengthMismatch, OffsetOrigin};
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedMotions;
 pub(crate) use swept_tool::ring;
@@ -156,6 +156,10 @@ pub struct HoleExtractor<'m> {
     length_mismatches: Vec<LengthMismatch>,
     /// Tools that have had a length offset.
     offset_tools: BTreeSet<Option<u32>>,
+    /// Block that puts the length offset in force; `None` without an offset.
+    offset_origin: Option<OffsetOrigin>,
+    /// A probing move without a signal has left the tool in the metal.
+    is_probe_in_metal: bool,
     /// Number of probing moves.
     probe_count: u64,
     search_budget: SearchBudget,
@@ -163,8 +167,9 @@ pub struct HoleExtractor<'m> {
     unsearched_rapids: UnsearchedMotions,
     /// Feeds beside which the metal is not compared with all of the tool.
     unsearched_feeds: UnsearchedMotions,
-    /// Probing moves through metal.
+    /// Probing moves through metal, up to a signal and without one.
     probes_in_metal: UnsearchedMotions,
+    probes_without_signal: UnsearchedMotions,
     /// The search for the current feed was given up.
     is_feed_unsearched: Cell<bool>,
     bar_shift: BarShift,
@@ -222,11 +227,14 @@ impl<'m> HoleExtractor<'m> {
             milled_blocks: MilledBlocks::default(),
             length_mismatches: Vec::new(),
             offset_tools: BTreeSet::new(),
+            offset_origin: None,
+            is_probe_in_metal: false,
             probe_count: 0,
             search_budget: SearchBudget::default(),
             unsearched_rapids: UnsearchedMotions::default(),
             unsearched_feeds: UnsearchedMotions::default(),
             probes_in_metal: UnsearchedMotions::default(),
+            probes_without_signal: UnsearchedMotions::default(),
             is_feed_unsearched: Cell::default(),
             bar_shift: BarShift::default(),
             change_retract: ChangeRetract::default(),
@@ -315,6 +323,7 @@ impl<'m> HoleExtractor<'m> {
             rapids_behind_change: self.change_retract.rapids,
             unsearched_feeds: self.unsearched_feeds,
             probes_in_metal: self.probes_in_metal,
+            probes_without_signal: self.probes_without_signal,
             unsized_mills: self.unsized_mills,
             covered_entries,
             milled_strokes,
@@ -362,6 +371,7 @@ impl<'m> HoleExtractor<'m> {
             }
             kind => kind,
         };
+        let kind = if self.follow_unstopped_probe() { MotionKind::Probe } else { kind };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.change_retract.end();
             self.report_low_rapid();
@@ -462,11 +472,12 @@ impl EventSink for HoleExtractor<'_> {
                 self.begin_change(event);
                 self.milled_blocks.end_tool();
                 self.update_setup(|setup| setup.tool = Some(*number));
+                self.leave_offset();
                 self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
             }
             EventKind::ToolLength { offset, wear, compensation } => {
                 self.update_setup(|setup| (setup.offset, setup.wear) = (*offset, *wear));
-                self.apply_compensation(*compensation);
+                self.apply_compensation(event, *compensation);
             }
             EventKind::Start { at, unknown } => {
                 self.axis_position = *at;

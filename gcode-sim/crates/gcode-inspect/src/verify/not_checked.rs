@@ -120,7 +120,24 @@ pub(super) fn list(
             &extraction.probes_in_metal,
             "what probing moves touch",
             "move",
-            "G31 leads through metal, and the machine file has no [probe]",
+            "G31 leads through metal up to its signal",
+        ),
+        (
+            &extraction.probes_without_signal,
+            match machine.probe {
+                None => "what probing moves touch (no [probe], no --skip)",
+                Some(_) => "what probing moves touch (no [stock], no --skip)",
+            },
+            "move",
+            match machine.probe {
+                None => {
+                    "no signal ends G31 in the metal; give [probe] with the radius of its ball in the machine file, or the \
+                     place of the signal by --skip"
+                }
+                Some(_) => {
+                    "no signal ends G31 in the metal; give [stock], which the probe touches, or the place of the signal by --skip"
+                }
+            },
         ),
     ];
     for (motions, what, kind, reason) in unsearched {
