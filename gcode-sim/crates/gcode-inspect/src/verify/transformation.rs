@@ -1,7 +1,8 @@
 //! One mistake that moves all holes: the unit, a sign, exchanged axes, a wrong zero, a wrong angle, or G90 for G91.
 //!
 //! Each candidate maps the drilled axes back to where they were meant. The one that puts most nominal holes in their zones
-//! explains the pattern if these are nearly all, and few were there before.
+//! explains the pattern if these are nearly all, and few were there before. Where most are in position, it may explain the
+//! extra holes, as of a tool whose points count from another zero.
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::displacement::rotation_error;
@@ -56,6 +57,8 @@ pub(super) enum Mistake {
 #[derive(Clone, Debug)]
 pub(super) struct Transformation {
     pub mistake: Mistake,
+    /// Number of extra holes, if it is only these that it moves.
+    pub extra: Option<usize>,
     /// Nominal holes in position without it, and the indices of the drilled ones; `None` for a feed beside the part.
     pub explained: Vec<(usize, Option<usize>)>,
     /// Block of the first hole that it moves.
@@ -67,6 +70,8 @@ pub(super) struct Transformation {
 struct Line {
     bottom: Point3<f64>,
     axis: Unit<Vector3<f64>>,
+    /// Place among all lines.
+    place: usize,
     index: Option<usize>,
     axis_position: Option<Position>,
 }
@@ -78,22 +83,31 @@ impl Transformation {
         machine: &Machine,
         in_air: &[(Point3<f64>, Backtrace)],
     ) -> Option<Self> {
-        let nominal = comparison.nominal;
-        let (count, lines) = (nominal.len(), lines(comparison, in_air)?);
+        let (count, lines) = (comparison.nominal.len(), lines(comparison, in_air)?);
+        if comparison.pattern.is_some() || comparison.is_all_in_place() || MAX_PAIRS < count * lines.len() {
+            return None;
+        }
         let before = comparison.pairs.iter().filter(|pair| comparison.is_in_place(pair)).count();
-        let is_open = MIN_HOLES <= count && 2 * before <= count && comparison.pattern.is_none();
-        if !is_open || lines.len() < MIN_HOLES || MAX_PAIRS < count * lines.len() {
+        let is_open = 2 * before <= count;
+        // Holes on the axis of a nominal one are no displaced ones.
+        let is_displaced = |index: &&usize| comparison.nominal_on_line_of(**index).is_none();
+        let extra = comparison.extra.iter().filter(is_displaced).copied();
+        let subset: Vec<usize> = if is_open { (0..lines.len()).collect() } else { extra.collect() };
+        let (before, count) = if is_open { (before, count) } else { (0, subset.len()) };
+        if count < MIN_HOLES || subset.len() < MIN_HOLES {
             return None;
         }
         let search = Search { comparison, machine, lines: &lines };
         let mut best: Option<(Mistake, Vec<(usize, usize)>)> = None;
-        let mut consider = |(mistake, mapped): (Mistake, Vec<Line>)| {
-            if !search.fits_sample(&mapped) {
+        let mut consider = |(mistake, mut mapped): (Mistake, Vec<Line>)| {
+            mapped.retain(|line| subset.binary_search(&line.place).is_ok());
+            if is_open && !search.fits_sample(&mapped) {
                 return;
             }
             let matched = search.matched(&mapped);
             let is_better = best.as_ref().is_none_or(|(_, known)| known.len() < matched.len());
-            if is_better && MIN_AGREEING_SHARE * count as f64 <= matched.len() as f64 && before + 2 <= matched.len() {
+            let is_enough = MIN_AGREEING_SHARE * count as f64 <= matched.len() as f64 && before + 2 <= matched.len();
+            if is_better && is_enough {
                 best = Some((mistake, matched));
             }
         };
@@ -113,7 +127,7 @@ impl Transformation {
             None => in_air[first - comparison.actual.len()].1.clone(),
         };
         let explained = matched.iter().map(|(nominal, line)| (*nominal, lines[*line].index)).collect();
-        Some(Self { mistake, explained, backtrace })
+        Some(Self { mistake, extra: (!is_open).then_some(count), explained, backtrace })
     }
 }
 
@@ -124,10 +138,18 @@ fn lines(comparison: &Comparison<'_>, in_air: &[(Point3<f64>, Backtrace)]) -> Op
     let drilled = comparison.actual.iter().enumerate().map(|(index, hole)| Line {
         bottom: hole.bottom(),
         axis: hole.axis,
+        place: index,
         index: Some(index),
         axis_position: Some(hole.axis_position),
     });
-    let beside = in_air.iter().map(|(end, _)| Line { bottom: *end, axis: out, index: None, axis_position: None });
+    let count = comparison.actual.len();
+    let beside = in_air.iter().enumerate().map(|(index, (end, _))| Line {
+        bottom: *end,
+        axis: out,
+        place: count + index,
+        index: None,
+        axis_position: None,
+    });
     Some(drilled.chain(beside).collect())
 }
 
@@ -154,13 +176,13 @@ impl Search<'_> {
         size < 2 * found
     }
 
-    /// Returns the nominal holes in position, each with a line of its own.
+    /// Returns the nominal holes in position, each with the place of a line of its own.
     fn matched(&self, mapped: &[Line]) -> Vec<(usize, usize)> {
         let mut is_taken = vec![false; mapped.len()];
         let find = |nominal: usize| {
             let line = (0..mapped.len()).find(|line| !is_taken[*line] && self.is_at(nominal, &mapped[*line]))?;
             is_taken[line] = true;
-            Some((nominal, line))
+            Some((nominal, mapped[line].place))
         };
         (0..self.comparison.nominal.len()).filter_map(find).collect()
     }

@@ -67,7 +67,10 @@ fn fold_explained(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) 
             .flat_map(|(nominal, actual)| [Some(Subject::Nominal(*nominal)), actual.map(Subject::Extra)])
             .flatten()
             .collect();
-        return findings.fold(&POSITION_KINDS, |subject| subjects.contains(&subject));
+        let folded = findings.fold(&POSITION_KINDS, |subject| subjects.contains(&subject));
+        // Without the tool of the extra holes the nominal ones are not finished.
+        let unfinished = if transformation.extra.is_some() { &tools::FOLLOWING_KINDS[..] } else { &[] };
+        return folded + findings.fold(unfinished, |subject| subjects.contains(&subject));
     }
     match explained_by_rows::explains(inspection) {
         Some(explains) => findings.fold(&POSITION_KINDS, explains),

@@ -13,7 +13,7 @@ const MIN_HOLES: usize = 3;
 const MAX_NAMED: usize = 8;
 
 /// Findings about a hole that follow from a missing tool.
-const FOLLOWING_KINDS: [&FindingKind; 4] = [&HOLE_DEPTH, &HOLE_DIAMETER, &FEATURE_MISSING, &HOLE_NOT_THROUGH];
+pub(super) const FOLLOWING_KINDS: [&FindingKind; 4] = [&HOLE_DEPTH, &HOLE_DIAMETER, &FEATURE_MISSING, &HOLE_NOT_THROUGH];
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;

@@ -8,10 +8,14 @@ const MIN_SHIFT: f64 = 0.0005;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let HoleInspection { comparison, machine, .. } = inspection;
-    let Some(Transformation { mistake, explained, backtrace }) = &inspection.transformation else { return };
+    let Some(Transformation { mistake, extra, explained, backtrace }) = &inspection.transformation else {
+        return;
+    };
     let (summary, without, help) = describe(mistake, machine);
-    let (count, all) = (explained.len(), comparison.nominal.len());
-    let message = format!("{summary}: {without} {count} of {all} holes are in position");
+    let (count, all) = (explained.len(), extra.unwrap_or(comparison.nominal.len()));
+    let holes = if extra.is_some() { "extra holes" } else { "holes" };
+    let summary = if extra.is_some() { format!("{all} extra holes: {summary}") } else { summary };
+    let message = format!("{summary}; {without} {count} of {all} {holes} are in position");
     let finding = Diagnostic::new(&HOLES_TRANSFORMED, message).help(help);
     findings.add_summed(Subject::Whole, locate_at_call(finding, backtrace), summary);
 }
@@ -23,12 +27,12 @@ fn describe(mistake: &Mistake, machine: &Machine) -> (String, String, String) {
         Mistake::MillimetresAsInches => words(
             "the coordinates are 25.4 times too large",
             "read in mm",
-            "the numbers are mm and G20 (inch) is in force: command G21 before the first motion",
+            "the numbers are mm and count as inches (G20, or the unit at power-on): command G21 before the first motion",
         ),
         Mistake::InchesAsMillimetres => words(
             "the coordinates are 25.4 times too small",
             "read in inches",
-            "the numbers are inches and G21 (mm) is in force: command G20 before the first motion",
+            "the numbers are inches and count as mm (G21, or the unit at power-on): command G20 before the first motion",
         ),
         Mistake::Negated(axes) => {
             let names = match axes {
