@@ -297,7 +297,14 @@ impl HoleExtractor<'_> {
         self.check_clamped(backtrace, line.clamp_state);
         if let Some(feeds) = line.cutting_feeds() {
             let origin = self.offset_origin.as_ref();
-            self.cut_conditions.add(backtrace, &line.cutting_state, line.is_tapping, feeds, line.pecks(), origin);
+            self.cut_conditions.add(
+                backtrace,
+                &line.cutting_state,
+                line.is_tapping,
+                feeds,
+                line.pecks(),
+                origin,
+            );
         }
         self.check_spindle(backtrace, line);
         self.check_tool_changed(backtrace, &line.cutting_state);

@@ -42,7 +42,8 @@ impl MilledBlocks {
     }
 
     fn add(&mut self, block: Span) {
-        let follows = |[first, _]: &&mut [Span; 2]| first.source == block.source && first.start <= block.start;
+        let follows =
+            |[first, _]: &&mut [Span; 2]| first.source == block.source && first.start <= block.start;
         let count = self.runs.len();
         match self.runs.last_mut().filter(|_| self.is_last_open).filter(follows) {
             Some([_, last]) => *last = block,
@@ -55,11 +56,7 @@ impl MilledBlocks {
 
 impl HoleExtractor<'_> {
     /// Records the block of a feed that removes metal of a pocket outside the nominal holes.
-    pub(super) fn note_milled_block(
-        &mut self,
-        event: &Event<'_>,
-        path: &[(Line, Unit<Vector3<f64>>)],
-    ) {
+    pub(super) fn note_milled_block(&mut self, event: &Event<'_>, path: &[(Line, Unit<Vector3<f64>>)]) {
         let block = event.block;
         if self.metal.pockets.is_empty() || self.surface.is_none() || self.milled_blocks.has(block) {
             return;

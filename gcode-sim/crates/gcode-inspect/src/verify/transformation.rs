@@ -106,7 +106,8 @@ impl Transformation {
             }
             let matched = search.matched(&mapped);
             let is_better = best.as_ref().is_none_or(|(_, known)| known.len() < matched.len());
-            let is_enough = MIN_AGREEING_SHARE * count as f64 <= matched.len() as f64 && before + 2 <= matched.len();
+            let is_enough =
+                MIN_AGREEING_SHARE * count as f64 <= matched.len() as f64 && before + 2 <= matched.len();
             if is_better && is_enough {
                 best = Some((mistake, matched));
             }
@@ -180,7 +181,8 @@ impl Search<'_> {
     fn matched(&self, mapped: &[Line]) -> Vec<(usize, usize)> {
         let mut is_taken = vec![false; mapped.len()];
         let find = |nominal: usize| {
-            let line = (0..mapped.len()).find(|line| !is_taken[*line] && self.is_at(nominal, &mapped[*line]))?;
+            let line =
+                (0..mapped.len()).find(|line| !is_taken[*line] && self.is_at(nominal, &mapped[*line]))?;
             is_taken[line] = true;
             Some((nominal, mapped[line].place))
         };
@@ -211,7 +213,8 @@ impl Search<'_> {
             (Mistake::Negated([x, y]), map(&by, true))
         };
         let quarter = |degrees: f64| {
-            let by = move |v: Vector3<f64>| Vector3::new(v.y, -v.x, 0.0) * degrees.signum() + Vector3::z() * v.z;
+            let by =
+                move |v: Vector3<f64>| Vector3::new(v.y, -v.x, 0.0) * degrees.signum() + Vector3::z() * v.z;
             (Mistake::Turned(degrees), map(&by, true))
         };
         vec![
@@ -229,7 +232,11 @@ impl Search<'_> {
     }
 
     /// Returns the lines each at a point that follows from it and the line before; those in position stay.
-    fn chain(&self, point: impl Fn(&Point3<f64>, &Point3<f64>) -> Point3<f64>, zero: &Point3<f64>) -> Vec<Line> {
+    fn chain(
+        &self,
+        point: impl Fn(&Point3<f64>, &Point3<f64>) -> Point3<f64>,
+        zero: &Point3<f64>,
+    ) -> Vec<Line> {
         let mut last = *zero;
         let mut is_made = vec![false; self.comparison.nominal.len()];
         let follow = |line: &Line| {
@@ -270,7 +277,8 @@ impl Search<'_> {
         }
         let of_line = |line: &Line| {
             let entry = Deviation::new(first, &line.bottom, &line.axis)?.entry;
-            let by = (entry - Point3::from(first.entry)).map(|part| if part.abs() < 1e-6 { 0.0 } else { part });
+            let by =
+                (entry - Point3::from(first.entry)).map(|part| if part.abs() < 1e-6 { 0.0 } else { part });
             let mapped = self.lines.iter().map(|line| Line { bottom: line.bottom - by, ..line.clone() });
             Some((Mistake::Shifted(by), mapped.collect()))
         };

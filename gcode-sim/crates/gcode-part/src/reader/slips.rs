@@ -97,7 +97,10 @@ fn spoilt_number(value: &str) -> Option<&str> {
 
 /// Returns true for text of a digit and other characters of numbers, or those typed among them.
 fn is_meant_as_number(text: &str) -> bool {
-    let is_of_number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | ' ' | '_' | 'e' | 'E' | 'x' | 'X' | 'o' | 'O');
+    let is_of_number = |c: char| {
+        c.is_ascii_digit()
+            || matches!(c, '+' | '-' | '.' | ',' | ' ' | '_' | 'e' | 'E' | 'x' | 'X' | 'o' | 'O')
+    };
     text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'))
         && text.contains(|c: char| c.is_ascii_digit())
         && text.chars().all(is_of_number)
@@ -174,7 +177,10 @@ fn in_brackets(value: &str) -> Option<String> {
 fn with_quotes(value: &str) -> Option<String> {
     let word = value.trim_matches(['"', '\'']);
     let is_number = word.starts_with(|c: char| c.is_ascii_digit()) && word.contains([' ', '.']);
-    let is_word = !word.is_empty() && !is_number && !is_meant_as_number(word) && !word.contains(['"', '{', '}', '[', ']', '=', ',', '\\']);
+    let is_word = !word.is_empty()
+        && !is_number
+        && !is_meant_as_number(word)
+        && !word.contains(['"', '{', '}', '[', ']', '=', ',', '\\']);
     is_word.then(|| format!("\"{word}\""))
 }
 

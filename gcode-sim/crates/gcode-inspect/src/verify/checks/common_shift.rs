@@ -2,9 +2,8 @@
 use super::transformed::shift_words;
 use super::*;
 use crate::findings::{
-    HOLE_DEPTH, HOLE_EXTRA, HOLE_MISSING, HOLE_POSITION, HOLE_TILTED, HOLE_TWICE, HOLES_ALIKE, HOLES_TRANSFORMED,
-    MIRROR_IMAGE,
-    ROTARY_SIGN, ROW_ANGLE, ROW_GROUP, ROW_PITCH, ROW_SEAM,
+    HOLE_DEPTH, HOLE_EXTRA, HOLE_MISSING, HOLE_POSITION, HOLE_TILTED, HOLE_TWICE, HOLES_ALIKE,
+    HOLES_TRANSFORMED, MIRROR_IMAGE, ROTARY_SIGN, ROW_ANGLE, ROW_GROUP, ROW_PITCH, ROW_SEAM,
 };
 use crate::verify::displacement::{HoleDisplacement, displacements};
 use crate::verify::hole_finding::calls_of;
@@ -195,9 +194,8 @@ fn locate_group(
     members: &BTreeSet<usize>,
     first: usize,
 ) -> Diagnostic {
-    let has_call = |backtrace: &Backtrace, block: Span| {
-        calls_of(backtrace).any(|call| call.calling_block == block)
-    };
+    let has_call =
+        |backtrace: &Backtrace, block: Span| calls_of(backtrace).any(|call| call.calling_block == block);
     let makes_others = |is_in: &dyn Fn(&Backtrace) -> bool| {
         let others = comparison.actual.iter().enumerate().filter(|(index, _)| !members.contains(index));
         others.map(|(_, hole)| &hole.backtrace).any(is_in)

@@ -13,7 +13,8 @@ const MIN_HOLES: usize = 3;
 const MAX_NAMED: usize = 8;
 
 /// Findings about a hole that follow from a missing tool.
-pub(super) const FOLLOWING_KINDS: [&FindingKind; 4] = [&HOLE_DEPTH, &HOLE_DIAMETER, &FEATURE_MISSING, &HOLE_NOT_THROUGH];
+pub(super) const FOLLOWING_KINDS: [&FindingKind; 4] =
+    [&HOLE_DEPTH, &HOLE_DIAMETER, &FEATURE_MISSING, &HOLE_NOT_THROUGH];
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
@@ -61,10 +62,12 @@ fn report_incomplete(
     let follows = |one: &&HoleFinding| FOLLOWING_KINDS.contains(&one.finding.kind) && !one.is_folded;
     let wrong: BTreeSet<Subject> = findings.iter().filter(follows).map(|one| one.subject).collect();
     let mut by_lack: BTreeMap<Vec<u32>, Vec<usize>> = BTreeMap::new();
-    for (nominal, drilled) in group.iter().filter(|(nominal, _)| wrong.contains(&Subject::Nominal(*nominal))) {
+    for (nominal, drilled) in group.iter().filter(|(nominal, _)| wrong.contains(&Subject::Nominal(*nominal)))
+    {
         let own: BTreeSet<u32> = tools(drilled).collect();
         let lacking: Vec<u32> = usual.difference(&own).copied().collect();
-        if !lacking.is_empty() {
+        // Another tool in its place is a wrong tool.
+        if !lacking.is_empty() && own.is_subset(usual) {
             by_lack.entry(lacking).or_default().push(*nominal);
         }
     }
@@ -87,7 +90,9 @@ fn report_incomplete(
         finding.notes.extend(folded_note(folded));
         let makes = |drilled: &DrilledHole| {
             let mut passes = drilled.passes();
-            passes.find(|pass| pass.tool.is_some_and(|tool| lacking.contains(&tool))).map(|pass| pass.backtrace.clone())
+            passes
+                .find(|pass| pass.tool.is_some_and(|tool| lacking.contains(&tool)))
+                .map(|pass| pass.backtrace.clone())
         };
         if let Some(place) = group.iter().find_map(|(_, drilled)| makes(drilled)) {
             finding = locate_at_call(finding, &place);

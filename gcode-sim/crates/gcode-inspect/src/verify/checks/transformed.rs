@@ -22,7 +22,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
 
 /// Returns the mistake in words for the first line of the verdict, what puts the holes in position, and the remedy.
 fn describe(mistake: &Mistake, machine: &Machine) -> (String, String, String) {
-    let words = |summary: &str, without: &str, help: &str| (summary.to_owned(), without.to_owned(), help.to_owned());
+    let words =
+        |summary: &str, without: &str, help: &str| (summary.to_owned(), without.to_owned(), help.to_owned());
     match mistake {
         Mistake::MillimetresAsInches => words(
             "the coordinates are 25.4 times too large",
@@ -46,7 +47,9 @@ fn describe(mistake: &Mistake, machine: &Machine) -> (String, String, String) {
                 "check the signs of the coordinates, and for a mirror image (G51.1) left in force".to_owned(),
             )
         }
-        Mistake::Exchanged => words("x and y are exchanged", "exchanged back", "exchange X and Y in the program"),
+        Mistake::Exchanged => {
+            words("x and y are exchanged", "exchanged back", "exchange X and Y in the program")
+        }
         Mistake::Turned(degrees) => (
             format!("the holes are rotated by {degrees:+.0}° about the work zero"),
             "rotated back".to_owned(),
@@ -55,7 +58,8 @@ fn describe(mistake: &Mistake, machine: &Machine) -> (String, String, String) {
         Mistake::Shifted(by) => (
             format!("the holes are shifted by {}", shift_words(by)),
             "without the shift".to_owned(),
-            "check the work offset (G54 to G59), G52, G92, and the point from which the program counts".to_owned(),
+            "check the work offset (G54 to G59), G52, G92, and the point from which the program counts"
+                .to_owned(),
         ),
         Mistake::Rotated(axis, by) => {
             let letter = machine.axes.letter(*axis);
