@@ -32,6 +32,14 @@ const MAX_FEEDS_IN_AIR: usize = 100;
 const MAX_PARALLEL_COSINE: f64 = 1e-9;
 
 impl HoleExtractor<'_> {
+    /// Ends the current line where the tool leaves it along a curve, or is replaced.
+    pub(super) fn end_line(&mut self, next: Option<MotionKind>) {
+        if let Some(line) = self.current_line.take() {
+            let exit = line.curved_exit();
+            self.report_line(line, exit, next);
+        }
+    }
+
     /// Reports a line that the tool has left, and keeps its passes if it makes a hole.
     ///
     /// `next` is the motion by which the tool has left it; `None` if the tool stands there and is changed, or the run ends.

@@ -334,14 +334,6 @@ impl<'m> HoleExtractor<'m> {
         }
     }
 
-    /// Ends the current line where the tool leaves it along a curve, or is replaced.
-    fn end_line(&mut self, next: Option<MotionKind>) {
-        if let Some(line) = self.current_line.take() {
-            let exit = line.curved_exit();
-            self.report_line(line, exit, next);
-        }
-    }
-
     fn motion(&mut self, event: &Event<'_>, kind: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.axis_position;
         if self.metal.is_known() {
@@ -435,22 +427,6 @@ impl<'m> HoleExtractor<'m> {
             self.check_upright(&from);
         }
         self.update_start();
-    }
-
-    /// Applies a change of the tool, its offset or the head, which moves the tip.
-    fn update_setup(&mut self, change: impl FnOnce(&mut Setup)) {
-        let before = self.setup;
-        change(&mut self.setup);
-        if self.setup == before {
-            return;
-        }
-        let after = std::mem::replace(&mut self.setup, before);
-        self.end_line(None);
-        self.end_engagement();
-        self.strokes.end_tool();
-        self.setup = after;
-        self.update_tool_body();
-        self.pose = self.machine.tool_pose(&self.axis_position, &self.setup).relative_to(&self.frame);
     }
 }
 
