@@ -15,6 +15,7 @@
 //! | `burr index=0.300 passes=5` | numbers of the flutes: `contact`, `helix_min`, `helix_max`, `index`, `speed_min`, `speed_max`, `nearest`, `passes`, `moves` |
 //! | `made x=10.000 … depth=7.000 at O1:8 by T1` | without a reference: the next hole, by `x`, `y`, `z`, `i`, `j`, `k`, `depth`, `diameter` |
 //! | `not-checked with Z 29` | a line on what isn't checked has these numbers and names |
+//! | `checked milling` | no line on what isn't checked has this number or name |
 //! | `assumes G55 at O1:7 decides 1 2` | the assumptions are these lines, in this order; `assumes nothing`: there is none |
 //! | `layout` | the printed verdict is `verdict.snap` |
 //!
@@ -72,6 +73,10 @@ impl ActualVerdict {
                 }
                 "made" => made.push(rest),
                 "assumes" => assumptions.push(rest),
+                "checked" => {
+                    let about = self.not_checked.iter().filter(|line| mentions(line, rest));
+                    wrong.extend(about.map(|line| format!("not checked: {line}")));
+                }
                 "not-checked" => {
                     let words = rest.strip_prefix("with ").unwrap();
                     let is_met = |line: &String| words.split_whitespace().all(|word| mentions(line, word));

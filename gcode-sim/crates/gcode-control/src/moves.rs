@@ -43,7 +43,9 @@ impl Planner<'_> {
         let has_other_source = wear != plan.state.length_wear
             || plan.state.length_compensation() != self.registers.state.length_compensation();
         (plan.state.length_offset, plan.state.length_wear) = (offset, wear);
-        if changed || has_other_source {
+        // A repeated offset is told too: its block decides on the cuts behind it.
+        let is_repeated = plan.state.length_compensation().number().is_some();
+        if changed || has_other_source || is_repeated {
             plan.push_event(self.data.length_event(&plan.state));
         }
         let (before, now) = (self.registers.state.controls_tip(), plan.state.controls_tip());

@@ -46,9 +46,10 @@ gcode_lang::finding_kinds! {
     HOLE_ROUNDNESS = "hole-roundness", Error, "a milled hole is not round";
     HOLE_THROUGH = "hole-through", Warning, "a nominal hole goes through the part";
     HOLE_TILTED = "hole-tilted", Error, "a hole is tilted";
-    HOLE_TOOLS = "hole-tools", Warning, "a hole lacks a tool that the others have";
+    HOLE_TOOLS = "hole-tools", Error, "a hole lacks a tool that the others have";
     HOLE_TWICE = "hole-twice", Error, "a hole is drilled a second time";
-    HOLES_ALIKE = "holes-alike", Error, "many holes have the same deviation";
+    HOLES_ALIKE = "holes-alike", Error, "holes with the same deviation";
+    HOLES_TRANSFORMED = "holes-transformed", Error, "one mistake moves all holes";
     JOB_TOOL = "job-tool", Warning, "the tool is not the one of the job, or no tool was inserted";
     LEAVES_HOLE_SIDEWAYS = "leaves-hole-sideways", Error, "the tool leaves the hole sideways";
     LENGTH_OFFSET = "length-offset", Error, "the tool's length offset is not its own";

@@ -1,4 +1,5 @@
 //! Cutting conditions: what is in force while a tool cuts, by block, for comparison with the reference.
+use super::length_mismatch::OffsetOrigin;
 use super::per_block::PerBlock;
 use gcode_lang::motion::{Backtrace, LengthCompensation, SpindleDirection};
 use gcode_lang::units::{MmPerMin, Rpm};
@@ -25,6 +26,8 @@ pub(crate) struct CutConditions {
     /// Tool in the spindle; `None` before the first tool change.
     pub tool: Option<u32>,
     pub compensation: LengthCompensation,
+    /// Block that puts the length offset in force; `None` without an offset.
+    pub offset_origin: Option<OffsetOrigin>,
     pub spindle_direction: SpindleDirection,
     /// The spindle reverses in the hole.
     pub is_tapping: bool,
@@ -94,6 +97,7 @@ impl CutConditionsByBlock {
         is_tapping: bool,
         (feed_range, extremes): ([MmPerMin; 2], [FeedAtSpeed; 2]),
         pecks: PeckExtent,
+        offset_origin: Option<&OffsetOrigin>,
     ) {
         let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;
         let key = (state.key(), is_tapping, feed_range.map(|feed| feed.0.to_bits()));
@@ -101,6 +105,7 @@ impl CutConditionsByBlock {
             backtrace: backtrace.clone(),
             tool,
             compensation,
+            offset_origin: offset_origin.filter(|origin| origin.is_of(compensation)).cloned(),
             spindle_direction,
             is_tapping,
             speed,

@@ -41,14 +41,18 @@ pub struct HoleExtraction {
     pub(crate) rapids_behind_change: UnsearchedMotions,
     /// Feeds beside which the metal is not compared with all of the tool.
     pub(crate) unsearched_feeds: UnsearchedMotions,
-    /// Probing moves through metal.
+    /// Probing moves through metal, up to a signal.
     pub(crate) probes_in_metal: UnsearchedMotions,
+    /// Probing moves through metal that no signal ends.
+    pub(crate) probes_without_signal: UnsearchedMotions,
     /// Tools of unknown diameter that mill a known body: what they remove is unknown.
     pub(crate) unsized_mills: Vec<Option<u32>>,
     /// Indices of the nominal holes whose entries are under metal that no feed removes.
     pub(crate) covered_entries: Vec<usize>,
     /// Number of strokes of mills that count as milling.
     pub(crate) milled_strokes: u64,
+    /// First and last block of each run of blocks that mill stated pockets.
+    pub(crate) milled_blocks: Vec<[Span; 2]>,
     /// Ends of the first feeds along the tool that go beside the part.
     pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
     /// Warnings about drilling cycles that cut nothing.

@@ -117,6 +117,12 @@ impl HoleExtractor<'_> {
         let is_judged = is_known && self.metal.holes.is_some();
         if is_judged && (self.surface.is_none() || self.has_left_start) {
             self.check_milling(event, path);
+            let chords = path.windows(2).filter_map(|chord| {
+                let chord = [chord[0], chord[1]];
+                Some((chord, self.axis_in_motion(&chord[0], &chord[1])?))
+            });
+            let chords: Vec<_> = if self.metal.pockets.is_empty() { Vec::new() } else { chords.collect() };
+            self.note_milled_block(event, &chords);
         }
         let is_judged = is_judged && self.gouge_count < MAX_GOUGES;
         let mut worst: Option<Gouge> = None;

@@ -22,18 +22,62 @@ pub(crate) struct LengthMismatch {
     pub backtrace: Backtrace,
     pub tool: u32,
     pub compensation: LengthCompensation,
+    /// Block that puts the offset in force; `None` without an offset.
+    pub offset_origin: Option<OffsetOrigin>,
     /// Tool length minus offset: distance of the tip beyond the programmed point, along the tool into the part, mm.
     pub length_excess: f64,
     /// End points of feeds, with the direction of the tool out of the part.
     pub feed_ends: Vec<(Point3<f64>, Unit<Vector3<f64>>)>,
 }
 
+/// Block that puts a length offset in force.
+#[derive(Clone, Debug)]
+pub(crate) struct OffsetOrigin {
+    pub backtrace: Backtrace,
+    /// Code and number of the offset.
+    compensation: LengthCompensation,
+    /// False if a tool change follows: the offset is left from the tool before.
+    is_own: bool,
+}
+
+impl OffsetOrigin {
+    /// Returns true if the block has this code and number.
+    pub(super) fn is_of(&self, compensation: LengthCompensation) -> bool {
+        self.compensation == compensation
+    }
+
+    /// Locates a finding on the offset of a cut at the block that puts it in force, if no tool change follows; the other block is
+    /// a secondary location.
+    pub(crate) fn locate(origin: Option<&Self>, finding: Diagnostic, cut: &Backtrace) -> Diagnostic {
+        match origin {
+            Some(own) if own.is_own && own.backtrace.block != cut.block => {
+                finding.label(cut.block, "the first cut with it").with_backtrace(own.backtrace.clone())
+            }
+            Some(left) if !left.is_own => {
+                let caption = "in force from here, before the tool change";
+                finding.label(left.backtrace.block, caption).with_backtrace(cut.clone())
+            }
+            _ => finding.with_backtrace(cut.clone()),
+        }
+    }
+}
+
 impl HoleExtractor<'_> {
-    /// Applies a change of the source of the length offset.
-    pub(super) fn apply_compensation(&mut self, compensation: LengthCompensation) {
+    /// Applies a change of the source of the length offset, or its repetition.
+    pub(super) fn apply_compensation(&mut self, event: &Event<'_>, compensation: LengthCompensation) {
         self.cutting_state.compensation = compensation;
-        if compensation.number().is_some() {
+        let is_on = compensation.number().is_some();
+        let origin = || OffsetOrigin { backtrace: event.backtrace(), compensation, is_own: true };
+        self.offset_origin = is_on.then(origin);
+        if is_on {
             self.offset_tools.insert(self.setup.tool);
+        }
+    }
+
+    /// Applies a tool change: an offset in force is left from the tool before.
+    pub(super) fn leave_offset(&mut self) {
+        if let Some(origin) = &mut self.offset_origin {
+            origin.is_own = false;
         }
     }
 
@@ -98,6 +142,7 @@ impl HoleExtractor<'_> {
             (known.tool, known.compensation) == (tool, compensation)
                 && (known.length_excess - length_excess).abs() < MIN_EXCESS
         };
+        let offset_origin = self.offset_origin.as_ref().filter(|origin| origin.is_of(compensation)).cloned();
         let kept = &mut self.length_mismatches;
         let index = kept.iter().position(is_same).unwrap_or(kept.len());
         if index == MAX_KEPT {
@@ -105,7 +150,14 @@ impl HoleExtractor<'_> {
         }
         if index == kept.len() {
             let (backtrace, feed_ends) = (line.backtrace().clone(), Vec::new());
-            kept.push(LengthMismatch { backtrace, tool, compensation, length_excess, feed_ends });
+            kept.push(LengthMismatch {
+                backtrace,
+                tool,
+                compensation,
+                offset_origin,
+                length_excess,
+                feed_ends,
+            });
         }
         let ends = &mut kept[index].feed_ends;
         if ends.len() < MAX_KEPT {

@@ -32,6 +32,14 @@ const MAX_FEEDS_IN_AIR: usize = 100;
 const MAX_PARALLEL_COSINE: f64 = 1e-9;
 
 impl HoleExtractor<'_> {
+    /// Ends the current line where the tool leaves it along a curve, or is replaced.
+    pub(super) fn end_line(&mut self, next: Option<MotionKind>) {
+        if let Some(line) = self.current_line.take() {
+            let exit = line.curved_exit();
+            self.report_line(line, exit, next);
+        }
+    }
+
     /// Reports a line that the tool has left, and keeps its passes if it makes a hole.
     ///
     /// `next` is the motion by which the tool has left it; `None` if the tool stands there and is changed, or the run ends.
@@ -296,7 +304,15 @@ impl HoleExtractor<'_> {
         let backtrace = line.backtrace();
         self.check_clamped(backtrace, line.clamp_state);
         if let Some(feeds) = line.cutting_feeds() {
-            self.cut_conditions.add(backtrace, &line.cutting_state, line.is_tapping, feeds, line.pecks());
+            let origin = self.offset_origin.as_ref();
+            self.cut_conditions.add(
+                backtrace,
+                &line.cutting_state,
+                line.is_tapping,
+                feeds,
+                line.pecks(),
+                origin,
+            );
         }
         self.check_spindle(backtrace, line);
         self.check_tool_changed(backtrace, &line.cutting_state);

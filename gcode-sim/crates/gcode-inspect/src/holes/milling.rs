@@ -49,7 +49,8 @@ impl HoleExtractor<'_> {
             self.milling.0.insert(key, [least.min(rate.0), most.max(rate.0)]);
             self.check_tool_changed(&backtrace, &state);
             let feeds = ([rate, rate], [(rate, state.speed); 2]);
-            self.cut_conditions.add(&backtrace, &state, false, feeds, PeckExtent::default());
+            let origin = self.offset_origin.as_ref();
+            self.cut_conditions.add(&backtrace, &state, false, feeds, PeckExtent::default(), origin);
         }
     }
 

@@ -27,6 +27,7 @@ mod low_rapid;
 mod machine_requests;
 mod metal;
 mod milled;
+mod milled_blocks;
 mod milling;
 mod near_metal;
 pub(crate) mod per_block;
@@ -58,7 +59,7 @@ pub use drill_pass::{Helix, MilledCut, PassCut, TapRetract};
 pub use extraction::HoleExtraction;
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
-pub(crate) use length_mismatch::LengthMismatch;
+pub(crate) use length_mismatch::{LengthMismatch, OffsetOrigin};
 pub(crate) use line::PITCH_TOLERANCE;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedMotions;
@@ -80,6 +81,7 @@ use self::line::CuttingLine;
 use self::low_rapid::LowRapid;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
+use self::milled_blocks::MilledBlocks;
 use self::milling::MillingRates;
 use self::per_block::Findings;
 use self::profile::Profile;
@@ -150,9 +152,15 @@ pub struct HoleExtractor<'m> {
     close_motions: CloseMotions,
     cut_conditions: CutConditionsByBlock,
     milling: MillingRates,
+    /// Blocks that mill stated pockets.
+    milled_blocks: MilledBlocks,
     length_mismatches: Vec<LengthMismatch>,
     /// Tools that have had a length offset.
     offset_tools: BTreeSet<Option<u32>>,
+    /// Block that puts the length offset in force; `None` without an offset.
+    offset_origin: Option<OffsetOrigin>,
+    /// A probing move without a signal has left the tool in the metal.
+    is_probe_in_metal: bool,
     /// Number of probing moves.
     probe_count: u64,
     search_budget: SearchBudget,
@@ -160,8 +168,9 @@ pub struct HoleExtractor<'m> {
     unsearched_rapids: UnsearchedMotions,
     /// Feeds beside which the metal is not compared with all of the tool.
     unsearched_feeds: UnsearchedMotions,
-    /// Probing moves through metal.
+    /// Probing moves through metal, up to a signal and without one.
     probes_in_metal: UnsearchedMotions,
+    probes_without_signal: UnsearchedMotions,
     /// The search for the current feed was given up.
     is_feed_unsearched: Cell<bool>,
     bar_shift: BarShift,
@@ -216,13 +225,17 @@ impl<'m> HoleExtractor<'m> {
             close_motions: CloseMotions::default(),
             cut_conditions: CutConditionsByBlock::default(),
             milling: MillingRates::default(),
+            milled_blocks: MilledBlocks::default(),
             length_mismatches: Vec::new(),
             offset_tools: BTreeSet::new(),
+            offset_origin: None,
+            is_probe_in_metal: false,
             probe_count: 0,
             search_budget: SearchBudget::default(),
             unsearched_rapids: UnsearchedMotions::default(),
             unsearched_feeds: UnsearchedMotions::default(),
             probes_in_metal: UnsearchedMotions::default(),
+            probes_without_signal: UnsearchedMotions::default(),
             is_feed_unsearched: Cell::default(),
             bar_shift: BarShift::default(),
             change_retract: ChangeRetract::default(),
@@ -311,20 +324,14 @@ impl<'m> HoleExtractor<'m> {
             rapids_behind_change: self.change_retract.rapids,
             unsearched_feeds: self.unsearched_feeds,
             probes_in_metal: self.probes_in_metal,
+            probes_without_signal: self.probes_without_signal,
             unsized_mills: self.unsized_mills,
             covered_entries,
             milled_strokes,
+            milled_blocks: self.milled_blocks.finish(),
             feeds_in_air: self.feeds_in_air,
             cycles_in_air: self.cycles_in_air.finish(),
             is_removal_cut_short: self.metal.removed.is_full,
-        }
-    }
-
-    /// Ends the current line where the tool leaves it along a curve, or is replaced.
-    fn end_line(&mut self, next: Option<MotionKind>) {
-        if let Some(line) = self.current_line.take() {
-            let exit = line.curved_exit();
-            self.report_line(line, exit, next);
         }
     }
 
@@ -357,6 +364,7 @@ impl<'m> HoleExtractor<'m> {
             }
             kind => kind,
         };
+        let kind = if self.follow_unstopped_probe() { MotionKind::Probe } else { kind };
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.change_retract.end();
             self.report_low_rapid();
@@ -377,7 +385,7 @@ impl<'m> HoleExtractor<'m> {
                     if !is_rotating {
                         self.remove_by_arc(event, &travel, is_known);
                     }
-                    let is_allowed = is_rotating && self.remove_while_turning(&travel, is_known);
+                    let is_allowed = is_rotating && self.remove_while_turning(event, &travel, is_known);
                     if !is_allowed && !self.check_curved(event, &travel, kind) && is_rotating {
                         self.check_turning_feed(event, (&from, to));
                     }
@@ -421,22 +429,6 @@ impl<'m> HoleExtractor<'m> {
         }
         self.update_start();
     }
-
-    /// Applies a change of the tool, its offset or the head, which moves the tip.
-    fn update_setup(&mut self, change: impl FnOnce(&mut Setup)) {
-        let before = self.setup;
-        change(&mut self.setup);
-        if self.setup == before {
-            return;
-        }
-        let after = std::mem::replace(&mut self.setup, before);
-        self.end_line(None);
-        self.end_engagement();
-        self.strokes.end_tool();
-        self.setup = after;
-        self.update_tool_body();
-        self.pose = self.machine.tool_pose(&self.axis_position, &self.setup).relative_to(&self.frame);
-    }
 }
 
 impl EventSink for HoleExtractor<'_> {
@@ -455,12 +447,14 @@ impl EventSink for HoleExtractor<'_> {
                 self.report_low_rapid();
                 self.check_tool_known(event, *number);
                 self.begin_change(event);
+                self.milled_blocks.end_tool();
                 self.update_setup(|setup| setup.tool = Some(*number));
+                self.leave_offset();
                 self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
             }
             EventKind::ToolLength { offset, wear, compensation } => {
                 self.update_setup(|setup| (setup.offset, setup.wear) = (*offset, *wear));
-                self.apply_compensation(*compensation);
+                self.apply_compensation(event, *compensation);
             }
             EventKind::Start { at, unknown } => {
                 self.axis_position = *at;

@@ -37,6 +37,8 @@ pub(super) enum Judged<'c> {
     Uncut(Option<&'c Collar>),
     /// What has to stay: neither in a nominal hole nor in a pocket, nor removed by this many first sweeps.
     Kept(FeedPart, u32),
+    /// All that no feed has removed, outside the nominal holes.
+    Milled(FeedPart),
 }
 
 /// Result of a search.
@@ -166,7 +168,8 @@ impl<'m> NearMetal<'m> {
     fn shares(&self, strip: &Strip) -> Shares {
         match self.judged {
             Judged::Uncut(hole) => self.uncut(strip, hole),
-            Judged::Kept(part, _) => self.kept(strip, part),
+            Judged::Kept(part, _) => self.kept(strip, part, true),
+            Judged::Milled(part) => self.kept(strip, part, false),
         }
     }
 
@@ -189,11 +192,12 @@ impl<'m> NearMetal<'m> {
         shares
     }
 
-    fn kept(&self, strip: &Strip, part: FeedPart) -> Shares {
+    /// Returns shares of a strip outside which it is in no metal outside the nominal holes, and outside the pockets if these may go.
+    fn kept(&self, strip: &Strip, part: FeedPart, may_pockets_go: bool) -> Shares {
         let Some(holes) = self.metal.holes.as_deref() else { return Shares::default() };
         // Without a diameter the wall of a hole is unknown.
         let mut shares = self.solid(strip, |hole| holes.collar(hole).has_diameter);
-        for pocket in self.metal.pockets_near(&strip.bounds()) {
+        for pocket in self.metal.pockets_near(&strip.bounds()).filter(|_| may_pockets_go) {
             if shares.is_empty() {
                 return shares;
             }
@@ -233,7 +237,7 @@ impl<'m> NearMetal<'m> {
     pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
         let has_room = match self.judged {
             Judged::Uncut(_) => true,
-            Judged::Kept(part, _) => {
+            Judged::Kept(part, _) | Judged::Milled(part) => {
                 let is_along = |hole: &&Collar| 1.0 - NOISE <= hole.rod.axis.dot(axis);
                 self.metal.are_pockets_open(axis) && self.rooms(part).iter().all(is_along)
             }

@@ -2,7 +2,7 @@
 use nalgebra::Point3;
 
 use super::{HoleExtractor, MotionKind};
-use gcode_lang::motion::{Event, SkipMove, SkipSignal};
+use gcode_lang::motion::{Event, EventKind, SkipMove, SkipSignal};
 
 impl HoleExtractor<'_> {
     /// Returns the probe's signal; `None` without a probe, or without a part that it could touch.
@@ -20,10 +20,23 @@ impl HoleExtractor<'_> {
         match self.metal.uncut(&[*from, self.pose.tip]) {
             Some(_) if is_cutter => MotionKind::Feed,
             Some(_) => {
-                self.probes_in_metal.count(|| event.backtrace());
+                self.is_probe_in_metal = matches!(event.kind, EventKind::Skip { has_signal: false, .. });
+                let probes = match self.is_probe_in_metal {
+                    true => &mut self.probes_without_signal,
+                    false => &mut self.probes_in_metal,
+                };
+                probes.count(|| event.backtrace());
                 MotionKind::Probe
             }
             None => MotionKind::Probe,
         }
+    }
+
+    /// Returns true if the tool comes from where a probing move without a signal has left it in the metal: a real probe stands
+    /// elsewhere until it is outside.
+    pub(super) fn follow_unstopped_probe(&mut self) -> bool {
+        let was_inside = self.is_probe_in_metal;
+        self.is_probe_in_metal = was_inside && self.metal.uncut(&[self.pose.tip; 2]).is_some();
+        was_inside
     }
 }

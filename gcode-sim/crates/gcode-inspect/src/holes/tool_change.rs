@@ -7,7 +7,7 @@ use super::rapid_paths::UnsearchedMotions;
 use super::rapids::format_point;
 use super::swept_tool::ring;
 use crate::findings::{RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
-use crate::machine::TOUCH_DEPTH;
+use crate::machine::{Setup, TOUCH_DEPTH};
 use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::motion::{Event, Position};
 
@@ -41,6 +41,22 @@ impl ChangeRetract {
 }
 
 impl HoleExtractor<'_> {
+    /// Applies a change of the tool, its offset or the head, which moves the tip.
+    pub(super) fn update_setup(&mut self, change: impl FnOnce(&mut Setup)) {
+        let before = self.setup;
+        change(&mut self.setup);
+        if self.setup == before {
+            return;
+        }
+        let after = std::mem::replace(&mut self.setup, before);
+        self.end_line(None);
+        self.end_engagement();
+        self.strokes.end_tool();
+        self.setup = after;
+        self.update_tool_body();
+        self.pose = self.machine.tool_pose(&self.axis_position, &self.setup).relative_to(&self.frame);
+    }
+
     /// Applies a tool change: in a hole, or between walls, the tool can't be changed.
     pub(super) fn begin_change(&mut self, event: &Event<'_>) {
         let is_known = self.positions.is_known(self.machine);

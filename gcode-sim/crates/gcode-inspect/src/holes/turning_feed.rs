@@ -5,6 +5,7 @@ use super::HoleExtractor;
 use super::near_metal::Judged;
 use super::strip::Line;
 use crate::machine::{AxisMotion, Pose};
+use gcode_lang::motion::Event;
 
 /// Largest deviation of a curved path from its chords, mm.
 const CHORD_TOLERANCE: f64 = 0.005;
@@ -18,7 +19,12 @@ const MAX_CHORDS: usize = 5000;
 impl HoleExtractor<'_> {
     /// Removes what a feed cuts while an axis rotates. Returns false, and removes nothing, if the feed removes what has to stay
     /// or can't be followed.
-    pub(super) fn remove_while_turning(&mut self, travel: &AxisMotion<'_>, is_known: bool) -> bool {
+    pub(super) fn remove_while_turning(
+        &mut self,
+        event: &Event<'_>,
+        travel: &AxisMotion<'_>,
+        is_known: bool,
+    ) -> bool {
         let is_followed = is_known
             && self.surface.is_some()
             && self.has_left_start
@@ -45,6 +51,7 @@ impl HoleExtractor<'_> {
         if self.is_feed_unsearched.take() {
             return false;
         }
+        self.note_milled_block(event, &chords);
         for (chord, axis) in &chords {
             self.remove(chord, axis);
         }

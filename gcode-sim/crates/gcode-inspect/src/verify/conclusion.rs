@@ -169,7 +169,11 @@ pub(super) fn uncounted_errors(findings: &[HoleFinding]) -> Option<String> {
         Subject::Whole | Subject::Motion => [&HOLE_MISSING, &HOLE_TWICE].contains(&one.finding.kind),
     };
     let errors = findings.iter().filter(|one| one.finding.severity == Severity::Error);
-    let kinds = counted(errors.filter(|one| !is_counted(one)).map(|one| one.finding.kind.title));
+    let words = |one| -> &str {
+        let HoleFinding { finding, summary, .. }: &HoleFinding = one;
+        summary.as_deref().unwrap_or(finding.kind.title)
+    };
+    let kinds = counted(errors.filter(|one| !is_counted(one)).map(words));
     let mut words: Vec<String> = kinds.iter().take(MAX_KINDS).cloned().collect();
     match kinds.len().saturating_sub(MAX_KINDS) {
         0 => {}

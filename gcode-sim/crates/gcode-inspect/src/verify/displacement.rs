@@ -61,7 +61,7 @@ impl HoleDisplacement {
 }
 
 /// Returns the error of a table axis that explains the whole displacement of a hole; `None` if no angle does.
-fn rotation_error(
+pub(super) fn rotation_error(
     hole: &Hole,
     drilled: &DrilledHole,
     machine: &Machine,

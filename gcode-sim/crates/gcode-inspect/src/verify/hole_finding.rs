@@ -20,6 +20,8 @@ pub(super) enum Subject {
 pub(super) struct HoleFinding {
     pub subject: Subject,
     pub finding: Diagnostic,
+    /// Words for the first line of the verdict; `None` for the title of the kind.
+    pub summary: Option<String>,
     /// True if a finding about many holes replaces it in the printed list; JSON has both.
     pub is_folded: bool,
 }
@@ -32,12 +34,17 @@ pub(super) struct HoleFindings {
 
 impl HoleFindings {
     pub(super) fn add(&mut self, subject: Subject, finding: Diagnostic) {
-        self.list.push(HoleFinding { subject, finding, is_folded: false });
+        self.list.push(HoleFinding { subject, finding, summary: None, is_folded: false });
+    }
+
+    /// Adds a finding with its words for the first line of the verdict.
+    pub(super) fn add_summed(&mut self, subject: Subject, finding: Diagnostic, summary: String) {
+        self.list.push(HoleFinding { subject, finding, summary: Some(summary), is_folded: false });
     }
 
     /// Adds a finding that a finding about many holes replaces in the printed list.
     pub(super) fn add_folded(&mut self, subject: Subject, finding: Diagnostic) {
-        self.list.push(HoleFinding { subject, finding, is_folded: true });
+        self.list.push(HoleFinding { subject, finding, summary: None, is_folded: true });
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &HoleFinding> {
@@ -57,7 +64,16 @@ impl HoleFindings {
 
     /// Inserts findings about many holes before all others.
     pub(super) fn put_first(&mut self, findings: impl IntoIterator<Item = Diagnostic>) {
-        let whole = |finding| HoleFinding { subject: Subject::Whole, finding, is_folded: false };
+        self.put_first_summed(findings.into_iter().map(|finding| (finding, None)));
+    }
+
+    /// Inserts findings about many holes before all others, each with its words for the first line of the verdict.
+    pub(super) fn put_first_summed(
+        &mut self,
+        findings: impl IntoIterator<Item = (Diagnostic, Option<String>)>,
+    ) {
+        let subject = Subject::Whole;
+        let whole = |(finding, summary)| HoleFinding { subject, finding, summary, is_folded: false };
         self.list.splice(0..0, findings.into_iter().map(whole));
     }
 
@@ -105,10 +121,14 @@ pub(super) fn finish_group_finding(
     locate_at_call(finding, backtrace)
 }
 
+/// Returns the calls that led to a block, the innermost first.
+pub(super) fn calls_of(backtrace: &Backtrace) -> impl Iterator<Item = &Call> {
+    std::iter::successors(backtrace.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref())
+}
+
 /// Locates a finding at the outermost call, which has the arguments; the block of the hole is a secondary location.
 pub(super) fn locate_at_call(finding: Diagnostic, backtrace: &Backtrace) -> Diagnostic {
-    let calls = std::iter::successors(backtrace.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
-    match calls.last() {
+    match calls_of(backtrace).last() {
         Some(call) => {
             let mut finding = finding.with_backtrace(Backtrace { block: call.calling_block, calls: None });
             finding.labels.push((backtrace.block, "drilled here".to_owned()));

@@ -18,6 +18,7 @@ mod rounding;
 mod rows;
 #[cfg(test)]
 mod tests;
+mod transformation;
 mod verdict;
 mod verdict_finding;
 
@@ -39,6 +40,7 @@ use self::hole_finding::{HoleFindings, Subject};
 use self::not_checked::NotChecked;
 use self::rounding::RoundingDeviation;
 use self::rows::PatternRows;
+use self::transformation::Transformation;
 use crate::findings::START_UNKNOWN;
 use crate::holes::HoleExtraction;
 use crate::machine::Machine;
@@ -81,6 +83,8 @@ struct HoleInspection<'a> {
     rows: Option<PatternRows<'a>>,
     /// The mirror image of the pattern that was drilled instead of it.
     mirror_image: Option<MirrorImage>,
+    /// One other mistake that moves all holes.
+    transformation: Option<Transformation>,
     /// Findings on the features of the holes that have any.
     features: Vec<FeatureFindings>,
     extraction: &'a HoleExtraction,
@@ -105,9 +109,21 @@ pub fn verify(
     }
     let rows = pattern.and_then(|pattern| PatternRows::of(&comparison, pattern));
     let mirror_image = MirrorImage::of(&comparison);
+    let transformation = match mirror_image {
+        Some(_) => None,
+        None => Transformation::of(&comparison, machine, &extraction.feeds_in_air),
+    };
     let features = judge_all(&comparison, body, machine);
-    let inspection =
-        HoleInspection { comparison, rows, mirror_image, features, extraction, reference, machine };
+    let inspection = HoleInspection {
+        comparison,
+        rows,
+        mirror_image,
+        transformation,
+        features,
+        extraction,
+        reference,
+        machine,
+    };
     let mut findings = HoleFindings::default();
     // A check of its own names the holes of unknown positions.
     let block = |backtrace: &Backtrace| (backtrace.block.source, backtrace.block.start);

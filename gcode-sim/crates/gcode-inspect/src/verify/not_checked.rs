@@ -120,7 +120,24 @@ pub(super) fn list(
             &extraction.probes_in_metal,
             "what probing moves touch",
             "move",
-            "G31 leads through metal, and the machine file has no [probe]",
+            "G31 leads through metal up to its signal",
+        ),
+        (
+            &extraction.probes_without_signal,
+            match machine.probe {
+                None => "what probing moves touch (no [probe], no --skip)",
+                Some(_) => "what probing moves touch (no [stock], no --skip)",
+            },
+            "move",
+            match machine.probe {
+                None => {
+                    "no signal ends G31 in the metal; give [probe] with the radius of its ball in the machine file, or the \
+                     place of the signal by --skip"
+                }
+                Some(_) => {
+                    "no signal ends G31 in the metal; give [stock], which the probe touches, or the place of the signal by --skip"
+                }
+            },
         ),
     ];
     for (motions, what, kind, reason) in unsearched {
@@ -142,6 +159,11 @@ pub(super) fn list(
         let what = format!("{count} stroke{plural} of a mill beside the holes");
         all.push(NotChecked::gap(what, "taken for milling, not for a hole"));
     }
+    if !extraction.milled_blocks.is_empty() {
+        let what = format!("the shape of the milling ({})", milled_lines(&extraction.milled_blocks, locate));
+        let reason = "it may remove all of its [[stock.pocket]], and nothing beside it; what it leaves there is not compared";
+        all.push(NotChecked::gap(what, reason));
+    }
     let covered: Vec<&str> = extraction.covered_entries.iter().map(|index| comparison.id(*index)).collect();
     if !covered.is_empty() {
         let holes = hole_names(&covered);
@@ -158,6 +180,24 @@ pub(super) fn list(
         all.push(NotChecked::gap(what, "rapids where they have removed the metal are reported"));
     }
     all
+}
+
+/// Returns `O1 lines 45 to 60, O9100 line 3 and 2 more`.
+fn milled_lines(runs: &[[Span; 2]], locate: &dyn Fn(Span) -> (String, u32)) -> String {
+    const MAX_SHOWN: usize = 3;
+    let shown = runs.iter().take(MAX_SHOWN).map(|run| {
+        let [(program, from), (other, to)] = run.map(locate);
+        match () {
+            () if other != program => format!("{program} line {from} to {other} line {to}"),
+            () if from == to => format!("{program} line {from}"),
+            () => format!("{program} lines {from} to {to}"),
+        }
+    });
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    match runs.len().saturating_sub(MAX_SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
 }
 
 /// Returns `hole 1`, or the number of several with the first.

@@ -65,7 +65,10 @@ impl Outline {
                 features.push(Feature { depth, diameter, ..Feature::of(FeatureKind::Bore) });
             }
         }
-        Self::of(&Hole { features, ..hole.clone() }, slack)
+        let mut core = Self::of(&Hole { features, ..hole.clone() }, slack)?;
+        // The edge of a countersink has the tolerance of its depth.
+        core.cones.iter_mut().for_each(|(radius, slope)| *radius += slack * *slope);
+        Some(core)
     }
 
     /// Returns the outline below the far side of a through hole, of the diameters that go through; `None` if they are unknown.

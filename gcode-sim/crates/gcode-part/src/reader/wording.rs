@@ -34,6 +34,18 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     {
         return format!("key '{name}' has {found} values: {required} are required");
     }
+    if let Some((found, allowed)) =
+        message.strip_prefix("unknown variant ").and_then(|rest| rest.split_once(", expected "))
+    {
+        // Of a section whose key `kind` decides which others it has, the reader of TOML knows no more than the section.
+        let is_section = start.is_some_and(|start| !text[start..].starts_with(['"', '\'']));
+        let name = if is_section { format!("{name}.kind") } else { name };
+        let (found, allowed) =
+            (found.replace('`', ""), allowed.trim_start_matches("one of ").replace('`', ""));
+        let allowed = allowed.replace(" or ", ", ");
+        let meant = similar(&found, allowed.split(", ")).map(|meant| format!(" (did you mean '{meant}'?)"));
+        return format!("key '{name}' is '{found}'{}; allowed: {allowed}", meant.unwrap_or_default());
+    }
     if let Some(wrong) = message.strip_prefix(OUT_OF_RANGE) {
         return format!("key '{name}' is {wrong}");
     }

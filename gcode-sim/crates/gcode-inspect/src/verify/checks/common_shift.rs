@@ -1,10 +1,17 @@
 //! One deviation that many holes share because of one wrong number: one finding instead of one for each hole.
+use super::transformed::shift_words;
 use super::*;
 use crate::findings::{
-    HOLE_DEPTH, HOLE_EXTRA, HOLE_MISSING, HOLE_POSITION, HOLE_TILTED, HOLE_TWICE, HOLES_ALIKE, MIRROR_IMAGE,
-    ROTARY_SIGN, ROW_ANGLE, ROW_GROUP, ROW_PITCH, ROW_SEAM,
+    HOLE_DEPTH, HOLE_EXTRA, HOLE_MISSING, HOLE_POSITION, HOLE_TILTED, HOLE_TWICE, HOLES_ALIKE,
+    HOLES_TRANSFORMED, MIRROR_IMAGE, ROTARY_SIGN, ROW_ANGLE, ROW_GROUP, ROW_PITCH, ROW_SEAM,
 };
 use crate::verify::displacement::{HoleDisplacement, displacements};
+use crate::verify::hole_finding::calls_of;
+use gcode_lang::motion::Backtrace;
+use gcode_lang::source::Span;
+
+/// A finding about many holes, with its words for the first line of the verdict.
+type GroupFinding = (Diagnostic, Option<String>);
 
 /// Least number of holes for one finding.
 const MIN_GROUP_SIZE: usize = 3;
@@ -22,8 +29,8 @@ const MIN_OFFSET: f64 = 0.0005;
 const POSITION_KINDS: [&FindingKind; 4] = [&HOLE_POSITION, &HOLE_TILTED, &HOLE_MISSING, &HOLE_EXTRA];
 
 /// Findings about a whole pattern.
-const PATTERN_KINDS: [&FindingKind; 6] =
-    [&ROW_ANGLE, &ROW_PITCH, &ROW_GROUP, &ROW_SEAM, &ROTARY_SIGN, &MIRROR_IMAGE];
+const PATTERN_KINDS: [&FindingKind; 7] =
+    [&ROW_ANGLE, &ROW_PITCH, &ROW_GROUP, &ROW_SEAM, &ROTARY_SIGN, &MIRROR_IMAGE, &HOLES_TRANSFORMED];
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
@@ -43,7 +50,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         }
     };
     reported.extend(report_common_depths(comparison, findings));
-    findings.put_first(reported);
+    findings.put_first_summed(reported);
     repeated.into_iter().for_each(|finding| findings.add(Subject::Whole, finding));
 }
 
@@ -51,6 +58,18 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
 fn fold_explained(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) -> usize {
     if let Some(image) = &inspection.mirror_image {
         return findings.fold(&POSITION_KINDS, |subject| image.in_place.contains(&subject));
+    }
+    if let Some(transformation) = &inspection.transformation {
+        let subjects: BTreeSet<Subject> = transformation
+            .explained
+            .iter()
+            .flat_map(|(nominal, actual)| [Some(Subject::Nominal(*nominal)), actual.map(Subject::Extra)])
+            .flatten()
+            .collect();
+        let folded = findings.fold(&POSITION_KINDS, |subject| subjects.contains(&subject));
+        // Without the tool of the extra holes the nominal ones are not finished.
+        let unfinished = if transformation.extra.is_some() { &tools::FOLLOWING_KINDS[..] } else { &[] };
+        return folded + findings.fold(unfinished, |subject| subjects.contains(&subject));
     }
     match explained_by_rows::explains(inspection) {
         Some(explains) => findings.fold(&POSITION_KINDS, explains),
@@ -72,7 +91,7 @@ fn fold_tilted(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> usiz
     findings.fold(&[&HOLE_DEPTH], |subject| tilted.contains(&subject))
 }
 
-fn report_common_depths(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Vec<Diagnostic> {
+fn report_common_depths(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Vec<GroupFinding> {
     let shown = findings.iter().filter(|one| !one.is_folded && one.finding.kind == &HOLE_DEPTH);
     let shown: BTreeSet<Subject> = shown.map(|one| one.subject).collect();
     let wrong = comparison.pairs.iter().filter(|pair| shown.contains(&Subject::Nominal(pair.nominal)));
@@ -82,17 +101,18 @@ fn report_common_depths(comparison: &Comparison<'_>, findings: &mut HoleFindings
         let (holes, folded) = fold_group(comparison, findings, &[&HOLE_DEPTH], nominal, actual);
         let sizes = || group.iter().map(|pair| error(pair).abs());
         let first = error(group[0]);
-        let message = format!(
-            "{holes}: {} mm too {} (tolerance ±{})",
+        let error = format!(
+            "{} mm too {}",
             format_range(sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)),
             if first > 0.0 { "deep" } else { "shallow" },
-            comparison.tolerances.depth
         );
+        let message = format!("{holes}: {error} (tolerance ±{})", comparison.tolerances.depth);
         let mut finding = Diagnostic::new(&HOLES_ALIKE, message)
             .help("check the programmed depth, the zero along the tool axis, the tool length and its offset");
         let nominal = comparison.nominal[group[0].nominal].depth;
         finding.notes.extend(depth::mistaken_factor(nominal, nominal + first).map(str::to_owned));
-        finish_group_finding(finding, folded, &comparison.actual[group[0].actual].backtrace)
+        let members: BTreeSet<usize> = group.iter().map(|pair| pair.actual).collect();
+        (locate_group(finding, folded, comparison, &members, group[0].actual), summed(&holes, &error))
     };
     groups(wrong, |a, b| (error(a) - error(b)).abs() < SAME_DEPTH).into_iter().map(report).collect()
 }
@@ -101,7 +121,7 @@ fn report_common_shifts(
     comparison: &Comparison<'_>,
     machine: &Machine,
     findings: &mut HoleFindings,
-) -> Vec<Diagnostic> {
+) -> Vec<GroupFinding> {
     if comparison.is_all_in_place() {
         return Vec::new();
     }
@@ -116,15 +136,17 @@ fn report_common_shifts(
     let report = |group: Vec<&HoleDisplacement>| {
         let (nominal, actual) = group.iter().map(|off| (off.nominal, off.actual)).unzip();
         let (holes, folded) = fold_group(comparison, findings, &POSITION_KINDS, nominal, actual);
-        let finding = match group[0].rotation {
+        let (error, help) = match group[0].rotation {
             Some((axis, by)) => {
                 let letter = machine.axes.letter(axis);
-                Diagnostic::new(&HOLES_ALIKE, format!("{holes}: rotated by {letter}{:+.3}°", by.0))
-                    .help(format!("correct {letter} in the program, or its zero in the work offset"))
+                let help = format!("correct {letter} in the program, or its zero in the work offset");
+                (format!("rotated by {letter}{:+.3}°", by.0), help)
             }
-            None => shift_finding(&holes, &group[0].offset, comparison.pattern),
+            None => describe_shift(&group[0].offset, comparison.pattern),
         };
-        finish_group_finding(finding, folded, &comparison.actual[group[0].actual].backtrace)
+        let finding = Diagnostic::new(&HOLES_ALIKE, format!("{holes}: {error}")).help(help);
+        let members: BTreeSet<usize> = group.iter().map(|off| off.actual).collect();
+        (locate_group(finding, folded, comparison, &members, group[0].actual), summed(&holes, &error))
     };
     groups(&wrong, HoleDisplacement::is_same_error).into_iter().map(report).collect()
 }
@@ -149,18 +171,45 @@ fn report_repeated_sets(comparison: &Comparison<'_>, findings: &mut HoleFindings
     sets.into_iter().filter_map(report).collect()
 }
 
-fn shift_finding(holes: &str, offset: &Vector3<f64>, pattern: Option<&Pattern>) -> Diagnostic {
-    let axes = [('X', offset.x), ('Y', offset.y), ('Z', offset.z)].into_iter();
-    let by: Vec<_> = axes
-        .filter(|(_, by)| MIN_OFFSET <= by.abs())
-        .map(|(letter, by)| format!("{letter}{by:+.3}"))
-        .collect();
+/// Returns a shift in words, and its remedy.
+fn describe_shift(offset: &Vector3<f64>, pattern: Option<&Pattern>) -> (String, String) {
     // The cylinder of a honeycomb lies along x.
     let is_off_axis = pattern.is_some() && libm::hypot(offset.y, offset.z) > MIN_OFFSET;
     let off_axis = if is_off_axis { ", off the cylinder axis" } else { "" };
-    Diagnostic::new(&HOLES_ALIKE, format!("{holes}: shifted by {}{off_axis}", by.join(" "))).help(
-        "correct the programmed point or the work offset: the shift is actual − nominal along the machine axes",
-    )
+    let help = "correct the programmed point or the work offset: the shift is actual − nominal along the machine axes";
+    (format!("shifted by {}{off_axis}", shift_words(offset)), help.to_owned())
+}
+
+/// Returns `3 of 18 holes shifted by X+1.000` for the first line of a verdict.
+fn summed(holes: &str, error: &str) -> Option<String> {
+    let holes = holes.split(" (first: ").next().unwrap_or(holes);
+    Some(format!("{holes} {error}"))
+}
+
+/// Locates a finding about some drilled holes at the outermost call that makes no others, or at their first block.
+fn locate_group(
+    mut finding: Diagnostic,
+    folded: usize,
+    comparison: &Comparison<'_>,
+    members: &BTreeSet<usize>,
+    first: usize,
+) -> Diagnostic {
+    let has_call =
+        |backtrace: &Backtrace, block: Span| calls_of(backtrace).any(|call| call.calling_block == block);
+    let makes_others = |is_in: &dyn Fn(&Backtrace) -> bool| {
+        let others = comparison.actual.iter().enumerate().filter(|(index, _)| !members.contains(index));
+        others.map(|(_, hole)| &hole.backtrace).any(is_in)
+    };
+    let backtrace = &comparison.actual[first].backtrace;
+    finding.notes.extend(folded_note(folded));
+    let outermost = calls_of(backtrace).last().map(|call| call.calling_block);
+    if outermost.is_none_or(|block| !makes_others(&|other| has_call(other, block))) {
+        return locate_at_call(finding, backtrace);
+    }
+    if makes_others(&|other| other.block == backtrace.block) {
+        finding.notes.push("this block makes other holes too: the wrong number is elsewhere".to_owned());
+    }
+    finding.with_backtrace(backtrace.clone())
 }
 
 /// Folds the findings about a group of holes; returns its description and their number.

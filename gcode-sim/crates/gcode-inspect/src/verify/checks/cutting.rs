@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 
 use super::*;
 use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFSET, SPINDLE_REVERSED};
-use crate::holes::CutConditions;
+use crate::holes::{CutConditions, OffsetOrigin};
 use crate::machine::{ToolKind, tool_name};
 use gcode_lang::motion::{LengthCompensation, SpindleDirection};
 use gcode_part::Hand;
@@ -76,7 +76,11 @@ impl CutFindings {
     pub(super) fn add(&mut self, finding: Diagnostic, cut: &CutConditions) {
         let index = *self.by_message.entry(finding.message.clone()).or_insert(self.list.len());
         if index == self.list.len() {
-            self.list.push((finding.with_backtrace(cut.backtrace.clone()), 0));
+            let located = match finding.kind == &LENGTH_OFFSET {
+                true => OffsetOrigin::locate(cut.offset_origin.as_ref(), finding, &cut.backtrace),
+                false => finding.with_backtrace(cut.backtrace.clone()),
+            };
+            self.list.push((located, 0));
         }
         self.list[index].1 += cut.count;
     }

@@ -34,6 +34,7 @@ mod tool_idle;
 mod tool_kinds;
 mod tool_short;
 mod tools;
+mod transformed;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -56,6 +57,7 @@ pub(super) const ALL: &[Check] = &[
     start_unknown::check, // start-unknown
     stock::check,         // stock-mismatch
     mirrored::check,      // rotary-sign, mirror-image
+    transformed::check,   // holes-transformed
     row_group::check,     // row-group
     row_angle::check,     // row-angle
     row_seam::check,      // row-seam

@@ -2,7 +2,7 @@
 use super::cutting::{CutFindings, round_thousandth};
 use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_EXTRA, HOLE_IN_AIR, HOLE_MISSING, HOLES_ALIKE, LENGTH_OFFSET};
-use crate::holes::{CutConditions, LengthMismatch, MAX_LINE_OFFSET};
+use crate::holes::{CutConditions, LengthMismatch, MAX_LINE_OFFSET, OffsetOrigin};
 use crate::machine::tool_name;
 use gcode_lang::motion::LengthCompensation;
 use gcode_part::{PARALLEL_COSINE, POINT_LENGTH};
@@ -80,10 +80,10 @@ fn finding(mismatch: &LengthMismatch, limits: &ProcessLimits, machine: &Machine)
         Some(other) => format!("use the job's tool, T{}, or {help}", other.number),
         None => help,
     };
-    Diagnostic::new(&LENGTH_OFFSET, message)
+    let finding = Diagnostic::new(&LENGTH_OFFSET, message)
         .note("this length error alone explains the depths that are wrong; the length comes from the machine file")
-        .help(help)
-        .with_backtrace(mismatch.backtrace.clone())
+        .help(help);
+    OffsetOrigin::locate(mismatch.offset_origin.as_ref(), finding, &mismatch.backtrace)
 }
 
 /// Reports the length offset of another tool of known length: one that is as long in the machine file may differ on the machine.

@@ -341,7 +341,7 @@ fn milled_length(judged: &Judgement<'_>, feature: &Feature, made: &Cut<'_>) -> O
     let (id, name) = (judged.id, made.name());
     let message = match from == 0.0 {
         true => format!(
-            "hole {id}: {name} mills the thread from {to:.3} mm below the entry on, limit {lead:.3}, a turn"
+            "hole {id}: {name} mills the thread from {to:.3} mm below the entry on; less than {lead:.3}, a turn, is required"
         ),
         false => format!(
             "hole {id}: {name} mills no thread from {from:.3} to {to:.3} mm below the entry, limit {MAX_STEP}"
