@@ -30,7 +30,7 @@ pub struct ClaimsFile {
 #[serde(deny_unknown_fields)]
 pub struct ProofRequest {
     /// The block that is run instead of the case's program, as --call: "G65 P8101 A#101".
-    #[schemars(regex(pattern = r"^[^\n]*\S[^\n]*$"))]
+    #[schemars(regex(pattern = r"^[^\n;]*[^\s;][^\n;]*$"))]
     pub call: Option<String>,
     /// Limits of variables, as --range: "#101=500..2000".
     pub range: Vec<String>,
@@ -58,7 +58,7 @@ impl ClaimsFile {
             let claim = format!("proof.{index}.claim");
             reader.check(!proof.claim.is_empty(), &claim, "[]", "at least one claim, \"no-alarm\"")?;
             if let Some(call) = &proof.call {
-                let is_block = !call.trim().is_empty() && !call.contains('\n');
+                let is_block = !call.trim().is_empty() && !call.contains(['\n', ';']);
                 let shown = format!("{call:?}");
                 reader.check(
                     is_block,
