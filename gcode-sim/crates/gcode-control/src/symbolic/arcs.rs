@@ -9,7 +9,6 @@ use super::term::{Term, TermOperation, Terms, Test};
 use super::words::BlockTerms;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::AxisIndex;
-use gcode_lang::program::modes::Motion;
 use gcode_lang::syntax::ast::{Function, Relation};
 
 /// Part of the largest coordinate that bounds the rounding errors of a radius many times over.
@@ -18,17 +17,7 @@ const ROUNDING: f64 = 1e-14;
 /// Largest coordinate at which the centre by R is equally far from both ends within the control's own margin.
 const LARGEST_BY_RADIUS: f64 = 1e4;
 
-/// Returns true for G02 and G03.
-pub(super) fn is_circular(motion: Motion) -> bool {
-    matches!(motion, Motion::Clockwise | Motion::Counterclockwise)
-}
-
 impl State {
-    /// Returns true if blocks of axis words move on arcs.
-    pub(super) fn moves_on_arc(&self) -> bool {
-        self.modal.cycle.is_none() && is_circular(self.modal.motion)
-    }
-
     /// Returns both axes of an arc's plane.
     fn arc_plane(&self, data: &ControlData) -> Option<(AxisIndex, AxisIndex)> {
         data.active_plane(self).ok()
