@@ -124,7 +124,11 @@ mod tests {
             assert!(own.clone().count() >= wanted.len() * proof.cases.len());
             return own.all(|claim| claim.verdict == VerdictName::Proved);
         }
-        let machine = Machine::parse(&package.machine).unwrap();
+        let start = entry
+            .way
+            .get("start")
+            .map_or_else(String::new, |start| format!("\n[start]\n{}\n", start.as_str().unwrap()));
+        let machine = Machine::parse(&format!("{}{start}", package.machine)).unwrap();
         let mut request = Request::new("O9000.nc", *b"O9000\nM30\n", machine);
         request.variables = texts(entry, "set")
             .iter()

@@ -20,6 +20,7 @@ use gcode_inspect::machine::{ErrorFile, MachineFile};
 use gcode_inspect::verify::Verdict;
 use gcode_inspect::verify::flutes::{FluteVerdict, NominalFlutes};
 use gcode_part::HoleList;
+use gcode_part::job::claims::ClaimsFile;
 use gcode_part::job::control_file::ControlFile;
 use gcode_part::job::project::ProjectFile;
 use gcode_part::job::{JobFile, Rates};
@@ -43,6 +44,7 @@ pub const FORMATS: &[Format] = &[
     file::<ControlFile>("control", "settings of the control: --control-file"),
     file::<ProjectFile>("project", "the project's file: gcode.toml"),
     file::<ErrorFile>("errors", "set-up and machine errors: budget --errors"),
+    file::<ClaimsFile>("claims", "claims of a case, proved by test: claims.toml"),
     file::<Rates>("rates", "machine-hour rates: gcode-gen sheet --rates"),
     Format {
         name: "reference",

@@ -152,7 +152,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         return Err(UsageError::new(format!("--time {}: seconds above 0, up to 86400", arguments.time)));
     }
     if let Some(call) = &arguments.call
-        && (call.trim().is_empty() || call.contains('\n'))
+        && (call.trim().is_empty() || call.contains(['\n', ';']))
     {
         return Err(UsageError::new("--call: write one block, 'G65 P8101 A#101'"));
     }

@@ -28,6 +28,8 @@ pub(crate) struct ProofReport {
     unfollowed: Vec<String>,
     /// No run is known to end without an alarm: a condition at the end says nothing then.
     never_ends: bool,
+    /// Variables with a range that no run reads, where every claim is proved.
+    unread: Vec<String>,
     /// Text of the counterexamples, in the order of the claims.
     #[serde(skip)]
     counterexamples: Vec<String>,
@@ -93,6 +95,7 @@ impl ProofReport {
             seconds,
             unfollowed: answer.unfollowed.clone(),
             never_ends: answer.never_ends,
+            unread: answer.unread.iter().map(|variable| format!("#{variable}")).collect(),
             counterexamples: answer.claims.iter().map(|claim| counterexample(claim, &rerun)).collect(),
         }
     }
@@ -128,6 +131,9 @@ impl ProofReport {
             text.push_str(
                 "no run is known to end without an alarm: a condition at the end says nothing then\n",
             );
+        }
+        for variable in &self.unread {
+            _ = writeln!(text, "{variable} is read by no run: its --range decides nothing");
         }
         let boxes = if self.boxes == 1 { "box" } else { "boxes" };
         let runs = count(self.runs as usize, "run");

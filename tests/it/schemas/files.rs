@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gcode_inspect::machine::{Machine, error_file};
 use gcode_lang::control::Settings;
+use gcode_part::job::claims::ClaimsFile;
 use gcode_part::job::control_file;
 use gcode_part::job::project::ProjectFile;
 use gcode_part::job::{Job, Rates};
@@ -16,7 +17,7 @@ use super::{schema, validator, walk};
 type Read = fn(&str) -> Result<(), String>;
 
 /// The TOML files by the names of their schemas, each with its reader.
-const READERS: [(&str, Read); 6] = [
+const READERS: [(&str, Read); 7] = [
     ("job", |text| Job::parse(text).map(drop).map_err(|error| error.to_string())),
     ("machine", |text| Machine::parse(text).map(drop).map_err(|error| error.to_string())),
     ("control", |text| {
@@ -27,6 +28,7 @@ const READERS: [(&str, Read); 6] = [
         error_file(text, &machine).map(drop).map_err(|error| error.to_string())
     }),
     ("project", |text| ProjectFile::parse(text).map(drop).map_err(|error| error.to_string())),
+    ("claims", |text| ClaimsFile::parse(text).map(drop).map_err(|error| error.to_string())),
     ("rates", |text| Rates::parse(text).map(drop).map_err(|error| error.to_string())),
 ];
 

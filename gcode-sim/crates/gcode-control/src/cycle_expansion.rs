@@ -270,7 +270,7 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
 }
 
 /// Largest number of pecks in one block; a run must end.
-const MAX_PECKS: u32 = 1_000_000;
+pub(super) const MAX_PECKS: u32 = 1_000_000;
 
 /// Visits the pecks from R to Z with their start, end and whether they are the last; the last peck is the remainder.
 pub(super) fn for_each_peck((r, z): (f64, f64), cycle: &CycleState, mut emit: impl FnMut(f64, f64, bool)) {

@@ -323,11 +323,7 @@ impl Planner<'_> {
     pub(super) fn plan_arc(&self, plan: &mut BlockPlan, endpoint: &Endpoint) -> ExecResult<()> {
         let state = &plan.state;
         let plane = self.locate(self.data.active_plane(state))?;
-        let (first, second, stray) = match state.modal.plane {
-            Plane::Xy => (b'I', b'J', b'K'),
-            Plane::Zx => (b'K', b'I', b'J'),
-            Plane::Yz => (b'J', b'K', b'I'),
-        };
+        let [first, second, stray] = centre_letters(state.modal.plane);
         let start = (state.programmed_position[plane.0], state.programmed_position[plane.1]);
         let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
@@ -461,6 +457,15 @@ impl Planner<'_> {
         let left = if clockwise == (radius < 0.0) { height } else { -height };
         let middle = (start.0 + dx / 2.0, start.1 + dy / 2.0);
         Ok((middle.0 - left * dy / chord, middle.1 + left * dx / chord))
+    }
+}
+
+/// Returns the letters of an arc's centre along both axes of a plane, and the one of the third axis.
+pub(super) fn centre_letters(plane: Plane) -> [u8; 3] {
+    match plane {
+        Plane::Xy => *b"IJK",
+        Plane::Zx => *b"KIJ",
+        Plane::Yz => *b"JKI",
     }
 }
 

@@ -71,6 +71,11 @@ pub struct State {
     pub tool: u32,
 }
 
+/// Returns true for G02 and G03.
+pub(super) fn is_circular(motion: Motion) -> bool {
+    matches!(motion, Motion::Clockwise | Motion::Counterclockwise)
+}
+
 impl State {
     /// Applies a code of group 01, which ends a canned cycle (operator's manual, canned cycle for drilling).
     #[inline]
@@ -80,6 +85,11 @@ impl State {
             self.cycle = CycleState::default();
             self.rigid_tapping = RigidTapping::Off;
         }
+    }
+
+    /// Returns true if blocks of axis words move on arcs.
+    pub(super) fn moves_on_arc(&self) -> bool {
+        self.modal.cycle.is_none() && is_circular(self.modal.motion)
     }
 
     /// Returns the source of the tool length offset.

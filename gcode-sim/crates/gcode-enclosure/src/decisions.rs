@@ -5,8 +5,14 @@ use crate::enclosures::Enclosures;
 use crate::hull;
 use crate::interval::Interval;
 use crate::model::Model;
-use crate::node::{AlarmKind, Binary, Condition, Node, NodeId, Relation};
+use crate::node::{AlarmKind, Binary, Condition, Node, NodeId, Relation, Unary};
 use crate::proof::Prover;
+
+/// Largest number of magnitudes whose signs are told apart for one condition.
+const MAX_SIGNS: usize = 3;
+
+/// Largest number of nodes among which magnitudes are looked for.
+const MAX_SEARCHED: usize = 200;
 
 impl Enclosures {
     /// Returns the alarms that the node's own operation can raise where its operands have values.
@@ -75,6 +81,66 @@ impl Enclosures {
                 Prover::new(arena, &hulls, &self.conditions).decide(relation, left, right)
             })
             .or_else(|| self.decide_difference(arena, relation, left, right))
+    }
+
+    /// Decides a condition like [`Enclosures::decide`]; where a magnitude's argument has both signs, for each of them.
+    pub fn decide_by_signs(&mut self, arena: &Arena, condition: Condition) -> Option<bool> {
+        self.decide_with(arena, condition, MAX_SIGNS)
+    }
+
+    fn decide_with(&mut self, arena: &Arena, condition: Condition, signs: usize) -> Option<bool> {
+        let decided = self.decide(arena, condition);
+        if decided.is_some() || signs == 0 {
+            return decided;
+        }
+        let argument = self.argument_of_both_signs(arena, [condition.left, condition.right])?;
+        let of_sign = |relation: Relation| {
+            let mut enclosures = self.clone();
+            let sign = Condition { relation, left: argument, right: Arena::ZERO };
+            // A sign that no point has decides nothing.
+            let is_possible = enclosures.assume(arena, sign);
+            is_possible.then(|| {
+                enclosures.forget_magnitude(arena, argument);
+                enclosures.decide_with(arena, condition, signs - 1)
+            })
+        };
+        match (of_sign(Relation::Ge), of_sign(Relation::Lt)) {
+            (Some(one), Some(other)) => one.filter(|_| one == other),
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => None,
+        }
+    }
+
+    /// Forgets the forms of a magnitude and of all that is computed of it, so that the sign of its argument counts.
+    fn forget_magnitude(&mut self, arena: &Arena, argument: NodeId) {
+        let Some(magnitude) = arena.find_unary(Unary::Abs, argument) else { return };
+        let mut is_forgotten = vec![false; self.forms.len()];
+        for (index, form) in self.forms.iter_mut().enumerate().skip(magnitude.index()) {
+            let node = NodeId(index as u32);
+            if node == magnitude || arena.operands(node).any(|operand| is_forgotten[operand.index()]) {
+                is_forgotten[index] = true;
+                *form = None;
+            }
+        }
+    }
+
+    /// Returns the argument of a magnitude in nodes that is below 0 somewhere in the box, and above elsewhere.
+    fn argument_of_both_signs(&self, arena: &Arena, nodes: [NodeId; 2]) -> Option<NodeId> {
+        let mut pending = nodes.to_vec();
+        let mut seen = std::collections::HashSet::new();
+        while let Some(node) = pending.pop() {
+            if !seen.insert(node) || seen.len() > MAX_SEARCHED {
+                continue;
+            }
+            if let Node::Unary(Unary::Abs, argument) = arena.node(node) {
+                let hull = self.hull(argument);
+                if hull.lo() < 0.0 && hull.hi() > 0.0 {
+                    return Some(argument);
+                }
+            }
+            pending.extend(arena.operands(node));
+        }
+        None
     }
 
     /// Decides by the polynomial of the difference, in which common parts cancel.

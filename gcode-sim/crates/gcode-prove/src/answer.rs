@@ -128,6 +128,8 @@ pub struct Answer {
     pub unfollowed: Vec<String>,
     /// No run ends without an alarm, as far as is known: a condition at the end says nothing then.
     pub never_ends: bool,
+    /// Variables of ranges on which nothing depends, if every claim is proved.
+    pub unread: Vec<u32>,
 }
 
 /// Message of a thread that has panicked.
@@ -145,7 +147,8 @@ const MAX_WIDENING: f64 = 1e-3;
 /// [`ProveError`] if the request can't be used.
 pub fn prove<S: Setup>(setup: &S, ask: &Ask, watch: &Watch<'_>) -> Result<Answer, ProveError> {
     let (question, claims) = read(setup, ask)?;
-    let mut prover = Prover { setup, watch, threads: ask.threads.get(), question, answer: empty(ask) };
+    let mut prover =
+        Prover { setup, watch, threads: ask.threads.get(), question, read_inputs: 0, answer: empty(ask) };
     // Claims that aren't decided leave time for the bounds.
     watch.allow(if prover.question.bounds.is_empty() { 1000 } else { 600 });
     prover.prove_claims(&claims)?;
@@ -197,6 +200,7 @@ fn empty(ask: &Ask) -> Answer {
         runs: 0,
         unfollowed: Vec::new(),
         never_ends: false,
+        unread: Vec::new(),
     }
 }
 
@@ -254,6 +258,8 @@ struct Prover<'a, S> {
     threads: usize,
     /// Question without claims.
     question: Question,
+    /// Inputs that some way reads, as bits.
+    read_inputs: u64,
     answer: Answer,
 }
 
@@ -312,6 +318,7 @@ impl<S: Setup> Prover<'_, S> {
                     if proves {
                         prober.work();
                     }
+                    shared.note_read(prober.tree.nodes.read_inputs());
                     Ok(())
                 })
             };
@@ -384,6 +391,7 @@ impl<S: Setup> Prover<'_, S> {
                 answer.verdict = Verdict::Undecided;
             }
         }
+        self.read_inputs |= rest.read_inputs;
         let asks_at_end = question.claims.iter().any(|claim| matches!(claim, Claim::Condition(_)));
         self.answer.never_ends |= asks_at_end && !rest.has_end;
         debug_assert_eq!(rest.refuted.count_ones() as usize, rest.counterexamples.len());
@@ -454,6 +462,14 @@ impl<S: Setup> Prover<'_, S> {
         } else {
             Verdict::Proved
         };
+        // Every way of a proof has been followed.
+        if self.answer.verdict == Verdict::Proved && !self.answer.claims.is_empty() {
+            let ranges = self.question.ranges.iter().enumerate();
+            let is_unread = |(index, range): &(usize, &Range)| {
+                range.low < range.high && self.read_inputs.checked_shr(*index as u32).unwrap_or(1) & 1 == 0
+            };
+            self.answer.unread = ranges.filter(is_unread).map(|(_, range)| range.variable).collect();
+        }
         self.answer.boxes = self.watch.boxes();
         self.answer.runs = self.watch.runs();
         self.answer

@@ -35,6 +35,8 @@ pub(crate) struct Nodes {
     repeated: VecDeque<TestKey>,
     /// An answer has been taken for another test than its own.
     has_mismatch: bool,
+    /// Inputs that something is computed of, or that are compared, as bits.
+    read_inputs: u64,
 }
 
 /// Test as a key: what is asked, and the bits of its terms.
@@ -74,6 +76,7 @@ impl Nodes {
             decisions: HashMap::new(),
             repeated: VecDeque::new(),
             has_mismatch: false,
+            read_inputs: 0,
         }
     }
 
@@ -89,6 +92,11 @@ impl Nodes {
     pub(crate) fn input(&mut self, index: usize) -> Term {
         let id = self.arena.input(index);
         self.term(id)
+    }
+
+    /// Returns the inputs that something is computed of, or that are compared, as bits.
+    pub(crate) fn read_inputs(&self) -> u64 {
+        self.read_inputs
     }
 
     /// Returns numbers of the program that meet a node.
@@ -155,7 +163,13 @@ impl Nodes {
                 }
                 self.arena.constant(number)
             }
-            Term::Node(node) => self.known_id(node),
+            Term::Node(node) => {
+                let id = self.known_id(node);
+                if let Node::Input(input) = self.arena.node(id) {
+                    self.read_inputs |= 1_u64.checked_shl(input as u32).unwrap_or(0);
+                }
+                id
+            }
         }
     }
 

@@ -233,7 +233,7 @@ fn decide(
     match formula {
         NodeFormula::Known(known) => Some(*known),
         NodeFormula::Condition(condition) => {
-            let answer = enclosures.decide(arena, *condition);
+            let answer = enclosures.decide_by_signs(arena, *condition);
             if answer.is_none() {
                 undecided.push(*condition);
             }

@@ -2,6 +2,7 @@
 use gcode_control::symbolic::compile_condition;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::Bytecode;
+use gcode_lang::similar;
 
 /// Range of a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +65,8 @@ impl Range {
         let unreadable = || RequestError::Range(text.to_owned());
         let parsed = text.trim().strip_prefix('#').and_then(|rest| {
             let (number, limits) = rest.split_once('=')?;
-            let (low, high) = limits.split_once("..")?;
+            // Of three points any could be a decimal point.
+            let (low, high) = limits.split_once("..").filter(|_| !limits.contains("..."))?;
             let limit = |limit: &str| limit.trim().parse::<f64>().ok().filter(|limit| limit.is_finite());
             // A negative zero is the zero that a control has.
             Some(Self {
@@ -142,10 +144,16 @@ impl Claim {
                     .ok_or_else(|| refused("the limits are missing: 1320=X100. 1321=X-5."))
             }
             _ if trimmed.is_empty() => Err(refused("the claim is empty")),
-            _ => condition(trimmed).map(Self::Condition).map_err(|why| refused(&why)),
+            _ => condition(trimmed).map(Self::Condition).map_err(|why| match similar(word, WORDS) {
+                Some(meant) => refused(&format!("did you mean '{meant}'?")),
+                None => refused(&why),
+            }),
         }
     }
 }
+
+/// Words with which a claim begins that is no condition.
+const WORDS: [&str; 4] = ["no-alarm", "alarm", "blocks", "travel"];
 
 /// Returns true for a code as the control displays it.
 fn is_alarm_code(code: &str) -> bool {
@@ -179,10 +187,28 @@ mod tests {
     fn a_range_has_limits_in_order() {
         assert_eq!(Range::parse("#1=0.1..9.9"), Ok(Range { variable: 1, low: 0.1, high: 9.9 }));
         assert_eq!(Range::parse(" #101 = -5 .. -5 "), Ok(Range { variable: 101, low: -5.0, high: -5.0 }));
-        for unreadable in ["1=0..1", "#1=0", "#1=0..", "#x=0..1", "#1=0..inf", "#1=..", ""] {
+        for unreadable in
+            ["1=0..1", "#1=0", "#1=0..", "#x=0..1", "#1=0..inf", "#1=nan..1", "#1=0...1", "#1=..", ""]
+        {
             assert_eq!(Range::parse(unreadable), Err(RequestError::Range(unreadable.to_owned())));
         }
         assert_eq!(Range::parse("#1=2..1"), Err(RequestError::EmptyRange("#1=2..1".to_owned())));
+    }
+
+    #[test]
+    fn a_misspelt_claim_is_named_with_the_one_that_is_meant() {
+        for (text, meant) in [
+            ("no-alarms", "no-alarm"),
+            ("noalarm", "no-alarm"),
+            ("alarms MC3001", "alarm"),
+            ("block LE 5", "blocks"),
+            ("travels 1320=X1.", "travel"),
+        ] {
+            let error = Claim::parse(text).unwrap_err().to_string();
+            assert!(error.contains(&format!("did you mean '{meant}'?")), "{error}");
+        }
+        let error = Claim::parse("#100 LE").unwrap_err().to_string();
+        assert!(error.contains("PS1125") && !error.contains("did you mean"), "{error}");
     }
 
     #[test]

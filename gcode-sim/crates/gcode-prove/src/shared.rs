@@ -47,6 +47,7 @@ pub(crate) struct Shared {
     refuted: AtomicU64,
     is_included: AtomicBool,
     has_end: AtomicBool,
+    read_inputs: AtomicU64,
     queue: Mutex<Queue>,
     changed: Condvar,
 }
@@ -98,6 +99,11 @@ impl Shared {
     /// Records a point at which the control and the tree disagree: nothing is proved then.
     pub(crate) fn disagree(&self, point: &[f64]) {
         self.queue().disagreement.get_or_insert_with(|| point.to_vec());
+    }
+
+    /// Records the inputs that some way reads, as bits.
+    pub(crate) fn note_read(&self, inputs: u64) {
+        self.read_inputs.fetch_or(inputs, Ordering::Relaxed);
     }
 
     pub(crate) fn note_unfollowed(&self, what: &str) {
@@ -175,6 +181,7 @@ impl Shared {
             disagreement: queue.disagreement,
             is_included: self.is_included.into_inner(),
             has_end: self.has_end.into_inner(),
+            read_inputs: self.read_inputs.into_inner(),
         }
     }
 }
@@ -192,4 +199,6 @@ pub(crate) struct Rest {
     pub(crate) disagreement: Option<Vec<f64>>,
     pub(crate) is_included: bool,
     pub(crate) has_end: bool,
+    /// Inputs that some way reads, as bits.
+    pub(crate) read_inputs: u64,
 }

@@ -17,6 +17,7 @@ use crate::report::test_report::{ClaimCounts, FirstFailure};
 use gcode_control::Control;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
+use gcode_part::job::claims::{ClaimsFile, ProofRequest};
 use gcode_prove::{Answer, Ask, Setup, Verdict, Watch, prove};
 use gcode_session::Request;
 
@@ -28,29 +29,6 @@ pub(super) const LOCK: &str = "claims.lock";
 
 /// Seconds for the claims of one request.
 const TIME: f64 = 10.0;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ClaimsFile {
-    proof: Vec<ProofRequest>,
-}
-
-/// One request of `prove`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ProofRequest {
-    /// Block that is run instead of the case's program.
-    call: Option<String>,
-    /// Ranges, as of --range.
-    range: Vec<String>,
-    /// Conditions, as of --where.
-    #[serde(default, rename = "where")]
-    conditions: Vec<String>,
-    /// Claims, as of --claim.
-    claim: Vec<String>,
-    /// Largest time in seconds.
-    time: Option<f64>,
-}
 
 #[derive(Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -147,8 +125,7 @@ pub(super) fn check(
     (program, libraries): (&Path, &[PathBuf]),
     is_all: bool,
 ) -> Result<ClaimsResult, UsageError> {
-    let claims: ClaimsFile =
-        toml::from_str(&input::text(file)?).map_err(|error| UsageError::in_file(file, error.message()))?;
+    let claims = ClaimsFile::parse(&input::text(file)?).map_err(|error| UsageError::in_file(file, error))?;
     let recorded: LockFile = match lock.exists() && !is_all {
         true => {
             toml::from_str(&input::text(lock)?).map_err(|error| UsageError::in_file(lock, error.message()))?
@@ -195,17 +172,6 @@ pub(super) fn check(
 
 fn prove_one(one: &ProofRequest, controls: &Controls<'_>) -> Result<Answer, String> {
     let time = one.time.unwrap_or(TIME);
-    if !(time > 0.0 && time <= 86_400.0) {
-        return Err(format!("time {time}: seconds above 0, up to 86400"));
-    }
-    if let Some(call) = &one.call
-        && (call.trim().is_empty() || call.contains('\n'))
-    {
-        return Err("call: write one block, 'G65 P8101 A#101'".to_owned());
-    }
-    if one.claim.is_empty() {
-        return Err("claim: write at least one claim, \"no-alarm\"".to_owned());
-    }
     let ask = Ask {
         ranges: one.range.clone(),
         conditions: one.conditions.clone(),

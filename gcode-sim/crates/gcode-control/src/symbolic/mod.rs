@@ -5,7 +5,9 @@
 //! expressions that read it become nodes of the caller's [`Terms`]. Where the answer to a question isn't the same for all
 //! values, [`SymbolicRun::advance`] returns the question and changes nothing; the caller follows each answer, from a
 //! [`Snapshot`] on. What isn't followed is reported by name: a result never rests on it in silence.
+mod arcs;
 mod bits;
+mod cycles;
 mod expression;
 mod functions;
 mod moves;

@@ -1,9 +1,11 @@
-//! Straight moves of a symbolic run: end points and feeds that depend on the ranges, with the alarms that they can raise.
+//! Moves of a symbolic run: end points and feeds that depend on the ranges, with the alarms that they can raise.
 use super::super::control::Control;
 use super::super::coordinates;
+use super::super::functions::ExecResult;
 use super::super::outcome::Outcome;
 use super::super::plan::BlockPlan;
 use super::super::registers::Registers;
+use super::super::state::is_circular;
 use super::super::words::{BlockWords, WordNumber};
 use super::SymbolicRun;
 use super::oracle::{Halt, Oracle, Symbolic};
@@ -12,7 +14,7 @@ use super::term::{Term, TermOperation, Terms, Test, UNFOLLOWED};
 use super::words::BlockTerms;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::AxisIndex;
-use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Motion, Polar};
 use gcode_lang::program::{Library, Words};
 use gcode_lang::source::Span;
@@ -31,6 +33,7 @@ impl Registers {
         let state = &self.state;
         let positions = [&state.programmed_position, &state.machine_position];
         positions.iter().any(|position| position.0.iter().any(|at| at.is_nan()))
+            || state.cycle.levels().iter().any(|level| level.is_nan())
             || state.modal_words.f.is_nan()
             || state.modal_words.s.is_nan()
     }
@@ -43,15 +46,18 @@ impl Registers {
                 (state.programmed_position[axis], state.machine_position[axis]) = (UNFOLLOWED, UNFOLLOWED);
             }
         }
+        if self.state.cycle.initial.is_nan() {
+            self.state.cycle.initial = UNFOLLOWED;
+        }
     }
 }
 
 /// End of one axis of a move.
 #[derive(Clone, Copy)]
-struct AxisEnd {
-    axis: AxisIndex,
-    programmed: Option<Term>,
-    machine: Option<Term>,
+pub(super) struct AxisEnd {
+    pub(super) axis: AxisIndex,
+    pub(super) programmed: Option<Term>,
+    pub(super) machine: Option<Term>,
 }
 
 impl SymbolicRun {
@@ -65,12 +71,13 @@ impl SymbolicRun {
         oracle: &mut Oracle<'_, T>,
         library: &mut impl Library,
     ) -> Symbolic<Option<Outcome>> {
+        // The radius of an arc is checked with the terms.
+        let mut result = self.plan_with_tolerance(words, f64::INFINITY);
+        if self.control.plan.state.moves_on_arc() && !self.is_arc_of_terms(terms) {
+            result =
+                self.plan_with_tolerance(words, self.control.executor.registers.data.settings.arc_tolerance);
+        }
         let Control { executor, plan, block_words, .. } = &mut self.control;
-        plan.reset(&executor.registers.state);
-        // The strokes are checked at the ends that depend on the ranges.
-        let limits = executor.registers.data.settings.stroke_limits.take();
-        let result = executor.plan_words(words, block_words, plan);
-        executor.registers.data.settings.stroke_limits = limits;
         let registers = &executor.registers;
         let mut block = MoveBlock { registers, plan, words: block_words, terms, oracle, span: place.span };
         // A plan that a known word refuses ends early: what its codes need is checked first.
@@ -79,6 +86,7 @@ impl SymbolicRun {
             return Err(block.refused(alarm.into()));
         }
         let ends = block.ends()?;
+        let pecks = block.uncounted_pecks();
         let plan = &mut self.control.plan;
         for end in &ends {
             let stored = |term: Option<Term>| term.map_or(UNFOLLOWED, Term::stored);
@@ -97,6 +105,7 @@ impl SymbolicRun {
         let shifts = had_terms && self.control.block_words.has_non_motion_code(shifts_coordinates);
         self.control.executor.begin(place);
         let end = self.carry_out(library)?;
+        self.control.executor.log.moves += pecks;
         let registers = &mut self.control.executor.registers;
         if moves {
             registers.clock.motion_seconds = UNFOLLOWED;
@@ -106,6 +115,20 @@ impl SymbolicRun {
         }
         Ok(end)
     }
+
+    /// Plans a block with a tolerance of the radius of arcs, and without stroke limits: these are checked at the ends that depend
+    /// on the ranges.
+    fn plan_with_tolerance(&mut self, words: &Words, tolerance: f64) -> ExecResult<()> {
+        let Control { executor, plan, block_words, .. } = &mut self.control;
+        plan.reset(&executor.registers.state);
+        let settings = &mut executor.registers.data.settings;
+        let (limits, own) = (settings.stroke_limits.take(), settings.arc_tolerance);
+        settings.arc_tolerance = tolerance;
+        let result = executor.plan_words(words, block_words, plan);
+        let settings = &mut executor.registers.data.settings;
+        (settings.stroke_limits, settings.arc_tolerance) = (limits, own);
+        result
+    }
 }
 
 /// Returns true for a code after which the same position has other coordinates.
@@ -114,13 +137,13 @@ fn shifts_coordinates(effect: Effect) -> bool {
 }
 
 /// Block that is planned, with its terms.
-struct MoveBlock<'a, 'o, T> {
-    registers: &'a Registers,
-    plan: &'a mut BlockPlan,
-    words: &'a BlockWords,
-    terms: &'a BlockTerms,
-    oracle: &'a mut Oracle<'o, T>,
-    span: Span,
+pub(super) struct MoveBlock<'a, 'o, T> {
+    pub(super) registers: &'a Registers,
+    pub(super) plan: &'a mut BlockPlan,
+    pub(super) words: &'a BlockWords,
+    pub(super) terms: &'a BlockTerms,
+    pub(super) oracle: &'a mut Oracle<'o, T>,
+    pub(super) span: Span,
 }
 
 impl<T: Terms> MoveBlock<'_, '_, T> {
@@ -130,6 +153,9 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             let (low, high) = oracle.terms.bounds(*term);
             low > -5e4 && high < 5e4
         };
+        if self.has_stand_ins() {
+            return Halt::unfollowed("a block with several possible alarms");
+        }
         let state = &self.registers.state;
         let is_near = |axis| self.registers.data.zero(state, axis).abs() < 1e4;
         let is_near = (0..self.registers.data.settings.axes.len()).all(is_near);
@@ -140,17 +166,36 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         Halt::unfollowed("a block with several possible alarms")
     }
 
-    fn names_axis(&self) -> bool {
+    pub(super) fn names_axis(&self) -> bool {
         self.words.has_letters(self.registers.data.settings.axes.letter_bits())
+    }
+
+    /// Returns true if the alarm of a refused plan may be that of a number in the place of a term.
+    fn has_stand_ins(&self) -> bool {
+        let is_arc = |row: &GCodeRow| matches!(row.effect, Effect::Motion(motion) if is_circular(motion));
+        !self.terms.lengths.is_empty()
+            || self.plan.state.moves_on_arc()
+            || self.words.g_codes().any(is_arc)
+            || self.plan.state.modal.cycle.is_some() && !self.has_known_levels()
+    }
+
+    /// Returns true if the block moves axes: it names one, or repeats a cycle or an arc.
+    pub(super) fn commands_move(&self) -> bool {
+        let state = &self.plan.state;
+        self.names_axis()
+            || state.modal.cycle.is_some() && self.words.has(b'R')
+            || state.moves_on_arc() && self.words.has_any(b"IJKR")
     }
 
     /// Refuses codes and modes in which more than a straight move depends on a position.
     fn check_codes(&self) -> Symbolic<()> {
-        let names_axis = self.names_axis();
+        let names_axis = self.commands_move();
         let has_terms = self.registers.has_terms_in_state();
         for row in self.words.g_codes() {
             let is_followed = match row.effect {
-                Effect::Motion(Motion::Rapid | Motion::Linear)
+                Effect::Motion(
+                    Motion::Rapid | Motion::Linear | Motion::Clockwise | Motion::Counterclockwise,
+                )
                 | Effect::Plane(_)
                 | Effect::Distance(_)
                 | Effect::FeedMode(_)
@@ -178,10 +223,11 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         }
         let has_limits = self.registers.data.settings.stroke_limits.is_some();
         let state = &self.plan.state;
-        let is_arc = !matches!(state.modal.motion, Motion::Rapid | Motion::Linear);
+        let is_thread = state.modal.cycle.is_none() && state.modal.motion == Motion::Thread;
         let refused = [
-            (is_arc && (names_axis || self.words.has_any(b"IJKR")), "an arc or a thread"),
-            (!self.is_plain_cycle(), "a canned cycle"),
+            (is_thread && names_axis, "a thread"),
+            (!self.terms.lengths.is_empty() && !self.takes_lengths(), "I, J, K, R or Q in this block"),
+            (state.modal.cycle.is_some() && names_axis && !self.is_followed_cycle(), "a canned cycle"),
             (state.modal.cutter != CutterSide::Off && names_axis, "a move in cutter compensation"),
             (self.plan.corner.is_some(), "a corner"),
             (
@@ -194,7 +240,11 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             (names_axis && !state.transform.is_identity(), "mirrored, scaled or rotated coordinates"),
             (names_axis && state.end_before_transform.is_some(), "a move after a change of coordinates"),
             (names_axis && self.registers.is_inch(), "a length in inches"),
-            (names_axis && self.words.has(b'L'), "repeated moves"),
+            (
+                names_axis && (state.virtual_plane.is_some() || state.part_error.is_some()),
+                "a virtual plane or a setting error",
+            ),
+            (names_axis && self.words.has(b'L') && state.modal.cycle.is_none(), "repeated moves"),
             (
                 (has_terms || !names_axis) && state.length_offset != self.registers.state.length_offset,
                 "a new tool length",
@@ -215,28 +265,6 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             || positions.iter().any(|position| position.0.iter().any(|at| at.is_nan()))
     }
 
-    /// Returns true if the block drills by no cycle, or by one of which only the place of the hole depends on the ranges.
-    fn is_plain_cycle(&self) -> bool {
-        let state = &self.plan.state;
-        if state.modal.cycle.is_none() || !(self.names_axis() || self.words.has(b'R')) {
-            return true;
-        }
-        // The axis of a plan that ended early is that of the last block.
-        let drilling = self.plan.cycle_plan.as_ref().map(|cycle| cycle.axis).or(state.cycle.axis);
-        let before = &self.registers.state;
-        let is_known = |axis: AxisIndex| {
-            let letter = self.registers.data.settings.axes.letter(axis) as u8;
-            self.terms.axes.iter().all(|(named, _)| *named != letter)
-                && !before.programmed_position[axis].is_nan()
-                && !before.machine_position[axis].is_nan()
-        };
-        drilling.is_some_and(is_known)
-            && !state.modal.cycle.is_some_and(gcode_lang::program::cycles::Cycle::taps)
-            && !self.words.has_any(b"KLIJ")
-            && self.registers.data.settings.stroke_limits.is_none()
-            && !state.modal_words.s.is_nan()
-    }
-
     /// Returns the ends of all axes that depend on the ranges, after the alarms of the block in the control's order.
     fn ends(&mut self) -> Symbolic<Vec<AxisEnd>> {
         let zero = Term::Number(0.0);
@@ -246,20 +274,8 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             return self.alarm(Alarm::IllegalMinus { letter: 'F' }, b'F');
         }
         let axes: Vec<_> = self.registers.data.settings.axes.letters().collect();
-        let drilling = self.plan.cycle_plan.as_ref().map(|cycle| cycle.axis);
         let mut ends = Vec::new();
         for (axis, letter) in &axes {
-            if drilling == Some(*axis) {
-                // It ends at a level that is known.
-                let state = &self.plan.state;
-                let known = |at: f64| Term::of(at).ok_or_else(|| Halt::unfollowed("a canned cycle"));
-                ends.push(AxisEnd {
-                    axis: *axis,
-                    programmed: Some(known(state.programmed_position[*axis])?),
-                    machine: Some(known(state.machine_position[*axis])?),
-                });
-                continue;
-            }
             let is_named = self.plan.skip_plan.is_none() && self.words.has(*letter);
             ends.push(match self.plan.commands_axes && is_named {
                 true => self.end(*axis, *letter)?,
@@ -268,8 +284,16 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         }
         if self.plan.commands_axes {
             self.check_range(&ends, &axes)?;
-            self.check_feed()?;
-            self.check_stroke(&ends)?;
+            let cycle = self.cycle_words()?;
+            let arc = self.arc_words(&ends)?;
+            self.check_feed(arc.is_some())?;
+            match (cycle, arc) {
+                (Some(cycle), _) => self.drill(&cycle, &mut ends)?,
+                (None, arc) => {
+                    self.check_stroke(&ends)?;
+                    self.check_stroke_of_arc(arc)?;
+                }
+            }
         }
         let is_term = |end: &AxisEnd| {
             !matches!((end.programmed, end.machine), (Some(Term::Number(_)), Some(Term::Number(_))))
@@ -278,7 +302,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         Ok(ends)
     }
 
-    fn alarm<R>(&self, alarm: Alarm, letter: u8) -> Symbolic<R> {
+    pub(super) fn alarm<R>(&self, alarm: Alarm, letter: u8) -> Symbolic<R> {
         let span = if self.words.has(letter) { self.words.span(letter) } else { self.span };
         Err(alarm.located_at(span).into())
     }
@@ -327,20 +351,24 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 })
             }
         };
-        let (zero, length) = (data.zero(&self.plan.state, axis), self.plan.state.length_offset[axis]);
-        let machine = programmed.map(|programmed| {
-            if zero == 0.0 && length == 0.0 {
-                return programmed;
-            }
-            let shifted = self.node(TermOperation::Add, programmed, Term::Number(zero));
-            let machine = self.node(TermOperation::Add, shifted, Term::Number(length));
-            self.without_residue(machine)
-        });
+        let machine = programmed.map(|programmed| self.on_machine(axis, programmed));
         Ok(AxisEnd { axis, programmed, machine })
     }
 
+    /// Returns a programmed coordinate without rounding errors as one of the machine.
+    pub(super) fn on_machine(&mut self, axis: AxisIndex, programmed: Term) -> Term {
+        let zero = self.registers.data.zero(&self.plan.state, axis);
+        let length = self.plan.state.length_offset[axis];
+        if zero == 0.0 && length == 0.0 {
+            return programmed;
+        }
+        let shifted = self.node(TermOperation::Add, programmed, Term::Number(zero));
+        let machine = self.node(TermOperation::Add, shifted, Term::Number(length));
+        self.without_residue(machine)
+    }
+
     /// Returns a word in mm or degrees, a multiple of the increment.
-    fn dimension(&mut self, term: Term, letter: u8) -> Symbolic<Term> {
+    pub(super) fn dimension(&mut self, term: Term, letter: u8) -> Symbolic<Term> {
         let scale = POWERS[self.registers.data.decimals(letter, self.plan.state.modal.unit)];
         let magnitude = self.node(TermOperation::Function(Function::Abs), term, term);
         if self.oracle.ask(Test::Compare(Relation::Gt, magnitude, Term::Number(SURELY_TOO_LARGE)))? {
@@ -355,15 +383,26 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
     }
 
     /// Returns the node of an operation, or its number if the operands are known.
-    fn node(&mut self, operation: TermOperation, left: Term, right: Term) -> Term {
-        if let (Term::Number(left), Term::Number(right), TermOperation::Add) = (left, right, operation) {
-            return Term::Number(left + right);
+    pub(super) fn node(&mut self, operation: TermOperation, left: Term, right: Term) -> Term {
+        if let (Term::Number(left), Term::Number(right)) = (left, right) {
+            let known = match operation {
+                TermOperation::Add => Some(left + right),
+                TermOperation::Subtract => Some(left - right),
+                TermOperation::Multiply => Some(left * right),
+                TermOperation::Divide => Some(left / right),
+                TermOperation::Function(Function::Abs) => Some(left.abs()),
+                TermOperation::Function(Function::Sqrt) => Some(left.sqrt()),
+                _ => None,
+            };
+            if let Some(known) = known.filter(|known| known.is_finite()) {
+                return Term::Number(known);
+            }
         }
         self.oracle.terms.node(operation, [left, right])
     }
 
     /// Returns a coordinate without the rounding errors of sums.
-    fn without_residue(&mut self, term: Term) -> Term {
+    pub(super) fn without_residue(&mut self, term: Term) -> Term {
         if let Term::Number(value) = term {
             return Term::Number(self.registers.data.remove_residue(value));
         }
@@ -389,10 +428,10 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         Ok(())
     }
 
-    /// Raises the alarm of a straight cut without a feed.
-    fn check_feed(&mut self) -> Symbolic<()> {
+    /// Raises the alarm of a cut without a feed.
+    fn check_feed(&mut self, is_arc: bool) -> Symbolic<()> {
         let state = &self.plan.state;
-        let feeds = state.modal.motion == Motion::Linear
+        let feeds = state.modal.motion != Motion::Rapid
             || self.plan.cycle_plan.is_some()
             || self.plan.skip_plan.is_some();
         if !feeds {
@@ -409,13 +448,14 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         let feed = self.terms.feed.or(Term::of(state.modal_words.f));
         let feed = feed.ok_or_else(|| Halt::unfollowed("the feed"))?;
         if self.oracle.ask(Test::Compare(Relation::Le, feed, Term::Number(0.0)))? {
-            return Err(Alarm::FeedZero.located_at(self.span).into());
+            let alarm = if is_arc { Alarm::ArcFeedZero } else { Alarm::FeedZero };
+            return Err(alarm.located_at(self.span).into());
         }
         Ok(())
     }
 
     /// Stored stroke check: raises the alarm of an end beyond the limits.
-    fn check_stroke(&mut self, ends: &[AxisEnd]) -> Symbolic<()> {
+    pub(super) fn check_stroke(&mut self, ends: &[AxisEnd]) -> Symbolic<()> {
         let settings = &self.registers.data.settings;
         let Some(stroke) = settings.stroke_limits else { return Ok(()) };
         let start = &self.registers.state.machine_position;

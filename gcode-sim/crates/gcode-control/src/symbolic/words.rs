@@ -18,13 +18,15 @@ pub(super) struct BlockTerms {
     /// Axis words, by letter.
     pub(super) axes: Vec<(u8, Term)>,
     pub(super) feed: Option<Term>,
+    /// I, J, K, R and Q of an arc or of a canned cycle, by letter.
+    pub(super) lengths: Vec<(u8, Term)>,
     /// Spindle speed, a whole number.
     pub(super) speed: Option<Term>,
 }
 
 impl BlockTerms {
     pub(super) fn is_none(&self) -> bool {
-        self.axes.is_empty() && self.feed.is_none() && self.speed.is_none()
+        self.axes.is_empty() && self.lengths.is_empty() && self.feed.is_none() && self.speed.is_none()
     }
 }
 
@@ -174,6 +176,11 @@ impl Executor {
                 letter if settings.axes.find(letter).is_some() && word.axis.is_none() => {
                     terms.axes.push((letter, term));
                     Ok(0.0)
+                }
+                letter @ (b'I' | b'J' | b'K' | b'R' | b'Q') => {
+                    terms.lengths.push((letter, term));
+                    // Neither an arc nor a peck without length.
+                    Ok(1.0)
                 }
                 letter => Err(Halt::unfollowed(format!("{} in this block", char::from(letter)))),
             };

@@ -5,6 +5,7 @@
 //! values.
 mod alignment;
 mod burr;
+pub mod claims;
 pub mod control_file;
 mod honeycomb;
 mod pattern;

@@ -281,6 +281,7 @@ ranges! {
 
     DurationMinutes: Any f64, 0.0, 1_000_000.0, "minutes";
     HourlyRate: Any f64, 0.01, 1e9, "";
+    ProofSeconds: Any f64, 0.001, 86_400.0, "seconds";
 
     MachinePoint: Any f64, -100_000.0, 100_000.0, "mm";
     Angle: Any f64, -360.0, 360.0, "degrees";

@@ -8,6 +8,9 @@ use crate::job::{FileError, Reader};
 use crate::reader::bounds::{Depth, DrillNumber, FeedRate, Length, SpindleSpeed};
 use crate::reader::{FileKey, Optional, Word, WordList};
 
+/// Least difference between the diameters of a milled hole and of its mill, mm: O8503 refuses less.
+const WALL: f64 = 0.02;
+
 /// Operation of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
@@ -210,16 +213,16 @@ impl PatternStep {
                 // The mill goes down in the minor diameter of the thread, 5/8 of the sharp profile's height deep.
                 let core = diameter - 1.082_532 * tool.increment();
                 let allowed = format_args!(
-                    "a thread whose minor diameter, here {core:.3} mm, is above the mill's {width} mm"
+                    "a thread whose minor diameter, here {core:.3} mm, is {WALL} mm above the mill's {width} mm"
                 );
-                reader.check(width < core, &format!("{key}.diameter"), diameter, allowed)
+                reader.check(width + WALL <= core, &format!("{key}.diameter"), diameter, allowed)
             }
             (Some(diameter), true) => {
                 let most = 2.0 * width;
                 let allowed = format_args!(
-                    "above the mill's {width} mm, and at most {most} mm, or one circle leaves a core"
+                    "{WALL} mm above the mill's {width} mm, and at most {most} mm, or one circle leaves a core"
                 );
-                let is_allowed = width < diameter && diameter <= most;
+                let is_allowed = width + WALL <= diameter && diameter <= most;
                 reader.check(is_allowed, &format!("{key}.diameter"), diameter, allowed)
             }
         }
