@@ -91,8 +91,7 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         if let Some(id) = &hole.hole.id
             && let Some(first) = positions_of_ids.insert(id.clone(), position.map(csv::Position::byte))
         {
-            let first =
-                first.map_or_else(String::new, |first| format!(", in line {} first", line_at(first)));
+            let first = first.map_or_else(String::new, |first| format!(", in line {} first", line_at(first)));
             let line = line_of(position);
             return Err(error(line, format!("id '{id}' is used twice{first}: give each hole its own")));
         }
