@@ -124,7 +124,10 @@ impl<'m> NearMetal<'m> {
 
     /// Returns the deepest point of a line in the metal.
     pub(super) fn on_line(&self, line: &Line) -> Option<PointInMetal> {
-        self.metal.deepest(line, &self.shares(&Strip::line(*line), None))
+        let mut shares = self.shares(&Strip::line(*line), None);
+        // Of points of one depth the first on the line counts, whatever order the search has.
+        shares.sort();
+        self.metal.deepest(line, &shares)
     }
 
     /// Finds metal on some strips: its deepest point on an edge, or else between two edges.
@@ -168,7 +171,8 @@ impl<'m> NearMetal<'m> {
     /// Returns the deepest point in the metal half way between the edges.
     fn on_middle(&self, open: &OpenStrip) -> Option<PointInMetal> {
         let middle = open.strip.middle();
-        self.metal.deepest(&middle, &self.shares(&Strip::line(middle), Some(&open.shares)))
+        let line = Strip::line(middle);
+        if is_clear(&line, &self.shares(&line, Some(&open.shares))) { None } else { self.on_line(&middle) }
     }
 
     /// Returns the deepest point of a strip about the one that is found on its middle.

@@ -32,9 +32,14 @@ impl Shares {
         self.pieces.iter().any(|[first, last]| *first <= to && from <= *last)
     }
 
+    /// Orders the pieces as the travel has them.
+    pub(super) fn sort(&mut self) {
+        self.pieces.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    }
+
     /// Joins pieces that overlap.
     pub(super) fn join(&mut self) {
-        self.pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        self.sort();
         self.pieces.dedup_by(|next, [_, last]| {
             let overlaps = next[0] <= *last;
             if overlaps {

@@ -218,14 +218,10 @@ impl FirstSweeps<'_> {
         let is_counted = |profile: u32| profiles[profile as usize].is_certain || !is_certain;
         self.removed.slabs.uncover(strip, self.sweeps.len(), is_counted, shares);
         let mut recent = self.removed.recent.borrow_mut();
-        let reach = StripReach::of(strip);
         let cover = |index: usize, shares: &mut Shares| {
             let Some(sweep) = self.sweeps.get(index).filter(|sweep| is_counted(sweep.profile)) else {
                 return false;
             };
-            if !reach.shares_in(&self.removed.sweep_boxes[index]).is_some_and(|range| shares.meets(range)) {
-                return false;
-            }
             let mut has_covered = false;
             for part in &profiles[sweep.profile as usize].parts {
                 has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, line)));
@@ -239,12 +235,17 @@ impl FirstSweeps<'_> {
             cover(recent[place], shares);
         }
         let Some(extent) = shares.extent() else { return };
+        let reach = StripReach::of(strip);
+        let is_near = |index: usize, shares: &Shares| {
+            let sweep_box = self.removed.sweep_boxes.get(index);
+            sweep_box.and_then(|near| reach.shares_in(near)).is_some_and(|range| shares.meets(range))
+        };
         self.removed.boxes.near(&bounds_between(strip, extent), &mut |place| {
             for index in group(place).rev() {
                 if shares.is_empty() {
                     return false;
                 }
-                if cover(index, shares) {
+                if is_near(index, shares) && cover(index, shares) {
                     recent.retain(|other| *other != index);
                     if recent.len() == MAX_RECENT {
                         recent.remove(0);

@@ -21,7 +21,7 @@ const MIN_COMMON: f64 = 0.7;
 /// [`TOUCH_DEPTH`].
 const ROUNDING: f64 = 1e-6;
 
-/// All points above a rectangle.
+/// All points above a rectangle, up to the end of the flutes.
 #[derive(Clone, Debug)]
 pub(super) struct Slab {
     origin: Point3<f64>,
@@ -29,6 +29,8 @@ pub(super) struct Slab {
     directions: [Vector3<f64>; 3],
     profile: u32,
     radius: f64,
+    /// Length of the flutes.
+    height: f64,
     /// Extent of all passes along them, and of their middles across them.
     along: [f64; 2],
     across: [f64; 2],
@@ -39,15 +41,14 @@ pub(super) struct Slab {
 }
 
 impl Slab {
-    /// Returns the slab of one pass; `None` if it is too short or not square to the tool, or if the tool does not cut as high as
-    /// the metal.
+    /// Returns the slab of one pass; `None` if it is too short or not square to the tool, or if the tool has no cylinder.
     pub(super) fn of_pass(
         [from, to]: [Point3<f64>; 2],
         axis: &Unit<Vector3<f64>>,
         (profile, number): (&Profile, u32),
         end: u32,
     ) -> Option<Self> {
-        let flute = profile.parts.iter().find(|part| part.taper.slope == 0.0 && part.to == f64::INFINITY)?;
+        let flute = profile.parts.iter().find(|part| part.taper.slope == 0.0 && part.from < part.to)?;
         let radius = flute.radius();
         let way = to - from;
         if way.dot(axis).abs() > ROUNDING || way.norm() < MIN_LENGTH * radius {
@@ -62,6 +63,7 @@ impl Slab {
             directions,
             profile: number,
             radius,
+            height: flute.to - flute.from,
             along: extent,
             across: [0.0; 2],
             end,
@@ -84,7 +86,7 @@ impl Slab {
         let [one, other] = ends.map(|p| [0, 1, 2].map(|direction| self.coordinate(&p, direction)));
         let is_level = |p: &[f64; 3]| p[2].abs() <= ROUNDING;
         let is_alike = (pass.profile, pass.radius) == (self.profile, self.radius)
-            && pass.directions[2] == self.directions[2];
+            && (pass.height, pass.directions[2]) == (self.height, self.directions[2]);
         if !is_alike || !is_level(&one) || !is_level(&other) || (one[1] - other[1]).abs() > ROUNDING {
             return false;
         }
@@ -104,7 +106,7 @@ impl Slab {
     /// Returns the shares of a line between which it is in the slab.
     fn covered(&self, [from, to]: &Line) -> Option<[f64; 2]> {
         let across = [self.across[0] - self.radius, self.across[1] + self.radius];
-        let sides = [self.along, across, [-TOUCH_DEPTH / 2.0, f64::INFINITY]];
+        let sides = [self.along, across, [-TOUCH_DEPTH / 2.0, self.height]];
         sides.iter().enumerate().try_fold([0.0, 1.0], |shares, (direction, [low, high])| {
             let start = self.coordinate(from, direction);
             let gain = self.coordinate(to, direction) - start;

@@ -93,7 +93,7 @@ proptest! {
                 1 => p(x, y, height),
                 _ => p(at.x, y, -1.0),
             };
-            removed.add(at, to, Vector3::z_axis(), &Profile::flat(3.0, depth != 1));
+            removed.add(at, to, Vector3::z_axis(), &if depth == 1 { Profile { parts: vec![ToolPart::flutes(0.0, 12.0, 3.0)], ..Profile::flat(3.0, false) } } else { Profile::flat(3.0, true) });
             at = if kind == 0 { p(to.x, to.y + step, to.z) } else { to };
         }
         let count = first.min(removed.sweeps.len());
