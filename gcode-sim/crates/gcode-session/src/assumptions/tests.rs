@@ -373,10 +373,10 @@ fn values_beyond_the_last_index_are_one_assumption() {
 /// The same block ends at the same place in both iterations; the second one depends on #510.
 #[test]
 fn feeds_that_are_alike_keep_their_own_values() {
-    let hole = "G81 X10. Y[10.+#3] Z-5. R2. F100.\nG80 Z50.";
+    let hole = "G81 X10. Y[10.+#3] Z-5. R2. F100.\nG80 Z50.\nG0 X0.";
     assert_assumptions(
         &format!("#3=0\n#2=0\nWHILE[#2LT2]DO1\n{hole}\n#3=#510\n#2=#2+1\nEND1"),
         2,
-        &["#510=vacant@9: 2"],
+        &["#510=vacant@10: 2"],
     );
 }

@@ -93,7 +93,12 @@ proptest! {
                 1 => p(x, y, height),
                 _ => p(at.x, y, -1.0),
             };
-            removed.add(at, to, Vector3::z_axis(), &if depth == 1 { Profile { parts: vec![ToolPart::flutes(0.0, 12.0, 3.0)], ..Profile::flat(3.0, false) } } else { Profile::flat(3.0, true) });
+            let mut tool = Profile::flat(3.0, depth != 1);
+            if depth == 1 {
+                // Flutes that end below the surface.
+                tool.parts = vec![ToolPart::flutes(0.0, 3.0, 3.0)];
+            }
+            removed.add(at, to, Vector3::z_axis(), &tool);
             at = if kind == 0 { p(to.x, to.y + step, to.z) } else { to };
         }
         let count = first.min(removed.sweeps.len());
