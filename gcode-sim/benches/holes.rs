@@ -220,3 +220,72 @@ fn simulate_in_block(program: String) -> Simulation {
     simulate(&request, &mut NoLibrary, Metal { body: Some(body), entries, pockets: Vec::new() })
         .expect("there is a program")
 }
+
+/// Passes side by side, each 3 mm beside the one before, and rapids among them.
+const PASSES: [(u32, u32); 3] = [(16, 250), (32, 500), (64, 1000)];
+
+/// Returns numbers from 0 to 1 that look random.
+fn spread(start: u32) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(start), |last| Some(last.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)))
+        .map(|number| f64::from(number) / f64::from(u32::MAX))
+}
+
+/// Returns a program that mills a pocket in straight passes, and moves through it in rapids of three axes.
+fn passes((passes, rapids): (u32, u32)) -> String {
+    let mut text = "O1\nG21 G17 G40 G49 G54 G80 G90 G94\nT2 M06\nS6000 M03\nG43 H2 Z50.\nG0 X20. Y20.\nZ1.\nG1 Z-5. F500.\n"
+        .to_owned();
+    for pass in 0..passes {
+        let (x, y) = (if pass % 2 == 0 { 380 } else { 20 }, 20 + 3 * pass);
+        writeln!(text, "G1 Y{y}.\nX{x}.").expect("a string can be written to");
+    }
+    let mut numbers = spread(7);
+    let width = f64::from(3 * (passes - 1));
+    for _ in 0..rapids {
+        let [x, y, z] = std::array::from_fn(|_| numbers.next().unwrap_or_default());
+        let (x, y, z) = (21.0 + 358.0 * x, 20.0 + width * y, -4.9 * z);
+        writeln!(text, "G0 X{x:.1} Y{y:.1} Z{z:.2}").expect("a string can be written to");
+    }
+    text + "G0 Z50.\nM30\n"
+}
+
+/// Compares rapids with passes that they all cross.
+#[divan::bench(args = PASSES, sample_count = 5, sample_size = 1)]
+fn rapids_across_passes(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
+    let metal = Metal {
+        body: Some(Surface::Block { min: [0.0, 0.0, -20.0].into(), max: [400.0, 300.0, 0.0].into() }),
+        entries: Some(Arc::new(EntryPlanes::of(&[hole_beside()], 0.1))),
+        pockets: vec![Surface::Block { min: [0.0, 0.0, -5.0].into(), max: [400.0, 230.0, 1.0].into() }],
+    };
+    let machine = MILL.replace("straight = true", "rates = { X = 24000.0, Y = 24000.0, Z = 18000.0 }");
+    let machine = Machine::parse(&machine.replace("diameter = 10.0", "diameter = 3.0"))
+        .expect("the machine file is valid");
+    let request = Request::new("O1.nc", passes(size).into_bytes(), machine);
+    bencher
+        .counter(ItemsCount::new(size.1))
+        .bench_local(|| simulate(&request, &mut NoLibrary, metal.clone()).expect("there is a program"));
+}
+
+/// Returns a hole beside all milling.
+fn hole_beside() -> Hole {
+    Hole {
+        entry: [50.0, 250.0, 0.0],
+        axis: [0.0, 0.0, 1.0],
+        depth: 10.0,
+        diameter: Some(8.0),
+        ..Hole::default()
+    }
+}
+
+/// Holes of a list.
+const ROWS: [usize; 3] = [25_000, 50_000, 100_000];
+
+/// Reads a list of holes as CSV.
+#[divan::bench(args = ROWS, sample_count = 5, sample_size = 1)]
+fn read_list(bencher: divan::Bencher<'_, '_>, count: usize) {
+    let mut text = "id,x,y,z,depth,diameter\n".to_owned();
+    for row in 0..count {
+        writeln!(text, "{row},{},{},0,10,6", row % 400 * 8, row / 400 * 8)
+            .expect("a string can be written to");
+    }
+    bencher.counter(ItemsCount::new(count)).bench_local(|| NominalPart::parse(&text).expect("a valid list"));
+}

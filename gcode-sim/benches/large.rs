@@ -48,11 +48,14 @@ fn main() {
             measured(folder.path(), command, text.len());
         }
     }
-    let [old, new] = [500, 600].map(|feed| surface(|index| format!(" F{}.", feed + index % 7 * 50)));
-    write("old.nc", &old);
-    write("new.nc", &new);
-    println!("lines with a feed in each:");
-    measured(folder.path(), "diff old.nc new.nc --machine m.toml", old.len());
+    for (count, step) in [(7, 50), (700, 1)] {
+        let feeds = |feed: u32| surface(|index| format!(" F{}.", feed + index % count * step));
+        let [old, new] = [500, 501].map(feeds);
+        write("old.nc", &old);
+        write("new.nc", &new);
+        println!("lines with one of {count} feeds in each, all changed:");
+        measured(folder.path(), "diff old.nc new.nc --machine m.toml", old.len());
+    }
 }
 
 /// Prints time and peak memory of a command on texts of this length.

@@ -1,4 +1,5 @@
 //! Program texts as bytes, and positions in them. Every token, operation, event and finding has a [`Span`].
+use std::borrow::Cow;
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
@@ -224,8 +225,13 @@ impl Sources {
 
     /// Returns the text at `span`; invalid UTF-8 is replaced.
     pub fn text(&self, span: Span) -> String {
+        self.text_in(span).into_owned()
+    }
+
+    /// Returns the text at `span` like [`Sources::text`], without a copy if it is valid UTF-8.
+    pub fn text_in(&self, span: Span) -> Cow<'_, str> {
         let bytes = &self.get(span.source).bytes;
-        String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize]).into_owned()
+        String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize])
     }
 }
 

@@ -57,17 +57,53 @@ pub(super) fn common_lines(hashes: [&[u64]; 2], is_equal: impl Fn(usize, usize) 
     if let Ok(runs) = search((old.len(), new.len()), MOST_EDITS, same, ends) {
         return runs;
     }
-    let shared = |side: usize| -> Vec<usize> {
-        let mut others = hashes[1 - side].to_vec();
-        others.sort_unstable();
-        (0..hashes[side].len()).filter(|line| others.binary_search(&hashes[side][*line]).is_ok()).collect()
-    };
-    let (in_old, in_new) = (shared(0), shared(1));
+    let [in_old, in_new] = shared_lines(hashes);
     let mut runs = Vec::new();
     for (i, j) in common(in_old.len(), in_new.len(), |i, j| same(in_old[i], in_new[j])) {
         append(&mut runs, (in_old[i], in_new[j], 1));
     }
     runs
+}
+
+/// Returns the indices of the lines whose hashes both lists have.
+fn shared_lines(hashes: [&[u64]; 2]) -> [Vec<usize>; 2] {
+    let filters = hashes.map(HashFilter::of);
+    let mut candidates = [0, 1].map(|side| {
+        let hashes = hashes[side].iter().copied();
+        hashes.filter(|hash| filters[1 - side].may_contain(*hash)).collect::<Vec<_>>()
+    });
+    candidates.iter_mut().for_each(|hashes| hashes.sort_unstable());
+    [0, 1].map(|side| {
+        let is_shared = |hash: u64| {
+            filters[1 - side].may_contain(hash) && candidates[1 - side].binary_search(&hash).is_ok()
+        };
+        (0..hashes[side].len()).filter(|line| is_shared(hashes[side][*line])).collect()
+    })
+}
+
+/// Set of hashes that may contain others too: one bit for each remainder of a hash.
+struct HashFilter {
+    bits: Vec<u64>,
+}
+
+impl HashFilter {
+    fn of(hashes: &[u64]) -> Self {
+        let mut filter = Self { bits: vec![0; (hashes.len() / 8).next_power_of_two()] };
+        for hash in hashes {
+            let (index, bit) = filter.place(*hash);
+            filter.bits[index] |= bit;
+        }
+        filter
+    }
+
+    fn place(&self, hash: u64) -> (usize, u64) {
+        ((hash >> 6) as usize & (self.bits.len() - 1), 1 << (hash & 63))
+    }
+
+    fn may_contain(&self, hash: u64) -> bool {
+        let (index, bit) = self.place(hash);
+        self.bits[index] & bit != 0
+    }
 }
 
 /// Searches piece by piece if there are too many edits; each piece ends at the farthest point of [`EDITS_AHEAD`]
@@ -209,6 +245,24 @@ mod tests {
     }
 
     proptest! {
+        /// Few remainders, so that the filter of one list holds hashes that the other alone has.
+        #[test]
+        fn shared_lines_are_those_of_both_lists(
+            old in prop::collection::vec((0_u64..3, 0_u64..40), 0..40),
+            new in prop::collection::vec((0_u64..3, 0_u64..40), 0..40),
+        ) {
+            let hashes = |all: &[(u64, u64)]| -> Vec<u64> {
+                all.iter().map(|(high, low)| high << 50 | low).collect()
+            };
+            let lists = [hashes(&old), hashes(&new)];
+            let shared = shared_lines([&lists[0], &lists[1]]);
+            for side in 0..2 {
+                let expected: Vec<usize> =
+                    (0..lists[side].len()).filter(|k| lists[1 - side].contains(&lists[side][*k])).collect();
+                prop_assert_eq!(&shared[side], &expected);
+            }
+        }
+
         #[test]
         fn the_common_sequence_is_common_and_the_longest(old in "[ABC]{0,30}", new in "[ABC]{0,30}") {
             let found = pairs(&old, &new);

@@ -9,7 +9,7 @@ use super::program_text::{ProgramSide, executed, for_each_gap, written};
 use super::record::Record;
 
 /// A block that is written differently, or consecutive blocks that are added, removed, moved or rewritten together.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Edit {
     /// Number of its program among those of both revisions.
     program: u32,
@@ -21,6 +21,74 @@ struct Edit {
 
 /// No block, no number of steps.
 const NONE: u32 = u32::MAX;
+
+impl Edit {
+    /// Returns the edit of the same kind that many blocks later.
+    fn later(self, count: u32) -> Self {
+        let later = |all: [u32; 2]| all.map(|one| if one == NONE { NONE } else { one.saturating_add(count) });
+        Self { first: later(self.first), reached: later(self.reached), ..self }
+    }
+}
+
+/// Edits by their numbers; consecutive blocks that make one step each need little memory.
+#[derive(Default)]
+struct EditList {
+    runs: Vec<EditRun>,
+    count: u32,
+}
+
+/// Edits of consecutive blocks.
+struct EditRun {
+    /// Number of edits before it.
+    start: u32,
+    first: Edit,
+}
+
+impl EditList {
+    fn push(&mut self, edit: Edit) {
+        let is_next = |run: &EditRun| run.first.later(self.count - run.start) == edit;
+        if !self.runs.last().is_some_and(is_next) {
+            self.runs.push(EditRun { start: self.count, first: edit });
+        }
+        self.count += 1;
+    }
+
+    fn len(&self) -> usize {
+        self.count as usize
+    }
+
+    /// Returns an edit by its number.
+    ///
+    /// # Panics
+    /// If the list has no edit with this number.
+    fn get(&self, number: u32) -> Edit {
+        let run = &self.runs[self.runs.partition_point(|run| run.start <= number) - 1];
+        run.first.later(number - run.start)
+    }
+
+    /// Iterates over the edits in their order.
+    fn iter(&self) -> impl Iterator<Item = Edit> {
+        let ends = self.runs.iter().skip(1).map(|run| run.start).chain([self.count]);
+        let edits = |(run, end): (&EditRun, u32)| {
+            let (start, first) = (run.start, run.first);
+            (start..end).map(move |number| first.later(number - start))
+        };
+        self.runs.iter().zip(ends).flat_map(edits)
+    }
+
+    /// Returns the number of the first edit of which a function is false; it is true of all edits before that.
+    fn partition_point(&self, is_before: impl Fn(Edit) -> bool) -> usize {
+        let (mut low, mut high) = (0, self.count);
+        while low < high {
+            let middle = u32::midpoint(low, high);
+            match is_before(self.get(middle)) {
+                true => low = middle + 1,
+                false => high = middle,
+            }
+        }
+        low as usize
+    }
+}
 
 /// Consecutive lines of one edit, or each of the next one.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +103,7 @@ struct LineRun {
 #[derive(Default)]
 pub(super) struct Edits<'a> {
     programs: Vec<[ProgramSide<'a>; 2]>,
-    all: Vec<Edit>,
+    all: EditList,
     /// Edits by program and line, old and new.
     of_line: [BTreeMap<String, Vec<LineRun>>; 2],
     /// Edits that a run executes, by the number of steps before them, old and new; `None` if all are in that order.
@@ -66,12 +134,11 @@ impl<'a> Edits<'a> {
             runs.sort_by_key(|run| run.first);
         }
         for side in 0..2 {
-            let reached = |edit: &Edit| edit.reached[side];
-            if !edits.all.is_sorted_by_key(reached) || edits.all.iter().any(|edit| reached(edit) == NONE) {
-                let numbers = 0..edits.all.len() as u32;
-                let mut by_step: Vec<u32> =
-                    numbers.filter(|edit| reached(&edits.all[*edit as usize]) != NONE).collect();
-                by_step.sort_by_key(|edit| reached(&edits.all[*edit as usize]));
+            let reached = || edits.all.iter().map(|edit| edit.reached[side]);
+            if !reached().is_sorted() || reached().any(|steps| steps == NONE) {
+                let numbered = (0..).zip(reached()).filter(|(_, steps)| *steps != NONE);
+                let mut by_step: Vec<u32> = numbered.map(|(edit, _)| edit).collect();
+                by_step.sort_by_key(|edit| edits.all.get(*edit).reached[side]);
                 edits.by_step[side] = Some(by_step);
             }
         }
@@ -153,22 +220,25 @@ impl<'a> Edits<'a> {
         }
         let last = |side: usize| {
             let step = steps[side]? as u32;
-            let is_before = |edit: &Edit| edit.reached[side] <= step;
+            let is_before = |edit: Edit| edit.reached[side] <= step;
             let edit = match &self.by_step[side] {
                 Some(by_step) => {
-                    let behind = by_step.partition_point(|edit| is_before(&self.all[*edit as usize]));
-                    by_step[behind.checked_sub(1)?] as usize
+                    let behind = by_step.partition_point(|edit| is_before(self.all.get(*edit)));
+                    by_step[behind.checked_sub(1)?]
                 }
-                None => self.all.partition_point(is_before).checked_sub(1)?,
+                None => self.all.partition_point(is_before).checked_sub(1)? as u32,
             };
-            Some((step - self.all[edit].reached[side], edit))
+            Some((step - self.all.get(edit).reached[side], edit as usize))
         };
         [last(0), last(1)].into_iter().flatten().min().map(|(_, edit)| edit)
     }
 
     /// Returns the blocks of the only edit if an effect names others.
     pub(super) fn blocks(&self, named: [Option<&BlockLocation>; 2]) -> Option<[Option<BlockLocation>; 2]> {
-        let [Edit { program, first, .. }] = self.all[..] else { return None };
+        if !self.is_single() {
+            return None;
+        }
+        let Edit { program, first, .. } = self.all.get(0);
         let is_named = (0..2).all(|side| match (named[side], first[side]) {
             (Some(block), index) if index != NONE => self.of_side(side, Some(block)).is_some(),
             (None, NONE) => true,

@@ -85,15 +85,23 @@ pub(super) enum Numbers {
 }
 
 impl Group {
-    pub(super) fn join(&mut self, other: Self) {
-        self.varies |= self.text != other.text;
-        match (self.is_direct, other.is_direct) {
-            (true, true) => {
-                other.causes.all.into_iter().for_each(|edit| self.causes.insert(edit));
-            }
-            (false, true) => (self.causes, self.is_direct) = (other.causes, true),
+    /// Joins a difference that has the text and the numbers of one in the group, and other edits.
+    pub(super) fn join_same(&mut self, causes: EditSet, is_direct: bool) {
+        self.add_causes(causes, is_direct);
+        self.counts[0].1 += 1;
+    }
+
+    fn add_causes(&mut self, causes: EditSet, is_direct: bool) {
+        match (self.is_direct, is_direct) {
+            (true, true) => causes.all.into_iter().for_each(|edit| self.causes.insert(edit)),
+            (false, true) => (self.causes, self.is_direct) = (causes, true),
             (_, false) => {}
         }
+    }
+
+    pub(super) fn join(&mut self, other: Self) {
+        self.varies |= self.text != other.text;
+        self.add_causes(other.causes, other.is_direct);
         match (&mut self.numbers, other.numbers) {
             (
                 Numbers::Shift { most, is_compensated },

@@ -39,10 +39,15 @@ impl Description {
 /// More shifts of one edit than this are one effect, by up to the largest.
 const MOST_SHIFTS: usize = 4;
 
+/// Largest number of pairs of feeds whose groups are found without their sentences.
+const MOST_RATES: usize = 4096;
+
 /// All groups, in the order of their first differences.
 pub(super) struct Effects<'a> {
     all: Vec<Group>,
     by_text: BTreeMap<(&'static str, String), usize>,
+    /// Groups of differences of feeds by the bits of the feeds, old and new: those of [`MOST_RATES`] pairs.
+    by_rates: BTreeMap<[u64; 2], usize>,
     /// By kind, and the numbers of the blocks, old and new, from 1.
     by_blocks: BTreeMap<(u8, u32, u32), u32>,
     alignment: Alignment<'a>,
@@ -61,6 +66,7 @@ impl<'a> Effects<'a> {
         Self {
             all: Vec::new(),
             by_text: BTreeMap::new(),
+            by_rates: BTreeMap::new(),
             by_blocks: BTreeMap::new(),
             alignment,
             edits,
@@ -110,6 +116,11 @@ impl<'a> Effects<'a> {
             self.all[group].counts[0].1 += 1;
             return;
         }
+        if let Some(feed) = feed
+            && let Some(group) = self.by_rates.get(&feed.0).copied()
+        {
+            return self.join_feed(group, feed, steps);
+        }
         let group = self.group_of_difference(kind, steps);
         let (is_direct, blocks) = (group.is_direct, group.block_numbers);
         let is_speed = matches!(group.numbers, Numbers::Speeds { .. });
@@ -132,8 +143,29 @@ impl<'a> Effects<'a> {
             Some(known) => self.all[known].join(group),
             None => self.all.push(group),
         }
+        if let Some((rates, _)) = feed {
+            if self.by_rates.len() == MOST_RATES {
+                self.by_rates.clear();
+            }
+            self.by_rates.insert(rates, number);
+        }
         // Another one of the same blocks has the same edits, unless these depend on the steps.
         self.last_feed = feed.filter(|_| is_direct).map(|(rates, blocks)| (rates, blocks, number));
+    }
+
+    /// Adds a difference of feeds to the group of those before it with the same feeds.
+    fn join_feed(
+        &mut self,
+        group: usize,
+        (rates, blocks): ([u64; 2], [Option<usize>; 2]),
+        steps: [Option<usize>; 2],
+    ) {
+        if self.is_repeated(blocks) {
+            self.by_blocks.entry(block_key(&kinds::FEED, blocks)).or_insert(group as u32);
+        }
+        let (causes, is_direct) = self.causes_of_difference(&self.all[group].numbers, blocks, steps);
+        self.all[group].join_same(causes, is_direct);
+        self.last_feed = is_direct.then_some((rates, blocks, group));
     }
 
     /// Returns true if one of two blocks makes several steps, or sets a word of several.

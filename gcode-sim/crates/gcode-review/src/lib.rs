@@ -42,6 +42,7 @@ mod hole_groups;
 mod hole_order;
 mod holes;
 mod initial_commands;
+mod kind_numbers;
 pub mod kinds;
 mod legacy_records;
 mod links;

@@ -22,6 +22,8 @@ enum AxisPiece {
     Constant(f64),
     /// Whole numbers of ten-thousandths: the nearest number to each has the bits of the coordinate.
     Units(Box<[i32]>),
+    /// The same, as multiples of `unit` above the first.
+    Offsets { first: i32, unit: i32, offsets: Box<[i16]> },
     /// Any others.
     Numbers(Box<[f64]>),
 }
@@ -37,16 +39,28 @@ impl AxisPiece {
             let units = (one * UNITS).round() as i32;
             is_same(f64::from(units) / UNITS, one).then_some(units)
         };
-        match coordinates.clone().map(units).collect() {
-            Some(units) => Self::Units(units),
-            None => Self::Numbers(coordinates.collect()),
-        }
+        let all: Option<Box<[i32]>> = coordinates.clone().map(units).collect();
+        let Some(all) = all else { return Self::Numbers(coordinates.collect()) };
+        [10, 1].into_iter().find_map(|unit| Self::offsets(&all, unit)).unwrap_or(Self::Units(all))
+    }
+
+    /// Returns the offsets from the first of some coordinates; `None` if one is too large or no multiple of `unit`.
+    fn offsets(units: &[i32], unit: i32) -> Option<Self> {
+        let first = *units.first()?;
+        let offset = |one: &i32| {
+            let offset = one.checked_sub(first)?;
+            (offset % unit == 0).then(|| i16::try_from(offset / unit).ok())?
+        };
+        Some(Self::Offsets { first, unit, offsets: units.iter().map(offset).collect::<Option<_>>()? })
     }
 
     fn get(&self, index: usize) -> f64 {
         match self {
             Self::Constant(one) => *one,
             Self::Units(units) => f64::from(units[index]) / UNITS,
+            Self::Offsets { first, unit, offsets } => {
+                f64::from(first + unit * i32::from(offsets[index])) / UNITS
+            }
             Self::Numbers(all) => all[index],
         }
     }
@@ -82,9 +96,12 @@ mod tests {
 
     #[test]
     fn every_form_returns_the_same_bits() {
-        let kinds: [fn(usize) -> f64; 5] = [
+        let kinds: [fn(usize) -> f64; 8] = [
             |_| -0.0,
             |n| n as f64 / 1000.0,
+            |n| -(n as f64) / 1000.0 * 129.0,
+            |n| -(n as f64) / 10_000.0 * 129.0,
+            |n| if n % 2 == 0 { 214_748.0 } else { -214_748.0 },
             |n| 0.1 + n as f64 / 10.0,
             |n| (n as f64).sqrt(),
             |n| n as f64 * 1e6,

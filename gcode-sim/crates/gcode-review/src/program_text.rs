@@ -26,28 +26,41 @@ pub(super) fn cause(old: &BlockLocation, new: &BlockLocation) -> Cause {
 
 /// Returns a block without sequence number, comments and spaces.
 pub(super) fn words(block: &str) -> String {
-    let mut depth = 0;
-    let is_code = |c: &char| {
-        let is_comment = depth > 0 || *c == '(';
-        depth += i32::from(*c == '(') - i32::from(*c == ')');
-        !is_comment && !c.is_whitespace()
-    };
-    let mut code: String = if block.contains(['(', ')']) {
-        block.chars().filter(is_code).collect()
+    let mut code = String::new();
+    read_words(block, &mut code);
+    code
+}
+
+/// Puts a block without sequence number, comments and spaces into `code`.
+fn read_words(block: &str, code: &mut String) {
+    code.clear();
+    if block.contains(['(', ')']) {
+        let mut depth = 0;
+        let is_code = |c: &char| {
+            let is_comment = depth > 0 || *c == '(';
+            depth += i32::from(*c == '(') - i32::from(*c == ')');
+            !is_comment && !c.is_whitespace()
+        };
+        code.extend(block.chars().filter(is_code));
     } else {
-        block.split_whitespace().collect()
-    };
+        block.split_whitespace().for_each(|piece| code.push_str(piece));
+    }
     if let Some(rest) = code.strip_prefix('N') {
         let rest = rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
         code.drain(..code.len() - rest);
     }
-    code
 }
 
-/// Returns what a block says to the control: its words, or with the text of an alarm or a message.
-pub(super) fn words_and_text(block: &str) -> String {
-    let has_message = ["#3000", "#3006"].iter().any(|variable| block.contains(variable));
-    if has_message { block.to_owned() } else { words(block) }
+/// Puts what a block says to the control into `code`: its words, or with the text of an alarm or a message.
+fn read_words_and_text(block: &str, code: &mut String) {
+    let has_message = block.contains('#') && ["#3000", "#3006"].iter().any(|one| block.contains(one));
+    match has_message {
+        true => {
+            code.clear();
+            code.push_str(block);
+        }
+        false => read_words(block, code),
+    }
 }
 
 /// Blocks of one program of a record.
@@ -87,8 +100,10 @@ impl<'a> ProgramSide<'a> {
     fn text(&self, index: usize) -> Cow<'_, str> {
         match &self.blocks {
             SideBlocks::Text(blocks, program) => {
-                let text = blocks.sources.text(blocks.programs[*program].texts.span(index));
-                Cow::Owned(text.trim().to_owned())
+                match blocks.sources.text_in(blocks.programs[*program].texts.span(index)) {
+                    Cow::Borrowed(text) => Cow::Borrowed(text.trim()),
+                    Cow::Owned(text) => Cow::Owned(text.trim().to_owned()),
+                }
             }
             SideBlocks::Named(all) => Cow::Borrowed(&all[index].0.block),
         }
@@ -162,14 +177,13 @@ pub(super) fn executed(record: &Record) -> Vec<ProgramSide<'_>> {
 /// new.
 struct ChangedPassage<'a> {
     sides: [&'a ProgramSide<'a>; 2],
-    words: fn(&str) -> String,
+    read_words: fn(&str, &mut String),
     blocks: [Vec<u32>; 2],
-    hashes: [Vec<u64>; 2],
 }
 
 impl<'a> ChangedPassage<'a> {
-    fn new(sides: [&'a ProgramSide<'a>; 2], words: fn(&str) -> String) -> Self {
-        let mut passage = Self { sides, words, blocks: Default::default(), hashes: Default::default() };
+    fn new(sides: [&'a ProgramSide<'a>; 2], read_words: fn(&str, &mut String)) -> Self {
+        let mut passage = Self { sides, read_words, blocks: Default::default() };
         let mut from = [0, 0];
         let mut to = sides.map(ProgramSide::count);
         while from[0] < to[0] && from[1] < to[1] {
@@ -184,22 +198,26 @@ impl<'a> ChangedPassage<'a> {
                 None => break,
             }
         }
+        let mut words = String::new();
         for side in 0..2 {
             for index in from[side]..to[side] {
-                let words = passage.words_of(side, index);
+                passage.read(side, index, &mut words);
                 if !words.is_empty() {
-                    let mut hasher = DefaultHasher::new();
-                    words.hash(&mut hasher);
                     passage.blocks[side].push(index as u32);
-                    passage.hashes[side].push(hasher.finish());
                 }
             }
         }
         passage
     }
 
+    fn read(&self, side: usize, index: usize, words: &mut String) {
+        (self.read_words)(&self.sides[side].text(index), words);
+    }
+
     fn words_of(&self, side: usize, index: usize) -> String {
-        (self.words)(&self.sides[side].text(index))
+        let mut words = String::new();
+        self.read(side, index, &mut words);
+        words
     }
 
     /// Returns how many of two blocks are passed: both if they are equal, one that has no words; `None` if they differ.
@@ -221,10 +239,24 @@ impl<'a> ChangedPassage<'a> {
         self.words_of(side, self.blocks[side][index] as usize)
     }
 
+    /// Returns the hashes of the words of all blocks.
+    fn hashes(&self) -> [Vec<u64>; 2] {
+        let mut words = String::new();
+        [0, 1].map(|side| {
+            let hash = |index: &u32| {
+                self.read(side, *index as usize, &mut words);
+                let mut hasher = DefaultHasher::new();
+                words.hash(&mut hasher);
+                hasher.finish()
+            };
+            self.blocks[side].iter().map(hash).collect()
+        })
+    }
+
     /// Returns the ranges of blocks between equal ones.
     fn differences(&self) -> Vec<[Range<usize>; 2]> {
-        let runs =
-            common_lines([&self.hashes[0], &self.hashes[1]], |i, j| self.words(0, i) == self.words(1, j));
+        let [old, new] = self.hashes();
+        let runs = common_lines([&old, &new], |i, j| self.words(0, i) == self.words(1, j));
         let ends = [self.blocks[0].len(), self.blocks[1].len()];
         let mut from = [0, 0];
         let end = EqualRun { old: ends[0], new: ends[1], length: 0 };
@@ -264,7 +296,7 @@ impl<'a> ChangedPassage<'a> {
 /// Passes on the passages in which two programs differ, as the indices of their blocks, old and new: block by block if
 /// both have the same number of blocks there.
 pub(super) fn for_each_gap<'a>(sides: [&'a ProgramSide<'a>; 2], mut each: impl FnMut([&[u32]; 2])) {
-    let passage = ChangedPassage::new(sides, words_and_text);
+    let passage = ChangedPassage::new(sides, read_words_and_text);
     for (gap, is_moved) in passage.gaps() {
         let [old, new] = [0, 1].map(|side| passage.indices(side, &gap[side]));
         if old.len() == new.len() && !is_moved {
@@ -303,7 +335,7 @@ pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
             continue;
         }
         let sides = [before, now];
-        let passage = ChangedPassage::new(sides, words);
+        let passage = ChangedPassage::new(sides, read_words);
         for gap in passage.differences() {
             let [mut lost, mut added] = [0, 1].map(|side| {
                 let blocks = passage.indices(side, &gap[side]).iter().map(|index| *index as usize);

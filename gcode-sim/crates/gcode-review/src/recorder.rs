@@ -1,7 +1,7 @@
 //! Observer of a run that records its steps, their modal conditions, and the block that wrote each value of the
 //! final state.
 use std::cell::RefCell;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::ops::RangeInclusive;
 
 use super::block_list::BlockNumbers;
@@ -49,6 +49,9 @@ pub(super) struct Recorder {
     pub written: BTreeMap<String, Backtrace>,
     /// First command of each mode, axis and offset.
     pub first_commands: BTreeMap<(CommandKind, String), FirstCommand>,
+    /// Groups of modes and letters of axes that have a first command.
+    commanded_modes: BTreeSet<u32>,
+    commanded_axes: BTreeSet<char>,
     moves: usize,
     block: Option<PendingBlock>,
     at: Position,
@@ -114,17 +117,28 @@ impl Recorder {
             let number = self.numbers.number(backtrace);
             self.set_by.insert(letter, (backtrace.block, number));
         }
-        let modes = modes.into_iter();
-        let modes = modes.map(|(group, code)| (CommandKind::Mode, format!("{group:02}"), modal_code(code)));
-        let axes = axes.into_iter().map(|letter| (CommandKind::Axis, letter.to_string(), letter.to_string()));
-        let offsets = offsets.into_iter().map(|name| (CommandKind::Offset, name.clone(), name));
-        for (what, name, text) in modes.chain(axes).chain(offsets) {
-            if !self.first_commands.contains_key(&(what, name.clone())) {
-                let block_number = self.numbers.number(backtrace);
-                let first = FirstCommand { what, name: name.clone(), text, moves: self.moves, block_number };
-                self.first_commands.insert((what, name), first);
+        for (group, code) in modes {
+            if self.commanded_modes.insert(group) {
+                self.add_first(CommandKind::Mode, format!("{group:02}"), modal_code(code), backtrace);
             }
         }
+        for letter in axes {
+            if self.commanded_axes.insert(letter) {
+                self.add_first(CommandKind::Axis, letter.to_string(), letter.to_string(), backtrace);
+            }
+        }
+        for name in offsets {
+            if !self.first_commands.contains_key(&(CommandKind::Offset, name.clone())) {
+                self.add_first(CommandKind::Offset, name.clone(), name, backtrace);
+            }
+        }
+    }
+
+    /// Records the first command of a mode, an axis or an offset.
+    fn add_first(&mut self, what: CommandKind, name: String, text: String, backtrace: &Backtrace) {
+        let block_number = self.numbers.number(backtrace);
+        let first = FirstCommand { what, name: name.clone(), text, moves: self.moves, block_number };
+        self.first_commands.insert((what, name), first);
     }
 
     /// Records the unsimulated commands of an executed block, and the values that it wrote.
@@ -251,8 +265,9 @@ impl Recorder {
         if self.recent.len() == LOOKAHEAD {
             self.recent.pop_front();
         }
-        let this = self.last.as_ref().map(|backtrace| backtrace.block);
-        self.recent.extend(this.map(|block| (block, under)));
+        if let Some(backtrace) = &self.last {
+            self.recent.push_back((backtrace.block, under));
+        }
         let recent = std::mem::take(&mut self.recent);
         self.settle(|block| {
             let known = recent.iter().rev().find(|(known, _)| *known == block);

@@ -40,11 +40,6 @@ impl<T: PartialEq> Runs<T> {
         &self.values[first + behind - 1]
     }
 
-    /// Iterates over the values of the runs.
-    pub(super) fn values(&self) -> impl Iterator<Item = &T> {
-        self.values.iter()
-    }
-
     pub(super) fn shrink(&mut self) {
         self.starts.shrink_to_fit();
         self.values.shrink_to_fit();

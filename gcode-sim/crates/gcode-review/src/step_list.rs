@@ -1,6 +1,7 @@
 //! The steps of a run in little memory. A step is put together when it is read.
 use std::collections::BTreeMap;
 
+use super::kind_numbers::KindNumbers;
 use super::positions::Positions;
 use super::runs::{CountingRuns, Runs};
 use super::steps::{Step, StepKind, difference};
@@ -12,7 +13,7 @@ pub(super) struct StepList {
     /// Actions without their end points; moves of one kind and feed share one.
     kinds: Vec<StepKind>,
     shared: BTreeMap<(u8, u64), u32>,
-    of_step: Runs<u32>,
+    of_step: KindNumbers,
     /// Axis positions after each step.
     at: Positions,
     /// Tool length offset of each step.
@@ -92,7 +93,7 @@ impl StepList {
 
     /// Returns what a step does.
     pub(super) fn kind(&self, number: usize) -> &StepKind {
-        &self.kinds[*self.of_step.get(number) as usize]
+        &self.kinds[self.of_step.get(number) as usize]
     }
 
     pub(super) fn is_move(&self, number: usize) -> bool {
@@ -121,7 +122,7 @@ impl StepList {
 
     /// Iterates over the different actions.
     pub(super) fn all_kinds(&self) -> impl Iterator<Item = &StepKind> {
-        self.of_step.values().map(|number| &self.kinds[*number as usize])
+        self.kinds.iter()
     }
 
     /// Iterates over all steps.
@@ -154,7 +155,6 @@ impl StepList {
 
     pub(super) fn shrink(&mut self) {
         self.kinds.shrink_to_fit();
-        self.of_step.shrink();
         self.block_numbers.shrink();
         self.set_by.shrink();
         self.conditions.shrink();

@@ -401,7 +401,7 @@ impl Simulation {
 
     /// Follows the values that the run read and nothing in its program set to the holes, in a second run on the same metal.
     pub fn dependencies(&self, request: &Request) -> Dependencies {
-        assumptions::of_holes(request, &self.run, &self.metal, !self.extracted.holes.is_empty())
+        assumptions::of_known_holes(request, &self.run, &self.metal, &self.extracted.holes)
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.

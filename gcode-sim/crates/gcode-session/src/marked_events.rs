@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use gcode_control::slice::Marks;
 use gcode_lang::motion::{
-    Backtrace, Call, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
+    Backtrace, Call, CallChain, Event, EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal,
 };
 use gcode_lang::source::{SourceId, Span};
 
@@ -77,11 +77,14 @@ impl<S: EventSink> EventSink for MarkedEvents<S> {
     }
 }
 
+/// Returns the number of a marked event's stroke, and the calls that led to its block.
+pub(super) fn stroke_of(calls: &CallChain) -> Option<(u32, &CallChain)> {
+    let call = calls.as_deref().filter(|call| call.calling_block.source == MARKER)?;
+    Some((call.calling_block.start, &call.outer_calls))
+}
+
 /// Returns the outside values on which the passes at these places depend.
 pub(super) fn marks_of<'p>(places: impl IntoIterator<Item = &'p Backtrace>, strokes: &[Marks]) -> Marks {
-    let stroke = |place: &Backtrace| {
-        let call = place.calls.as_ref().filter(|call| call.calling_block.source == MARKER)?;
-        strokes.get(call.calling_block.start as usize).copied()
-    };
+    let stroke = |place: &Backtrace| strokes.get(stroke_of(&place.calls)?.0 as usize).copied();
     places.into_iter().filter_map(stroke).collect()
 }

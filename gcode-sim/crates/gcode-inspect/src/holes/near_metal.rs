@@ -59,7 +59,7 @@ impl KnownMetal {
     /// Returns the length of a travel in metal that is not removed, mm.
     pub(super) fn uncut_length(&self, travel: &Line) -> f64 {
         let line = Strip::line(*travel);
-        let shares = NearMetal::new(self, line.bounds(), Judged::Uncut(None)).shares(&line);
+        let shares = NearMetal::new(self, line.bounds(), Judged::Uncut(None)).shares(&line, None);
         let all: f64 = shares.pieces().iter().map(|[first, last]| last - first).sum();
         all * (travel[1] - travel[0]).norm()
     }
@@ -83,6 +83,18 @@ impl KnownMetal {
         let line = Strip::line(travel);
         is_in_known.then(|| !NearMetal::new(self, line.bounds(), Judged::Uncut(None)).is_clear(&line))
     }
+}
+
+/// A strip on which there may be metal, and its shares outside which there is none.
+struct OpenStrip {
+    strip: Strip,
+    shares: Shares,
+}
+
+/// Returns true if these shares of a strip are due to rounding alone.
+fn is_clear(strip: &Strip, shares: &Shares) -> bool {
+    let length = strip.length();
+    shares.pieces().iter().all(|piece| is_rounding(length, *piece))
 }
 
 /// Metal that is judged near one motion.
@@ -114,31 +126,55 @@ impl<'m> NearMetal<'m> {
 
     /// Returns the deepest point of a line in the metal.
     pub(super) fn on_line(&self, line: &Line) -> Option<PointInMetal> {
-        self.metal.deepest(line, &self.shares(&Strip::line(*line)))
+        let mut shares = self.shares(&Strip::line(*line), None);
+        // Of points of one depth the first on the line counts, whatever order the search has.
+        shares.sort();
+        self.metal.deepest(line, &shares)
     }
 
     /// Finds metal on some strips: its deepest point on an edge, or else between two edges.
     pub(super) fn contact(&self, strips: &[Strip]) -> Contact {
-        let is_open = |strip: &Strip| !self.is_clear(strip);
-        let mut pending: Vec<Strip> = strips.iter().copied().filter(is_open).collect();
-        let edges = pending.iter().flat_map(|strip| &strip.edges);
+        let mut pending: Vec<OpenStrip> =
+            strips.iter().filter_map(|strip| self.open_strip(strip, None)).collect();
+        let edges = pending.iter().flat_map(|open| &open.strip.edges);
         if let Some(found) = edges.filter_map(|line| self.on_line(line)).reduce(PointInMetal::deeper) {
             return Contact::Metal(found);
         }
         let mut halved = 0;
         while !pending.is_empty() {
-            pending.retain(|strip| TOUCH_DEPTH < strip.width());
+            pending.retain(|open| TOUCH_DEPTH < open.strip.width());
             halved += pending.len();
             if MAX_HALVED < halved {
                 return Contact::Unknown;
             }
-            let found = pending.iter().filter_map(|strip| Some((self.on_line(&strip.middle())?, strip)));
+            let found = pending.iter().filter_map(|open| Some((self.on_middle(open)?, &open.strip)));
             if let Some((found, strip)) = found.reduce(|a, b| if a.0.depth < b.0.depth { b } else { a }) {
                 return Contact::Metal(self.deepest_about(strip, found));
             }
-            pending = pending.iter().flat_map(Strip::halves).filter(is_open).collect();
+            let halves = |open: &OpenStrip| {
+                let halves = open.strip.halves().into_iter();
+                halves.filter_map(|half| self.open_strip(&half, Some(&open.shares))).collect::<Vec<_>>()
+            };
+            pending = pending.iter().flat_map(halves).collect();
         }
         Contact::Clear
+    }
+
+    /// Returns a strip on which there may be metal at some shares; `None` if there is none.
+    fn open_strip(&self, strip: &Strip, within: Option<&Shares>) -> Option<OpenStrip> {
+        let mut shares = self.shares(strip, within);
+        if is_clear(strip, &shares) {
+            return None;
+        }
+        shares.join();
+        Some(OpenStrip { strip: *strip, shares })
+    }
+
+    /// Returns the deepest point in the metal half way between the edges.
+    fn on_middle(&self, open: &OpenStrip) -> Option<PointInMetal> {
+        let middle = open.strip.middle();
+        let line = Strip::line(middle);
+        if is_clear(&line, &self.shares(&line, Some(&open.shares))) { None } else { self.on_line(&middle) }
     }
 
     /// Returns the deepest point of a strip about the one that is found on its middle.
@@ -160,22 +196,25 @@ impl<'m> NearMetal<'m> {
 
     /// Returns true if no metal is on a strip, false if there may be some.
     fn is_clear(&self, strip: &Strip) -> bool {
-        let length = strip.length();
-        self.shares(strip).pieces().iter().all(|piece| is_rounding(length, *piece))
+        is_clear(strip, &self.shares(strip, None))
     }
 
-    /// Returns shares of a strip outside which it is in no metal that is judged; those of a line are exact.
-    fn shares(&self, strip: &Strip) -> Shares {
+    /// Returns shares of a strip outside which it is in no metal that is judged; those of a line are exact. `within` are those of
+    /// a strip that holds this one: all bodies that remove shares are convex.
+    fn shares(&self, strip: &Strip, within: Option<&Shares>) -> Shares {
         match self.judged {
-            Judged::Uncut(hole) => self.uncut(strip, hole),
-            Judged::Kept(part, _) => self.kept(strip, part, true),
-            Judged::Milled(part) => self.kept(strip, part, false),
+            Judged::Uncut(hole) => self.uncut(strip, hole, within),
+            Judged::Kept(part, _) => self.outside_holes(strip, part, true, within),
+            Judged::Milled(part) => self.outside_holes(strip, part, false, within),
         }
     }
 
     /// Returns shares of a strip outside which it is in no metal, cut or not, or which its first edge decides.
-    fn solid(&self, strip: &Strip, is_counted: impl Fn(usize) -> bool) -> Shares {
+    fn solid(&self, strip: &Strip, is_counted: impl Fn(usize) -> bool, within: Option<&Shares>) -> Shares {
         let mut shares = self.metal.solid(strip, is_counted);
+        if let Some(within) = within {
+            shares.keep_common(within);
+        }
         if strip.is_on_first {
             let [from, to] = &strip.edges[0];
             shares.take_away(self.metal.body.and_then(|body| body.piece(from, to, TOUCH_DEPTH)));
@@ -183,8 +222,8 @@ impl<'m> NearMetal<'m> {
         shares
     }
 
-    fn uncut(&self, strip: &Strip, hole: Option<&Collar>) -> Shares {
-        let mut shares = self.solid(strip, |_| true);
+    fn uncut(&self, strip: &Strip, hole: Option<&Collar>, within: Option<&Shares>) -> Shares {
+        let mut shares = self.solid(strip, |_| true, within);
         if let Some(hole) = hole {
             shares.take_away(strip.piece(|[from, to]| hole.piece_below_entry(from, to)));
         }
@@ -193,10 +232,16 @@ impl<'m> NearMetal<'m> {
     }
 
     /// Returns shares of a strip outside which it is in no metal outside the nominal holes, and outside the pockets if these may go.
-    fn kept(&self, strip: &Strip, part: FeedPart, may_pockets_go: bool) -> Shares {
+    fn outside_holes(
+        &self,
+        strip: &Strip,
+        part: FeedPart,
+        may_pockets_go: bool,
+        within: Option<&Shares>,
+    ) -> Shares {
         let Some(holes) = self.metal.holes.as_deref() else { return Shares::default() };
         // Without a diameter the wall of a hole is unknown.
-        let mut shares = self.solid(strip, |hole| holes.collar(hole).has_diameter);
+        let mut shares = self.solid(strip, |hole| holes.collar(hole).has_diameter, within);
         for pocket in self.metal.pockets_near(&strip.bounds()).filter(|_| may_pockets_go) {
             if shares.is_empty() {
                 return shares;

@@ -2,8 +2,6 @@
 //!
 //! The target of a jump then depends on the control's parameters and on the blocks read so far; without a jump it is a note.
 //! In a long program the numbers begin anew at N9999: many notes are one.
-use std::collections::BTreeMap;
-
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
 
@@ -17,8 +15,6 @@ pub(super) static RULE: Rule =
 const MAX_NOTES: usize = 20;
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
-    let mut found = Vec::new();
     let parameters = parameters::parameter_blocks(unit.program);
     let ops = unit.program.ops().iter().zip(&parameters);
     let mut left_out = unit.left_out_numbers.iter().peekable();
@@ -32,30 +28,27 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         is_input = *is_parameter;
         numbers.extend(op.number.filter(|_| !is_input).map(|number| (number, op.span)));
     }
-    for (number, block) in numbers.into_iter().filter(|(number, _)| *number > 0) {
-        match first.get_mut(&number) {
-            None => {
-                first.insert(number, (block, false));
-            }
-            Some((_, is_reported @ false)) => {
-                *is_reported = true;
-                let line = context.memory.sources().line_column(first[&number].0).line;
-                let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.is_return);
-                let (severity, consequence) = match jump {
-                    true => (Severity::Warning, ": the control decides which of the two GOTO takes"),
-                    false => (Severity::Note, ": a search finds one of the two"),
-                };
-                let message = format!("N{number} is already defined in line {line}{consequence}");
-                let finding = Diagnostic::new(&RULE.kind, message)
-                    .with_severity(severity)
-                    .with_backtrace(Backtrace { block, calls: None })
-                    .help("give one of them another number");
-                found.push(finding);
-            }
-            Some(_) => {}
-        }
-    }
-    fold_notes(found)
+    numbers.retain(|(number, _)| *number > 0);
+    numbers.sort_unstable_by_key(|(number, block)| (*number, block.start));
+    let of_number = numbers.chunk_by(|one, other| one.0 == other.0);
+    let doubled = of_number.filter_map(|all| Some((all.first()?, all.get(1)?)));
+    let mut doubled: Vec<_> =
+        doubled.map(|((number, first), (_, second))| (*number, *first, *second)).collect();
+    doubled.sort_unstable_by_key(|(_, _, second)| second.start);
+    let finding = |(number, first, block): (u32, Span, Span)| {
+        let line = context.memory.sources().line_column(first).line;
+        let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.is_return);
+        let (severity, consequence) = match jump {
+            true => (Severity::Warning, ": the control decides which of the two GOTO takes"),
+            false => (Severity::Note, ": a search finds one of the two"),
+        };
+        let message = format!("N{number} is already defined in line {line}{consequence}");
+        Diagnostic::new(&RULE.kind, message)
+            .with_severity(severity)
+            .with_backtrace(Backtrace { block, calls: None })
+            .help("give one of them another number")
+    };
+    fold_notes(doubled.into_iter().map(finding).collect())
 }
 
 /// Makes many notes one, at the place of the first: a program whose numbers begin anew is no mistake, and needs no remedy.

@@ -49,12 +49,13 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         .delimiter(separator as u8)
         .from_reader(&text.as_bytes()[start..]);
     // A record begins behind the empty lines that its position counts in.
-    let line_of = |position: Option<&csv::Position>| {
-        let from = start + position?.byte() as usize;
+    let line_at = |byte: u64| {
+        let from = start + byte as usize;
         let is_break = |byte: &&u8| matches!(byte, b'\r' | b'\n');
         let from = from + text.as_bytes()[from..].iter().take_while(is_break).count();
-        Some(text[..from].matches('\n').count() + 1)
+        text[..from].matches('\n').count() + 1
     };
+    let line_of = |position: Option<&csv::Position>| Some(line_at(position?.byte()));
     let wrong = |e: &csv::Error| error(line_of(e.position()), e.to_string());
     let names = reader.headers().map_err(|e| wrong(&e))?.iter().map(column_name).collect();
     let columns = Columns::new(names, separator).map_err(|message| {
@@ -73,7 +74,8 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
     };
     let mut cells =
         Cells { columns: &columns, record: csv::StringRecord::new(), has_comma: false, has_point: false };
-    let mut lines_of_ids: HashMap<String, Option<usize>> = HashMap::new();
+    // A line is counted from the start of the text, only for an error.
+    let mut positions_of_ids: HashMap<String, Option<u64>> = HashMap::new();
     while reader.read_record(&mut cells.record).map_err(|e| wrong(&e))? {
         if cells.record.iter().all(|cell| cell.trim().is_empty()) {
             continue;
@@ -85,11 +87,12 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
                 format!("{message}; {}", example(&columns.names, separator)),
             )
         })?;
-        let line = line_of(cells.record.position());
+        let position = cells.record.position();
         if let Some(id) = &hole.hole.id
-            && let Some(first) = lines_of_ids.insert(id.clone(), line)
+            && let Some(first) = positions_of_ids.insert(id.clone(), position.map(csv::Position::byte))
         {
-            let first = first.map_or_else(String::new, |first| format!(", in line {first} first"));
+            let first = first.map_or_else(String::new, |first| format!(", in line {} first", line_at(first)));
+            let line = line_of(position);
             return Err(error(line, format!("id '{id}' is used twice{first}: give each hole its own")));
         }
         if hole.is_open {

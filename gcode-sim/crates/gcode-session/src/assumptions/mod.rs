@@ -1,7 +1,10 @@
 //! Assumptions of a result: values that the run read and nothing in its program set, with the holes that each can touch.
+mod pass_strokes;
+
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use self::pass_strokes::PassStrokes;
 use super::causes::work_offset_name;
 use super::marked_events::{MarkedEvents, marks_of};
 use super::outside_text::names_outside;
@@ -36,6 +39,24 @@ pub(super) fn of_holes(request: &Request, run: &Run, metal: &Metal, has_holes: b
         marks_of(passes.chain([&hole.backtrace]), &strokes)
     };
     Dependencies { reads, marks: extractor.finish().holes.iter().map(marks_of).collect() }
+}
+
+/// Follows the outside values to the holes of the first run, which are found by their blocks and ends: the second run extracts
+/// holes only where these are not enough.
+pub(super) fn of_known_holes(
+    request: &Request,
+    run: &Run,
+    metal: &Metal,
+    holes: &[DrilledHole],
+) -> Dependencies {
+    let Some((reads, passes, strokes)) = follow(request, run, !holes.is_empty(), || PassStrokes::new(holes))
+    else {
+        return Dependencies::default();
+    };
+    match passes.marks_of(holes, &strokes) {
+        Some(marks) => Dependencies { reads, marks },
+        None => of_holes(request, run, metal, !holes.is_empty()),
+    }
 }
 
 /// Follows the outside values to the passes over flutes.

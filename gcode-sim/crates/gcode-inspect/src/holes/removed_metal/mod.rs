@@ -1,8 +1,15 @@
 //! Metal that feeds have removed: volumes that the tool sweeps, and the parts of a travel that they cover.
+mod slabs;
+mod sweep_box;
+#[cfg(test)]
+mod tests;
+
 use std::cell::RefCell;
 
 use nalgebra::{Point3, Unit, Vector3};
 
+use self::slabs::{Slab, Slabs};
+use self::sweep_box::{StripReach, SweepBox, bounds_between};
 use super::box_tree::{BoxTree, group};
 use super::profile::Profile;
 use super::shares::Shares;
@@ -40,8 +47,11 @@ struct Sweep {
 pub(super) struct RemovedMetal {
     sweeps: Vec<Sweep>,
     profiles: Vec<Profile>,
-    /// Boxes about the sweeps.
+    /// Boxes about groups of sweeps, and about each.
     boxes: BoxTree,
+    sweep_boxes: Vec<SweepBox>,
+    /// Passes side by side among all sweeps but the last.
+    slabs: Slabs,
     /// The next feed may lengthen the last sweep.
     is_last_open: bool,
     /// Direction of its first feed.
@@ -63,6 +73,8 @@ impl RemovedMetal {
             sweeps: Vec::new(),
             profiles: Vec::new(),
             boxes: BoxTree::default(),
+            sweep_boxes: Vec::new(),
+            slabs: Slabs::default(),
             is_last_open: false,
             heading: None,
             common_axis: None,
@@ -94,12 +106,24 @@ impl RemovedMetal {
                 self.is_full = true;
                 return;
             }
+            self.add_last_to_slabs();
             self.sweeps.push(Sweep { from, to, axis, profile });
             self.common_axis = Some(self.common_axis.unwrap_or(Some(axis)).filter(|common| *common == axis));
             self.is_last_open = true;
             self.heading = Unit::try_new(to - from, ROUNDING);
         }
         self.enclose_last();
+    }
+
+    /// Adds the last sweep, which is complete, to the slabs.
+    fn add_last_to_slabs(&mut self) {
+        let Some(Sweep { from, to, axis, profile }) = self.sweeps.last() else { return };
+        let tool = (&self.profiles[*profile as usize], *profile);
+        if let Some(pass) = Slab::of_pass([*from, *to], axis, tool, self.sweeps.len() as u32) {
+            let up = axis.into_inner();
+            let height = [from, to].map(|p| self.height_of_round(p, &up, tool.0.radius));
+            self.slabs.add(pass, height[0].max(height[1]));
+        }
     }
 
     /// Widens the boxes about the last sweep.
@@ -114,7 +138,13 @@ impl RemovedMetal {
             (low, high) = (low.inf(&end), high.sup(&end));
         }
         let margin = Vector3::repeat(profile.radius + TOUCH_DEPTH);
-        self.boxes.enclose(self.sweeps.len() - 1, [low - margin, high + margin]);
+        let number = self.sweeps.len() - 1;
+        let sweep_box = SweepBox::new([&sweep.from, &sweep.to], &axis, top, margin.x);
+        match self.sweep_boxes.get_mut(number) {
+            Some(known) => *known = sweep_box,
+            None => self.sweep_boxes.push(sweep_box),
+        }
+        self.boxes.enclose(number, [low - margin, high + margin]);
     }
 
     /// Returns the height above a point beyond which there is no metal along a direction.
@@ -184,12 +214,16 @@ impl FirstSweeps<'_> {
     /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included. `is_certain` leaves
     /// out tools of unknown diameter.
     pub(super) fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
+        let profiles = &self.removed.profiles;
+        let is_counted = |profile: u32| profiles[profile as usize].is_certain || !is_certain;
+        self.removed.slabs.uncover(strip, self.sweeps.len(), is_counted, shares);
         let mut recent = self.removed.recent.borrow_mut();
         let cover = |index: usize, shares: &mut Shares| {
-            let Some(sweep) = self.sweeps.get(index) else { return false };
-            let profile = &self.removed.profiles[sweep.profile as usize];
+            let Some(sweep) = self.sweeps.get(index).filter(|sweep| is_counted(sweep.profile)) else {
+                return false;
+            };
             let mut has_covered = false;
-            for part in profile.parts.iter().filter(|_| profile.is_certain || !is_certain) {
+            for part in &profiles[sweep.profile as usize].parts {
                 has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, line)));
             }
             has_covered
@@ -200,15 +234,18 @@ impl FirstSweeps<'_> {
             }
             cover(recent[place], shares);
         }
-        if shares.is_empty() {
-            return;
-        }
-        self.removed.boxes.near(&strip.bounds(), &mut |place| {
+        let Some(extent) = shares.extent() else { return };
+        let reach = StripReach::of(strip);
+        let is_near = |index: usize, shares: &Shares| {
+            let sweep_box = self.removed.sweep_boxes.get(index);
+            sweep_box.and_then(|near| reach.shares_in(near)).is_some_and(|range| shares.meets(range))
+        };
+        self.removed.boxes.near(&bounds_between(strip, extent), &mut |place| {
             for index in group(place).rev() {
                 if shares.is_empty() {
                     return false;
                 }
-                if cover(index, shares) {
+                if is_near(index, shares) && cover(index, shares) {
                     recent.retain(|other| *other != index);
                     if recent.len() == MAX_RECENT {
                         recent.remove(0);
@@ -306,131 +343,5 @@ impl Sweep {
             }
         }
         all
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use gcode_part::Taper;
-
-    fn p(x: f64, y: f64, z: f64) -> Point3<f64> {
-        Point3::new(x, y, z)
-    }
-
-    fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f64; 2]> {
-        let mut shares = Shares::default();
-        shares.extend([[0.0, 1.0]]);
-        removed.first(u32::MAX).uncover(&Strip::line([from, to]), true, &mut shares);
-        let mut pieces: Vec<_> =
-            shares.pieces().iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
-        pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        pieces
-    }
-
-    /// A mill of 10 feeds from x 0 to x 40 at z −5. A travel of 100 along x at y 0 is covered from −5.01 to 45.01; at y 3
-    /// from −SQRT[5.01² − 9] = −4.0125; at z −5.02 it is below.
-    #[test]
-    fn a_slot_covers_its_width_and_all_above_it() {
-        let mut removed = RemovedMetal::new([p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)]);
-        removed.add(p(0.0, 0.0, -5.0), p(40.0, 0.0, -5.0), Vector3::z_axis(), &Profile::flat(5.0, true));
-        for is_closed in [false, true] {
-            if is_closed {
-                removed.close();
-            }
-            let along = |y, z| rest_of(&removed, p(-50.0, y, z), p(50.0, y, z));
-            assert_eq!(along(0.0, -5.0), [[0.0, 0.4499], [0.9501, 1.0]]);
-            assert_eq!(along(0.0, -0.1), [[0.0, 0.4499], [0.9501, 1.0]]);
-            assert_eq!(along(3.0, -5.0), [[0.0, 0.459875], [0.940125, 1.0]]);
-            assert_eq!(along(0.0, -5.02), [[0.0, 1.0]]);
-            assert_eq!(rest_of(&removed, p(40.0, 4.0, 0.0), p(40.0, 4.0, -10.0)), [[0.501, 1.0]]);
-        }
-    }
-
-    /// Pecks along one line are one sweep, and a feed back adds none.
-    #[test]
-    fn pecks_are_one_sweep() {
-        let mut removed = RemovedMetal::new([p(-9.0, -9.0, -50.0), p(9.0, 9.0, 0.0)]);
-        for depth in 1..=1000 {
-            let bottom = f64::from(depth) / -50.0;
-            let profile = Profile::flat(3.0, true);
-            removed.add(p(1.0, 0.0, bottom + 0.1), p(1.0, 0.0, bottom), Vector3::z_axis(), &profile);
-            removed.add(p(1.0, 0.0, bottom), p(1.0, 0.0, 0.0), Vector3::z_axis(), &profile);
-        }
-        assert_eq!(removed.sweeps.len(), 1);
-        assert_eq!(rest_of(&removed, p(3.0, 0.0, 0.0), p(3.0, 0.0, -40.0)), [[0.50025, 1.0]]);
-    }
-
-    /// A thousand steps of 0.05 along a line are one sweep; on a circle of 10 no sweep leaves it by more than 0.01.
-    #[test]
-    fn small_steps_along_a_line_are_one_sweep() {
-        let profile = Profile::flat(3.0, true);
-        let bounds = [p(-99.0, -99.0, -50.0), p(99.0, 99.0, 0.0)];
-        let (mut line, mut circle) = (RemovedMetal::new(bounds), RemovedMetal::new(bounds));
-        for step in 0..1000 {
-            let at = |step: i32| p(f64::from(step) * 0.05, 0.0, -5.0);
-            line.add(at(step), at(step + 1), Vector3::z_axis(), &profile);
-            let on = |step: i32| {
-                let angle = gcode_lang::units::Deg(f64::from(step) * 0.36);
-                p(10.0 * angle.cos(), 10.0 * angle.sin(), -5.0)
-            };
-            circle.add(on(step), on(step + 1), Vector3::z_axis(), &profile);
-        }
-        assert_eq!(line.sweeps.len(), 1);
-        assert_eq!(rest_of(&line, p(-10.0, 0.0, -1.0), p(90.0, 0.0, -1.0)), [[0.0, 0.0699], [0.6301, 1.0]]);
-        let inner = |sweep: &Sweep| nalgebra::center(&sweep.from, &sweep.to).coords.xy().norm();
-        let least = circle.sweeps.iter().map(inner).fold(f64::INFINITY, f64::min);
-        assert!(
-            (9.99..10.0).contains(&least) && circle.sweeps.len() < 500,
-            "{least} {}",
-            circle.sweeps.len()
-        );
-    }
-
-    proptest! {
-        /// A point is covered if and only if some position of the tool holds it.
-        #[test]
-        fn the_rest_is_what_no_position_of_the_tool_holds(
-            ends in prop::array::uniform6(-10.0..10.0f64),
-            travel in prop::array::uniform6(-15.0..15.0f64),
-            direction in prop::array::uniform3(-1.0..1.0f64),
-            (radius, low, length) in (0.5..5.0f64, 0.0..3.0f64, 0.5..8.0f64),
-            slope in prop::sample::select(vec![0.0, 0.0, 0.6, 1.0, 2.7]),
-        ) {
-            let axis = Unit::try_new(Vector3::from(direction), 0.1);
-            prop_assume!(axis.is_some());
-            let axis = axis.unwrap();
-            let (from, to) = (p(ends[0], ends[1], ends[2]), p(ends[3], ends[4], ends[5]));
-            // A cone has its tip at the lower end and a cylinder on it.
-            let cylinder = ToolPart::flutes(low + length, low + 2.0 * length, slope * length);
-            let cone = ToolPart {
-                taper: Taper { radius: -slope * low, slope },
-                ..ToolPart::flutes(low, low + length, 0.0)
-            };
-            let parts = if slope == 0.0 { vec![ToolPart::flutes(low, low + length, radius)] } else { vec![cone, cylinder] };
-            let sweep = Sweep { from, to, axis, profile: 0 };
-            let (a, b) = (p(travel[0], travel[1], travel[2]), p(travel[3], travel[4], travel[5]));
-            let covered: Vec<_> = parts.iter().filter_map(|part| sweep.covered(part, &[a, b])).collect();
-            for s in 0..=50 {
-                let s = f64::from(s) / 50.0;
-                let q = a + (b - a) * s;
-                let excess = |t: f64| {
-                    let to_q = q - (from + (to - from) * t);
-                    let height = to_q.dot(&axis);
-                    let aside = (to_q - axis.into_inner() * height).norm();
-                    let of_part = |part: &ToolPart| {
-                        let beside = (aside - part.taper.at(height)) / libm::hypot(1.0, part.taper.slope);
-                        beside.max(aside - part.radius()).max(part.from - height).max(height - part.to)
-                    };
-                    parts.iter().map(of_part).fold(f64::INFINITY, f64::min)
-                };
-                let least = (0..=1000).map(|t| excess(f64::from(t) / 1000.0)).fold(f64::INFINITY, f64::min);
-                let is_covered = covered.iter().any(|[first, last]| *first <= s && s <= *last);
-                prop_assert!(!is_covered || least < TOUCH_DEPTH + 0.02, "{} {}", s, least);
-                prop_assert!(is_covered || least > TOUCH_DEPTH - 1e-6, "{} {}", s, least);
-            }
-        }
     }
 }
