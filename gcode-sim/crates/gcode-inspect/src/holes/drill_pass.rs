@@ -30,6 +30,9 @@ pub struct PassCut {
     pub order: usize,
 }
 
+/// Largest relative deviation of a thread's feed a revolution from its pitch: rounding of F.
+pub(crate) const PITCH_TOLERANCE: f64 = 0.005;
+
 /// Motion of a tap out of its thread.
 #[derive(Clone, Copy, Debug)]
 pub struct TapRetract {

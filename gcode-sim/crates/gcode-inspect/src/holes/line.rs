@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::clamping::ClampState;
 use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent, widen};
-use super::drill_pass::{DrillPass, PassCut, TapRetract};
+use super::drill_pass::{DrillPass, PITCH_TOLERANCE, PassCut, TapRetract};
 use super::{HoleExtractor, MotionKind};
 use crate::machine::TOUCH_DEPTH;
 use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
@@ -12,9 +12,6 @@ use gcode_lang::units::MmPerMin;
 
 /// Least additional depth of a stroke that cuts, mm.
 const MIN_DEPTH_GAIN: f64 = 0.001;
-
-/// Largest relative deviation of a thread's feed a revolution from its pitch: rounding of F.
-pub(crate) const PITCH_TOLERANCE: f64 = 0.005;
 
 /// Largest shift of a boring bar off the wall, mm.
 pub(super) const MAX_BAR_SHIFT: f64 = 5.0;
@@ -52,6 +49,8 @@ pub(super) struct CuttingLine {
     pub is_reached_by_feed: bool,
     /// Modal state of the last feed that cuts, else that at the start.
     pub cutting_state: CuttingState,
+    /// State and rate of a feed that cuts, before another sense of the spindle.
+    pub other_sense: Option<(CuttingState, MmPerMin)>,
     /// Clamp at the start of the feed.
     pub clamp_state: ClampState,
     /// Axes of unknown position on the part.
@@ -142,6 +141,7 @@ impl CuttingLine {
             is_cycle: false,
             is_reached_by_feed: false,
             cutting_state: CuttingState::default(),
+            other_sense: None,
             clamp_state: ClampState::default(),
             unknown_axes: UnknownAxes::default(),
             length_excess: None,
@@ -167,6 +167,10 @@ impl CuttingLine {
     /// thread.
     pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState, cuts: bool) {
         self.is_fed_stopped |= state.spindle_direction == SpindleDirection::Off;
+        let is_other =
+            self.extremes.is_some() && self.cutting_state.spindle_direction != state.spindle_direction;
+        let before = self.last_feed.filter(|_| is_other).map(|feed| (self.cutting_state, feed));
+        self.other_sense = self.other_sense.or(before);
         self.cutting_state = state;
         self.is_tapping = false;
         self.uneven_retract = None;

@@ -1,7 +1,7 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
 use nalgebra::{Point3, Vector3};
 
-use super::cutting::CuttingState;
+use super::cutting::{CuttingState, PeckExtent};
 use super::line::{CuttingLine, ToolExit};
 use super::near_metal::FeedPart;
 use super::rapids::format_point;
@@ -313,6 +313,17 @@ impl HoleExtractor<'_> {
                 line.pecks(),
                 origin,
             );
+            if let Some((state, feed)) = &line.other_sense {
+                let feeds = ([*feed; 2], [(*feed, state.speed); 2]);
+                self.cut_conditions.add(
+                    backtrace,
+                    state,
+                    line.is_tapping,
+                    feeds,
+                    PeckExtent::default(),
+                    origin,
+                );
+            }
         }
         self.check_spindle(backtrace, line);
         self.check_tool_changed(backtrace, &line.cutting_state);

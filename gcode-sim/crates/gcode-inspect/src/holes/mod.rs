@@ -55,12 +55,12 @@ mod wall_cut;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub(crate) use cutting::CutConditions;
+pub(crate) use drill_pass::PITCH_TOLERANCE;
 pub use drill_pass::{Helix, MilledCut, PassCut, TapRetract};
 pub use extraction::HoleExtraction;
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::{LengthMismatch, OffsetOrigin};
-pub(crate) use line::PITCH_TOLERANCE;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use rapid_paths::UnsearchedMotions;
 pub(crate) use swept_tool::ring;
