@@ -1,5 +1,5 @@
 //! Cutting conditions: what is in force while a tool cuts, by block, for comparison with the reference.
-use super::length_mismatch::OffsetOrigin;
+use super::offset_origin::OffsetOrigin;
 use super::per_block::PerBlock;
 use gcode_lang::motion::{Backtrace, LengthCompensation, SpindleDirection};
 use gcode_lang::units::{MmPerMin, Rpm};

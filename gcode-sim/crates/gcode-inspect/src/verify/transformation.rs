@@ -6,7 +6,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::displacement::rotation_error;
-use super::{Comparison, Deviation};
+use super::{Comparison, Deviation, HolePair};
 use crate::machine::{Machine, Setup};
 use gcode_lang::motion::{AxisIndex, Backtrace, Position};
 use gcode_lang::units::Deg;
@@ -94,7 +94,11 @@ impl Transformation {
         let extra = comparison.extra.iter().filter(is_displaced).copied();
         let subset: Vec<usize> = if is_open { (0..lines.len()).collect() } else { extra.collect() };
         let (before, count) = if is_open { (before, count) } else { (0, subset.len()) };
-        if count < MIN_HOLES || subset.len() < MIN_HOLES {
+        // Beside a whole pattern extra holes are extra.
+        let is_unfinished =
+            |pair: &HolePair| exceeds(pair.deviation.depth_error.abs(), comparison.tolerances.depth);
+        let is_whole = comparison.missing.is_empty() && !comparison.pairs.iter().any(is_unfinished);
+        if count < MIN_HOLES || subset.len() < MIN_HOLES || !is_open && is_whole {
             return None;
         }
         let search = Search { comparison, machine, lines: &lines };
