@@ -1,15 +1,20 @@
 //! Recorders of a run for the person at the machine: uses of tools in order, offsets, stops, and times.
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_control::{Control, Observer};
 use gcode_lang::motion::{
-    Backtrace, Event, EventKind, EventSink, LengthCompensation, SpindleDirection, StopKind,
+    AxisIndex, Backtrace, Event, EventKind, EventSink, LengthCompensation, SpindleDirection, StopKind,
 };
 use gcode_lang::program::modes::{ModalGroup, WorkSystem};
 use gcode_lang::source::Span;
 
 /// G40, as code × 10.
 const CUTTER_COMPENSATION_OFF: u32 = 400;
+
+/// G00, G80 and G95.
+const RAPID: u32 = 0;
+const NO_CYCLE: u32 = 800;
+const FEED_PER_REVOLUTION: u32 = 950;
 
 /// From one tool change to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -152,6 +157,10 @@ pub(crate) struct OffsetObserver {
     pub work_systems: Vec<WorkSystem>,
     /// Cutter radius offsets, as tool and D.
     pub radius_offsets: BTreeSet<(u32, u32)>,
+    /// Least and largest F of the cuts of a tool in G95, in the program's unit a revolution.
+    pub feeds_per_revolution: BTreeMap<u32, [f64; 2]>,
+    /// Rotary axes with their first commanded positions in work coordinates, degrees.
+    pub first_angles: Vec<(AxisIndex, f64)>,
     moves: u64,
 }
 
@@ -170,6 +179,20 @@ impl Observer for OffsetObserver {
         }
         if state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF {
             self.radius_offsets.insert((state.tool, state.modal_words.d));
+        }
+        let is_cut = state.modal.code_in(ModalGroup::Motion) != RAPID
+            || state.modal.code_in(ModalGroup::Cycle) != NO_CYCLE;
+        if is_cut && state.modal.code_in(ModalGroup::FeedMode) == FEED_PER_REVOLUTION {
+            let feed = state.modal_words.f;
+            let range = self.feeds_per_revolution.entry(state.tool).or_insert([feed, feed]);
+            *range = [range[0].min(feed), range[1].max(feed)];
+        }
+        let uncommanded = control.unknown_axes().uncommanded;
+        let axes = &control.settings().axes;
+        for axis in (0..axes.len()).filter(|axis| axes.is_rotary(*axis) && uncommanded >> axis & 1 == 0) {
+            if self.first_angles.iter().all(|(known, _)| *known != axis) {
+                self.first_angles.push((axis, control.work_position(axis)));
+            }
         }
     }
 }

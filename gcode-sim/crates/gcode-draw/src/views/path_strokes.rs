@@ -1,5 +1,5 @@
 //! Lines of a tool path in one view: colour by a value or a class, dash pattern by tool, clipped to the frame.
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use super::path_view::{ColorBy, PathRun, PathView, RunKind, StandardView};
 use super::view_frames::{PlacedView, axis_index};
@@ -91,7 +91,7 @@ impl PathDrawer<'_> {
             ColorBy::Feed => self.shades.map(|scale| scale.tint(scale.level(run.feed))),
             ColorBy::Depth => None,
         };
-        Style { tint, pattern: (order % 6) as u8, width: None }
+        Style { tint, pattern: (order % 6) as u8, ..Style::default() }
     }
 
     /// Draws the areas that the cutters sweep along the feeds.
@@ -100,8 +100,10 @@ impl PathDrawer<'_> {
         let swept = feeds.filter_map(|run| {
             let width = self.path.tools.get(run.tool)?.diameter?;
             let points = self.sparse(view, run);
-            let style = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(width) };
-            (1 < points.len())
+            let style = Style { tint: Some(Tint::Pale), width: Some(width), ..Style::default() };
+            // A plunge sweeps no more than its hole, which has a symbol.
+            let has_extent = points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]));
+            has_extent
                 .then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
         });
         swept.collect()
@@ -111,10 +113,7 @@ impl PathDrawer<'_> {
     pub(super) fn rapids(&self, view: &PlacedView) -> (Vec<Stroke>, bool) {
         let (mut strokes, mut is_cut) = (Vec::new(), false);
         let mut line: Vec<Point> = Vec::new();
-        // Dashes drawn twice would fill each other's gaps.
-        let mut drawn: BTreeSet<[[i64; 2]; 2]> = BTreeSet::new();
-        let grid = 2.0 * RESOLUTION * self.extent;
-        let cell = |point: Point| point.map(|mm| (mm / grid).round() as i64);
+        let mut drawn = DrawnSegments::new(2.0 * RESOLUTION * self.extent);
         for run in self.path.runs.iter().filter(|run| run.kind == RunKind::Rapid) {
             for pair in self.sparse(view, run).windows(2) {
                 let Some([from, to]) = clipped([pair[0], pair[1]], view.frame) else {
@@ -122,34 +121,64 @@ impl PathDrawer<'_> {
                     continue;
                 };
                 is_cut |= from != pair[0] || to != pair[1];
-                let mut ends = [cell(from), cell(to)];
-                ends.sort_unstable();
-                if !drawn.insert(ends) {
-                    continue;
+                for [from, to] in drawn.add([from, to]) {
+                    if line.last() != Some(&from) {
+                        flush(&mut strokes, &mut line, view, Pen::Rapid, None);
+                        line = vec![from];
+                    }
+                    line.push(to);
                 }
-                if line.last() != Some(&from) {
-                    flush(&mut strokes, &mut line, view, Pen::Rapid, None);
-                    line = vec![from];
-                }
-                line.push(to);
             }
         }
         flush(&mut strokes, &mut line, view, Pen::Rapid, None);
         (strokes, is_cut)
     }
 
-    /// Draws feeds and probing moves.
+    /// Returns true if a view shows feeds of a tool as lines.
+    pub(super) fn shows_feeds(&self, view: &PlacedView, tool: usize) -> bool {
+        let is_of_tool = |run: &&PathRun| run.kind == RunKind::Feed && run.tool == tool;
+        self.path.runs.iter().filter(is_of_tool).any(|run| {
+            let points = self.sparse(view, run);
+            points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]))
+        })
+    }
+
+    /// Draws feeds and probing moves. Where a tool repeats a line, as the turns of a helix seen along its axis do, the last one is
+    /// drawn: dashes of all would fill each other's gaps.
     pub(super) fn feeds(&self, view: &PlacedView) -> Vec<Stroke> {
+        let all = self.path.runs.iter().filter(|run| run.kind != RunKind::Rapid);
+        let is_dashed =
+            |run: &PathRun| run.kind == RunKind::Feed && self.style(run).pattern != 0;
+        let points: usize = all.clone().filter(|run| is_dashed(run)).map(|run| run.points.len()).sum();
+        if MAX_SWEPT_POINTS < points {
+            return all.flat_map(|run| self.feed(view, run)).collect();
+        }
+        let mut drawn: BTreeMap<usize, DrawnSegments> = BTreeMap::new();
         let mut strokes = Vec::new();
-        for run in self.path.runs.iter().filter(|run| run.kind != RunKind::Rapid) {
-            let pen = if run.kind == RunKind::Probe { Pen::Probe } else { Pen::Feed };
-            let style = Some(self.style(run)).filter(|_| run.kind == RunKind::Feed);
-            match (self.shades, self.color_by, style) {
-                (Some(scale), ColorBy::Depth, Some(style)) => {
-                    self.shaded(view, run, scale, style, &mut strokes);
-                }
-                _ => flush(&mut strokes, &mut self.sparse(view, run), view, pen, style),
+        for run in all.rev() {
+            let lines = self.feed(view, run);
+            if !is_dashed(run) {
+                strokes.extend(lines.into_iter().rev());
+                continue;
             }
+            let of_tool =
+                drawn.entry(run.tool).or_insert_with(|| DrawnSegments::new(2.0 * RESOLUTION * self.extent));
+            strokes.extend(lines.into_iter().rev().flat_map(|stroke| of_tool.without_repeats(stroke)));
+        }
+        strokes.reverse();
+        strokes
+    }
+
+    /// Draws a feed or a probing move.
+    fn feed(&self, view: &PlacedView, run: &PathRun) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
+        let pen = if run.kind == RunKind::Probe { Pen::Probe } else { Pen::Feed };
+        let style = Some(self.style(run)).filter(|_| run.kind == RunKind::Feed);
+        match (self.shades, self.color_by, style) {
+            (Some(scale), ColorBy::Depth, Some(style)) => {
+                self.shaded(view, run, scale, style, &mut strokes);
+            }
+            _ => flush(&mut strokes, &mut self.sparse(view, run), view, pen, style),
         }
         strokes
     }
@@ -165,7 +194,14 @@ impl PathDrawer<'_> {
     ) {
         let depth = |point: [f64; 3]| point[self.height.0] * self.height.1;
         let least = RESOLUTION * self.extent;
-        let styled = |level: f64| Some(Style { tint: Some(scale.tint(level)), ..style });
+        let mut drawn = 0.0;
+        let mut flush_shade = |line: &mut Vec<Point>, level: f64| {
+            let length: f64 = line.windows(2).map(|ends| distance(ends[0], ends[1])).sum();
+            let phase = if style.pattern == 0 { 0.0 } else { drawn };
+            let styled = Some(Style { tint: Some(scale.tint(level)), phase, ..style });
+            flush(to, line, view, Pen::Feed, styled);
+            drawn += length;
+        };
         let points = &self.path.points[run.points.clone()];
         let (mut line, mut current) = (Vec::new(), f64::NAN);
         let Some(first) = points.first() else { return };
@@ -185,7 +221,7 @@ impl PathDrawer<'_> {
                 let middle = (f64::from(piece) + 0.5) / pieces;
                 let level = scale.level(before_depth + (now_depth - before_depth) * middle);
                 if level != current {
-                    flush(to, &mut line, view, Pen::Feed, styled(current));
+                    flush_shade(&mut line, current);
                     line.push(at(f64::from(piece) / pieces));
                     current = level;
                 }
@@ -193,7 +229,7 @@ impl PathDrawer<'_> {
             }
             (before, before_depth) = (now, now_depth);
         }
-        flush(to, &mut line, view, Pen::Feed, styled(current));
+        flush_shade(&mut line, current);
     }
 
     /// Returns the projected points of a run without those that a sheet can't tell from the one before.
@@ -211,6 +247,105 @@ impl PathDrawer<'_> {
         }
         sparse
     }
+}
+
+/// Segments that are drawn, by the lines on which they lie, so that no piece of a dashed line is drawn twice.
+struct DrawnSegments {
+    /// Distance of lines that a sheet can't tell apart, mm.
+    grid: f64,
+    /// Pieces by direction and distance of their line from the origin: positions along it.
+    pieces: BTreeMap<(i64, i64), Vec<[f64; 2]>>,
+}
+
+/// Number of directions that are told apart in a unit of their components.
+const DIRECTIONS: f64 = 1e5;
+
+impl DrawnSegments {
+    fn new(grid: f64) -> Self {
+        Self { grid, pieces: BTreeMap::new() }
+    }
+
+    /// Adds a segment; returns the pieces of it that are not drawn yet, in its own direction.
+    fn add(&mut self, [from, to]: [Point; 2]) -> Vec<[Point; 2]> {
+        let length = distance(from, to);
+        if length < self.grid {
+            return vec![[from, to]];
+        }
+        let along = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+        let is_forward = 0.0 < along[0] || along[0] == 0.0 && 0.0 < along[1];
+        let axis = if is_forward { along } else { along.map(|part| -part) };
+        let off = axis[0] * from[1] - axis[1] * from[0];
+        let position = |point: Point| axis[0] * point[0] + axis[1] * point[1];
+        let key = ((axis[1] * DIRECTIONS).round() as i64, (off / self.grid).round() as i64);
+        let (mut first, mut last) = (position(from), position(to));
+        if !is_forward {
+            (first, last) = (last, first);
+        }
+        let drawn = self.pieces.entry(key).or_default();
+        let mut rest = vec![[first, last]];
+        for [start, end] in drawn.iter() {
+            let without = |[first, last]: [f64; 2]| {
+                [[first, last.min(*start)], [first.max(*end), last]].into_iter().filter(|[a, b]| a < b)
+            };
+            rest = rest.into_iter().flat_map(without).collect();
+        }
+        rest.retain(|[first, last]| self.grid <= last - first);
+        drawn.push([first, last]);
+        *drawn = joined(std::mem::take(drawn));
+        let whole = rest.as_slice() == [[first, last]];
+        rest.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        if !is_forward {
+            rest.reverse();
+        }
+        let at = |mm: f64| [axis[0] * mm - axis[1] * off, axis[1] * mm + axis[0] * off];
+        let ends = |[first, last]: [f64; 2]| if is_forward { [at(first), at(last)] } else { [at(last), at(first)] };
+        if whole { vec![[from, to]] } else { rest.into_iter().map(ends).collect() }
+    }
+
+    /// Returns the parts of a stroke that are not drawn yet; their dashes keep their places.
+    fn without_repeats(&mut self, stroke: Stroke) -> Vec<Stroke> {
+        let Shape::Line(points) = &stroke.shape else { return vec![stroke] };
+        let style = stroke.style.unwrap_or_default();
+        let (mut parts, mut line, mut before, mut start) = (Vec::new(), Vec::new(), style.phase, style.phase);
+        let mut end = |line: &mut Vec<Point>, phase: f64| {
+            let points = std::mem::take(line);
+            if 1 < points.len() {
+                let style = Some(Style { phase, ..style });
+                parts.push(Stroke { style, ..Stroke::new(stroke.pen, Shape::Line(points)) });
+            }
+        };
+        for pair in points.windows(2) {
+            for [from, to] in self.add([pair[0], pair[1]]) {
+                if line.last() != Some(&from) {
+                    end(&mut line, start);
+                    start = before + distance(pair[0], from);
+                    line = vec![from];
+                }
+                line.push(to);
+            }
+            before += distance(pair[0], pair[1]);
+        }
+        end(&mut line, start);
+        parts.reverse();
+        parts
+    }
+}
+
+/// Joins pieces of a line that meet.
+fn joined(mut pieces: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut all: Vec<[f64; 2]> = Vec::new();
+    for piece in pieces {
+        match all.last_mut() {
+            Some(last) if piece[0] <= last[1] => last[1] = last[1].max(piece[1]),
+            _ => all.push(piece),
+        }
+    }
+    all
+}
+
+fn distance(from: Point, to: Point) -> f64 {
+    libm::hypot(to[0] - from[0], to[1] - from[1])
 }
 
 /// Ends a polyline at its last point, with which the next one begins; one without extent is not drawn.
@@ -314,6 +449,18 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// On one line, in both directions: what is drawn already is left out. A line beside it is another.
+    #[test]
+    fn no_piece_of_a_line_is_drawn_twice() {
+        let mut drawn = DrawnSegments::new(0.01);
+        assert_eq!(drawn.add([[10.0, 5.0], [30.0, 5.0]]), [[[10.0, 5.0], [30.0, 5.0]]]);
+        assert_eq!(drawn.add([[30.0, 5.0], [10.0, 5.0]]), Vec::<[Point; 2]>::new());
+        let rest = drawn.add([[40.0, 5.0], [0.0, 5.0]]);
+        assert_eq!(rest, [[[40.0, 5.0], [30.0, 5.0]], [[10.0, 5.0], [0.0, 5.0]]]);
+        assert_eq!(drawn.add([[10.0, 6.0], [30.0, 6.0]]).len(), 1);
+        assert_eq!(drawn.add([[20.0, 0.0], [20.0, 30.0]]).len(), 1, "across it");
+    }
 
     /// From (−10, 5) to (30, 25) the line enters a square of 0 to 20 at (0, 10) and leaves it at (20, 20).
     #[test]
