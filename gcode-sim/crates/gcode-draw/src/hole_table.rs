@@ -64,7 +64,11 @@ impl HoleTable {
             let words = format!("no room for a table of {} holes", self.rows.len());
             let words = font.wrapped(&words, size, area.width(), 3);
             let is_fitting = !self.rows.is_empty() && words.len() <= all_lines;
-            return if is_fitting { text_lines(words, area, area.top + ASCENT * size, size) } else { Vec::new() };
+            return if is_fitting {
+                text_lines(words, area, area.top + ASCENT * size, size)
+            } else {
+                Vec::new()
+            };
         }
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         if count < self.rows.len() {
@@ -166,7 +170,11 @@ mod tests {
         let narrow = texts(&table(3), 90.0, 300.0);
         assert_eq!(narrow[..3], ["hole", "x", "1"]);
         assert_eq!(narrow[8..].join(" "), "no room for depth");
-        assert_eq!(texts(&table(3), 300.0, 60.0), ["no room for a table of 3 holes"], "too low for three rows");
+        assert_eq!(
+            texts(&table(3), 300.0, 60.0),
+            ["no room for a table of 3 holes"],
+            "too low for three rows"
+        );
         assert!(texts(&table(3), 300.0, 15.0).is_empty(), "no room for a line");
     }
 }

@@ -80,7 +80,14 @@ impl LabelArea {
     pub(super) fn new(area: Rect, cell: f64) -> Self {
         let columns = (area.width() / cell).max(0.0) as usize + 1;
         let rows = (area.height() / cell).max(0.0) as usize + 1;
-        Self { area, cell, columns, cells: vec![Vec::new(); columns * rows], soft_obstacles: Vec::new(), path_cover: PathCover::new(area, 0.3 * cell) }
+        Self {
+            area,
+            cell,
+            columns,
+            cells: vec![Vec::new(); columns * rows],
+            soft_obstacles: Vec::new(),
+            path_cover: PathCover::new(area, 0.3 * cell),
+        }
     }
 
     /// Adds an obstacle that no label may cover.

@@ -31,7 +31,8 @@ impl PathCover {
 
     fn index(&self, at: Px) -> Option<usize> {
         let (right, down) = (at.x - self.area.left, at.y - self.area.top);
-        let is_inside = 0.0 <= right && 0.0 <= down && right <= self.area.width() && down <= self.area.height();
+        let is_inside =
+            0.0 <= right && 0.0 <= down && right <= self.area.width() && down <= self.area.height();
         is_inside.then(|| (down / self.cell) as usize * self.columns + (right / self.cell) as usize)
     }
 
@@ -46,7 +47,8 @@ impl PathCover {
         let across = range(rect.left, rect.right, self.area.left);
         let cells = down.flat_map(|row| across.clone().map(move |column| (row, column)));
         let cells: Vec<_> = cells.filter(|(row, column)| *row < rows && *column < self.columns).collect();
-        let covered = cells.iter().filter(|(row, column)| self.is_covered[row * self.columns + column]).count();
+        let covered =
+            cells.iter().filter(|(row, column)| self.is_covered[row * self.columns + column]).count();
         covered as f64 / cells.len().max(1) as f64
     }
 }

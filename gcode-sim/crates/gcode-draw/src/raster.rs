@@ -95,7 +95,8 @@ fn stroke(pixmap: &mut Pixmap, path: Option<Path>, Ink { color, width, dash, pha
         width: width.max(1.0) as f32,
         line_cap: if dash.is_none() { LineCap::Round } else { LineCap::Butt },
         line_join: LineJoin::Round,
-        dash: dash.and_then(|pattern| StrokeDash::new(pattern.map(|length| length as f32).to_vec(), phase as f32)),
+        dash: dash
+            .and_then(|pattern| StrokeDash::new(pattern.map(|length| length as f32).to_vec(), phase as f32)),
         ..Stroke::default()
     };
     pixmap.stroke_path(&path, &paint_of(color), &stroke, Transform::identity(), None);

@@ -139,8 +139,7 @@ impl Record {
         let mut setup = Setup::default();
         let mut from = Position::default();
         let (mut left, mut exact_left) = (points, exact_points);
-        let unknown_starts =
-            self.unknown_axes(machine).iter().map(|(_, moves)| moves + 1).max().unwrap_or(0);
+        let unknown_starts = self.unknown_axes(machine).iter().map(|(_, moves)| moves + 1).max().unwrap_or(0);
         let mut move_number = 0;
         for (index, step) in self.steps.iter().enumerate() {
             set_up(&mut setup, step.kind);

@@ -255,10 +255,16 @@ class Side {
     if (this.moves.length === 0) return;
     const context = this.context;
     const last = 2 * (this.starts[this.moves.length] - 1);
+    // Beyond the canvas they are at its edge.
+    const inside = (at) => [
+      Math.max(8, Math.min(this.view.width - 8, this.screen[at])),
+      Math.max(8, Math.min(this.view.height - 8, this.screen[at + 1])),
+    ];
     Object.assign(context, { strokeStyle: colours.ink, fillStyle: colours.ink, lineWidth: 2 });
-    if (!hasAlarm) context.fillRect(this.screen[last] - 5, this.screen[last + 1] - 5, 10, 10);
+    const [endX, endY] = inside(last);
+    if (!hasAlarm) context.fillRect(endX - 5, endY - 5, 10, 10);
     context.beginPath();
-    context.arc(this.screen[0], this.screen[1], 6, 0, 2 * Math.PI);
+    context.arc(...inside(0), 6, 0, 2 * Math.PI);
     context.fillStyle = colours.paper;
     context.fill();
     context.stroke();

@@ -118,7 +118,7 @@ impl ProgramSheet<'_> {
 
     /// Formats a length or a feed in mm in the program's unit.
     fn in_unit(&self, mm: f64) -> String {
-        if self.is_inch() { rounded(mm / MM_PER_INCH, 4) } else { short(mm) }
+        if self.is_inch() { short((mm / MM_PER_INCH * 1e4).round() / 1e4) } else { short(mm) }
     }
 
     /// Formats a range of values in mm in the program's unit.
@@ -232,7 +232,8 @@ impl ProgramSheet<'_> {
                 cell(one.first_block.as_ref().map_or_else(String::new, |at| self.location(at))),
             ]
         });
-        let columns = ["tool", "kind, diameter", "#length", "H", "D", "#S", "#F", "coolant", "#holes", "#min", "from"];
+        let columns =
+            ["tool", "kind, diameter", "#length", "H", "D", "#S", "#F", "coolant", "#holes", "#min", "from"];
         html! {
             h2 { "Tools, in the order of use" }
             (table(&columns, rows))

@@ -170,15 +170,16 @@ impl Observer for OffsetObserver {
     }
 
     fn after_block(&mut self, control: &Control) {
+        let state = control.state();
+        // A move with compensation waits for the next one.
+        if state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF {
+            self.radius_offsets.insert((state.tool, state.modal_words.d));
+        }
         if control.moves() == self.moves {
             return;
         }
-        let state = control.state();
         if !self.work_systems.contains(&state.modal.work) {
             self.work_systems.push(state.modal.work);
-        }
-        if state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF {
-            self.radius_offsets.insert((state.tool, state.modal_words.d));
         }
         let is_cut = state.modal.code_in(ModalGroup::Motion) != RAPID
             || state.modal.code_in(ModalGroup::Cycle) != NO_CYCLE;

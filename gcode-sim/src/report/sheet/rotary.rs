@@ -20,8 +20,7 @@ pub(super) fn section(machine: &Machine, observed: &OffsetObserver) -> Markup {
     let links = of_table.chain(of_head.iter().map(|link| (link, "the spindle")));
     let is_rotary = |link: &AxisLink| matches!(link.motion, LinkMotion::Rotary { .. });
     // Without a machine file nothing says which axes the machine has.
-    let links: Vec<_> =
-        links.filter(|(link, _)| is_rotary(link) && !machine.has_default_table).collect();
+    let links: Vec<_> = links.filter(|(link, _)| is_rotary(link) && !machine.has_default_table).collect();
     let rows = links.iter().map(|(link, carried)| {
         let letter = machine.axes.letter(link.axis);
         let first = observed.first_angles.iter().find(|(axis, _)| *axis == link.axis);
@@ -81,8 +80,14 @@ mod tests {
         };
         assert_eq!(words(Vector3::x(), 1.0, "the part"), "A+ turns the part: the top moves towards Y−");
         assert_eq!(words(Vector3::x(), -1.0, "the part"), "A+ turns the part: the top moves towards Y+");
-        assert_eq!(words(Vector3::y(), 1.0, "the spindle"), "A+ turns the spindle: the upper end moves towards X+");
-        assert_eq!(words(Vector3::z(), -1.0, "the part"), "A+ turns the part: the side at X+ moves towards Y−");
+        assert_eq!(
+            words(Vector3::y(), 1.0, "the spindle"),
+            "A+ turns the spindle: the upper end moves towards X+"
+        );
+        assert_eq!(
+            words(Vector3::z(), -1.0, "the part"),
+            "A+ turns the part: the side at X+ moves towards Y−"
+        );
         assert!(words(Vector3::new(0.0, 1.0, 1.0), 1.0, "the part").contains("between the machine axes"));
     }
 }

@@ -102,9 +102,9 @@ impl PathDrawer<'_> {
             let points = self.sparse(view, run);
             let style = Style { tint: Some(Tint::Pale), width: Some(width), ..Style::default() };
             // A plunge sweeps no more than its hole, which has a symbol.
-            let has_extent = points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]));
-            has_extent
-                .then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
+            let has_extent =
+                points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]));
+            has_extent.then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
         });
         swept.collect()
     }
@@ -114,6 +114,7 @@ impl PathDrawer<'_> {
         let (mut strokes, mut is_cut) = (Vec::new(), false);
         let mut line: Vec<Point> = Vec::new();
         let mut drawn = DrawnSegments::new(2.0 * RESOLUTION * self.extent);
+        let mut cells = DrawnCells::new(view.frame, SAME_LINE * self.extent);
         for run in self.path.runs.iter().filter(|run| run.kind == RunKind::Rapid) {
             for pair in self.sparse(view, run).windows(2) {
                 let Some([from, to]) = clipped([pair[0], pair[1]], view.frame) else {
@@ -122,13 +123,18 @@ impl PathDrawer<'_> {
                 };
                 is_cut |= from != pair[0] || to != pair[1];
                 for [from, to] in drawn.add([from, to]) {
+                    if cells.covers([from, to]) {
+                        continue;
+                    }
                     if line.last() != Some(&from) {
                         flush(&mut strokes, &mut line, view, Pen::Rapid, None);
                         line = vec![from];
                     }
                     line.push(to);
+                    cells.add([from, to]);
                 }
             }
+            cells.end_run();
         }
         flush(&mut strokes, &mut line, view, Pen::Rapid, None);
         (strokes, is_cut)
@@ -147,8 +153,7 @@ impl PathDrawer<'_> {
     /// drawn: dashes of all would fill each other's gaps.
     pub(super) fn feeds(&self, view: &PlacedView) -> Vec<Stroke> {
         let all = self.path.runs.iter().filter(|run| run.kind != RunKind::Rapid);
-        let is_dashed =
-            |run: &PathRun| run.kind == RunKind::Feed && self.style(run).pattern != 0;
+        let is_dashed = |run: &PathRun| run.kind == RunKind::Feed && self.style(run).pattern != 0;
         let points: usize = all.clone().filter(|run| is_dashed(run)).map(|run| run.points.len()).sum();
         if MAX_SWEPT_POINTS < points {
             return all.flat_map(|run| self.feed(view, run)).collect();
@@ -249,6 +254,83 @@ impl PathDrawer<'_> {
     }
 }
 
+/// Cells of a view through which lines of earlier runs go, with their directions: dashes of two lines so close would fill each
+/// other's gaps, as of two arcs on one circle with other chords.
+struct DrawnCells {
+    low: Point,
+    cell: f64,
+    columns: usize,
+    rows: usize,
+    /// Directions of the lines through each cell, as bits.
+    directions: Vec<u16>,
+    /// Cells and directions of the current run.
+    pending: Vec<(usize, u16)>,
+}
+
+/// Distance below which two lines are one on the sheet, in parts of the extent of the views: two pixels.
+const SAME_LINE: f64 = 0.0015;
+/// Number of directions of a line in half a turn.
+const LINE_DIRECTIONS: f64 = 16.0;
+
+impl DrawnCells {
+    fn new([low, high]: [Point; 2], cell: f64) -> Self {
+        let count = |axis: usize| ((high[axis] - low[axis]) / cell).clamp(0.0, 2000.0) as usize + 1;
+        let (columns, rows) = (count(0), count(1));
+        Self { low, cell, columns, rows, directions: vec![0; columns * rows], pending: Vec::new() }
+    }
+
+    /// Calls `each` with points along a segment, a cell apart, as column and row.
+    fn walk(&self, [from, to]: [Point; 2], mut each: impl FnMut(i64, i64)) {
+        let steps = (distance(from, to) / self.cell).ceil().clamp(1.0, 4000.0);
+        for step in 0..=steps as u32 {
+            let share = f64::from(step) / steps;
+            let at = |axis: usize| {
+                ((from[axis] + (to[axis] - from[axis]) * share - self.low[axis]) / self.cell).floor() as i64
+            };
+            each(at(0), at(1));
+        }
+    }
+
+    fn index(&self, column: i64, row: i64) -> Option<usize> {
+        let (column, row) = (usize::try_from(column).ok()?, usize::try_from(row).ok()?);
+        (column < self.columns && row < self.rows).then(|| row * self.columns + column)
+    }
+
+    /// Returns true if lines of earlier runs in nearly the same direction go beside all of a segment.
+    fn covers(&self, segment: [Point; 2]) -> bool {
+        let direction = direction_bit(segment);
+        let near = direction | direction.rotate_left(1) | direction.rotate_right(1);
+        let mut is_covered = true;
+        self.walk(segment, |column, row| {
+            let has_line = |across: i64, up: i64| {
+                self.index(column + across, row + up).is_some_and(|index| self.directions[index] & near != 0)
+            };
+            is_covered &= (-1..=1).any(|across| (-1..=1).any(|up| has_line(across, up)));
+        });
+        is_covered
+    }
+
+    fn add(&mut self, segment: [Point; 2]) {
+        let direction = direction_bit(segment);
+        let mut cells = Vec::new();
+        self.walk(segment, |column, row| cells.extend(self.index(column, row)));
+        self.pending.extend(cells.into_iter().map(|index| (index, direction)));
+    }
+
+    /// Ends a run: the next ones are compared with it.
+    fn end_run(&mut self) {
+        for (index, direction) in self.pending.drain(..) {
+            self.directions[index] |= direction;
+        }
+    }
+}
+
+/// Returns the direction of a segment, without its sense, as one of 16 bits.
+fn direction_bit([from, to]: [Point; 2]) -> u16 {
+    let angle = libm::atan2(to[1] - from[1], to[0] - from[0]) / std::f64::consts::PI;
+    1 << ((angle * LINE_DIRECTIONS).round() as i64).rem_euclid(LINE_DIRECTIONS as i64)
+}
+
 /// Segments that are drawn, by the lines on which they lie, so that no piece of a dashed line is drawn twice.
 struct DrawnSegments {
     /// Distance of lines that a sheet can't tell apart, mm.
@@ -298,7 +380,8 @@ impl DrawnSegments {
             rest.reverse();
         }
         let at = |mm: f64| [axis[0] * mm - axis[1] * off, axis[1] * mm + axis[0] * off];
-        let ends = |[first, last]: [f64; 2]| if is_forward { [at(first), at(last)] } else { [at(last), at(first)] };
+        let ends =
+            |[first, last]: [f64; 2]| if is_forward { [at(first), at(last)] } else { [at(last), at(first)] };
         if whole { vec![[from, to]] } else { rest.into_iter().map(ends).collect() }
     }
 
@@ -460,6 +543,23 @@ mod tests {
         assert_eq!(rest, [[[40.0, 5.0], [30.0, 5.0]], [[10.0, 5.0], [0.0, 5.0]]]);
         assert_eq!(drawn.add([[10.0, 6.0], [30.0, 6.0]]).len(), 1);
         assert_eq!(drawn.add([[20.0, 0.0], [20.0, 30.0]]).len(), 1, "across it");
+    }
+
+    /// An arc of another run with other chords, at most 0.04 off the first one, and a line across both.
+    #[test]
+    fn a_line_beside_another_run_is_not_drawn_again() {
+        let circle = |step: u32| -> Vec<Point> {
+            arc([50.0, 50.0], [40.0, 40.0], [0.0, 90.0]).into_iter().step_by(step as usize).collect()
+        };
+        let mut cells = DrawnCells::new([[0.0, 0.0], [100.0, 100.0]], 0.5);
+        for pair in circle(4).windows(2) {
+            assert!(!cells.covers([pair[0], pair[1]]), "its own run does not count");
+            cells.add([pair[0], pair[1]]);
+        }
+        cells.end_run();
+        assert!(circle(3).windows(2).all(|pair| cells.covers([pair[0], pair[1]])));
+        assert!(!cells.covers([[50.0, 50.0], [90.0, 90.0]]), "across it");
+        assert!(!cells.covers([[80.0, 50.0], [80.0, 60.0]]), "beside it");
     }
 
     /// From (−10, 5) to (30, 25) the line enters a square of 0 to 20 at (0, 10) and leaves it at (20, 20).
