@@ -232,4 +232,18 @@ mod tests {
             assert_eq!(is_reversed(&lines), expected, "{lines}");
         }
     }
+
+    /// A move with compensation waits for the next block; D11 is in force all the same. F of G95 counts for cuts, not for rapids.
+    #[test]
+    fn offsets_and_feeds_a_revolution_are_those_of_the_cuts() {
+        let text = "O1\nG21 G90 G54 G40 G80\nT3 M6\nS500 M3\nG0 X0. Y0. Z5. A30.\nG95 F0.5\nG0 X1.\nG41 D11 G1 X20. F0.1\nY20.\n\
+                    G40 X30.\nG81 X1. Y1. Z-5. R2. F0.25\nG80\nG94 G1 X50. F200.\nM30\n";
+        let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
+        let mut observer = OffsetObserver::default();
+        gcode_session::run_observed(&request, &mut NoLibrary, &mut (), &mut observer).unwrap();
+        assert_eq!(observer.radius_offsets, BTreeSet::from([(3, 11)]));
+        assert_eq!(observer.feeds_per_revolution, BTreeMap::from([(3, [0.1, 0.25])]));
+        let a = request.machine.axes.find(b'A').unwrap();
+        assert_eq!(observer.first_angles, [(a, 30.0)], "B and C are not commanded");
+    }
 }
