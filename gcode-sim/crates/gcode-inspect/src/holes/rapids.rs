@@ -5,7 +5,7 @@ use super::line::{CuttingLine, ToolExit};
 use super::metal::PointInMetal;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{FEED_NO_HOLE, RAPID_BEYOND_CUT, TOOL_LEFT_IN_HOLE};
-use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolKind};
+use crate::machine::{AxisMotion, TOUCH_DEPTH};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Event;
 use gcode_part::Surface;
@@ -154,10 +154,6 @@ impl HoleExtractor<'_> {
         let is_rapid = kind == MotionKind::Rapid;
         let Some(surface) = self.surface else {
             if !is_rapid {
-                // An end mill mills along curves.
-                if self.machine.kind_of(self.setup.tool) == Some(ToolKind::EndMill) {
-                    return false;
-                }
                 self.engagement.uncounted.add_curved(event.backtrace());
                 return false;
             }
