@@ -8,7 +8,7 @@ use gcode_part::job::Job;
 use gcode_session::{Request, Run, SessionError, run};
 
 use crate::check::{CheckError, Programs, broken_package};
-use crate::families::alignment::{RUNOUT, SINE_TABLE};
+use crate::families::alignment;
 use crate::package::{Package, file_name, stem};
 
 /// Common variables that a control keeps between programs and while it is switched off.
@@ -76,7 +76,11 @@ pub(super) fn record(job: &Job, package: &Package) -> Result<Record, CheckError>
     let mut listener = RunRecorder::default();
     let mut record = Record::default();
     let mut kept = Vec::new();
-    for main in run_order(job, package) {
+    let order = match job {
+        Job::Alignment(_) => alignment::run_order(&package.mains),
+        Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) | Job::Pattern(_) => package.mains.clone(),
+    };
+    for main in order {
         let begin = ProgramStart { main, variables: std::mem::take(&mut kept) };
         let request = request(package, &begin)?;
         record.rapids = [request.settings.rapid.0, request.settings.rapid_rotary];
@@ -99,14 +103,6 @@ pub(super) fn record(job: &Job, package: &Package) -> Result<Record, CheckError>
     record.auxiliary_codes.sort_unstable();
     record.auxiliary_codes.dedup();
     Ok(Record { tools: listener.tools, times: listener.times, ..record })
-}
-
-/// Returns the main programs in the order of execution. Setting the sine table moves the part, so the run-out
-/// is measured at least twice.
-fn run_order(job: &Job, package: &Package) -> Vec<u32> {
-    let again = |main: u32| matches!(job, Job::Alignment(_)) && main == SINE_TABLE;
-    let twice = |main: &u32| std::iter::once(*main).chain(again(*main).then_some(RUNOUT));
-    package.mains.iter().flat_map(twice).collect()
 }
 
 /// Runs a program with the part on the machine, if the program touches it.

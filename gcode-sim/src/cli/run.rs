@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
-use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress};
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
 use crate::report::run::{MAX_MOVES, MoveRecorder, RunReport, StopRecorder};
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::stylus::RapidChecker;
@@ -76,6 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let assumptions = (assumed.into_iter().map(|(assumption, _)| assumption).collect(), holes);
     let report = RunReport::new(&run, &request.machine, (&stops, moves.as_ref()), system, assumptions);
     output::report(&report, RunReport::text, arguments.format)?;
+    unused_machine::warn_unused_axes(&program, &request.machine, &run);
     let in_part = super::findings(&rapids, &run);
     let of_run = super::findings(&run.findings().collect::<Vec<_>>(), &run);
     let status = in_part.max(of_run).max(super::findings(&denied, &run));

@@ -1,15 +1,31 @@
 //! Warns of an unused machine file: `--machine` is easily forgotten, and another machine makes other holes.
 use super::conditions::ProgramArguments;
 use super::output;
+use gcode_inspect::machine::Machine;
 use gcode_lang::control::{Dialect, Increment};
-use gcode_session::Request;
 use gcode_session::files::MACHINE_FILE;
+use gcode_session::{Request, Run};
 
 /// Prints a note if no machine file is used and the program's comments name one.
 pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Request) {
     if arguments.conditions.machine.is_none() && head(&request.bytes).is_some() {
         let why = "the program's comments name a machine file, and none is used: give --machine MACHINE.toml";
         output::print_message(&format!("note: {why}\n"));
+    }
+}
+
+/// Prints a note on the rotary axes that a program commands and that carry nothing, if no machine file is used.
+pub(super) fn warn_unused_axes(arguments: &ProgramArguments, machine: &Machine, run: &Run) {
+    let control = &run.control;
+    let axes = &control.settings().axes;
+    let uncommanded = control.unknown_axes().uncommanded | machine.used_axes();
+    let unused = (0..axes.len()).filter(|axis| axes.is_rotary(*axis) && uncommanded >> axis & 1 == 0);
+    let unused = axes.names(unused.fold(0, |bits, axis| bits | 1 << axis));
+    if arguments.conditions.machine.is_none() && !unused.is_empty() {
+        output::print_message(&format!(
+            "note: {unused}: commanded, and moves neither part nor tool without a machine file: gcode-sim new machine --kind \
+             4th-axis (or trunnion, head-table, head-head) writes one\n"
+        ));
     }
 }
 

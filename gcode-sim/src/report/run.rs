@@ -321,7 +321,8 @@ impl RunReport {
                 self.uncommanded
             );
         }
-        let _ = writeln!(text, "executed   {} blocks, {} moves", self.blocks, self.moves);
+        let (blocks, moves) = (count(self.blocks, "block"), count(self.moves, "move"));
+        let _ = writeln!(text, "executed   {blocks}, {moves}");
         let _ =
             writeln!(text, "time       {} (paths and rapid rates, no acceleration)", duration(self.seconds));
         for stop in &self.stops {

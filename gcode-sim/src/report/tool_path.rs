@@ -114,7 +114,7 @@ fn places(path: &ToolPath, simulation: &Simulation) -> Vec<PathPlace> {
 }
 
 /// Returns the work zeros: those of the machine file, or the origin of the part, from which positions then count.
-fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
+pub(crate) fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
     if !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_)) {
         return Vec::new();
     }

@@ -196,7 +196,11 @@ fn the_mouse_turns_zooms_and_picks() {
     browser.click("[data-view=reset]");
     browser.drag(&[(x, y)]);
     lands(&browser, "new-0-5 G1 Z-9.");
-    assert!(picked(&browser).starts_with("New, hole 1 at X 0.000 Y 0.000"), "{}", picked(&browser));
+    assert!(
+        picked(&browser).starts_with("New, hole 1 on the part at x 0.000 y 0.000"),
+        "{}",
+        picked(&browser)
+    );
     is_quiet(&browser);
 }
 

@@ -1,4 +1,5 @@
 //! Running time and, with rates, the cost, compared with other machines.
+use gcode_part::job::Job;
 use gcode_sim::report::figures::{rounded, short, signed_to};
 use gcode_sim::report::sheet::layout::BASIS;
 use maud::{Markup, html};
@@ -18,6 +19,9 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
                 "The program runs " b { (minutes(times.total())) " min" } ": feed " (minutes(times.feed)) ", rapid "
                 (minutes(times.rapid)) ", dwell " (minutes(times.dwell)) ". " (BASIS) ": paths divided by feeds and rapid rates, "
                 "without acceleration, which makes it longer at the machine."
+                @if matches!(sheet.job, Job::Alignment(_)) {
+                    " Each program runs once, O8210 once more after the sine table has moved the part."
+                }
             } }
             @if !sheet.record.alarmed_programs.is_empty() {
                 p { "Without " (sheet.record.alarmed_programs.join(", ")) ", which ends in an alarm on a part in its nominal position." }

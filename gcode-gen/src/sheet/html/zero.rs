@@ -191,7 +191,11 @@ fn honeycomb(job: &Honeycomb) -> Vec<String> {
     all.extend(job.machine.clamp.map(|clamp| {
         format!("M{} releases the rotary before it rotates, M{} clamps it.", clamp.off, clamp.on)
     }));
-    all.push("Start with the tool clear of the part.".to_owned());
+    all.push(
+        "Start with the tool clear of the part and home in Z where M06 does not retract by itself: M06 comes first, without G28. \
+         The program ends at the retract height, with the tool length offset in force: without G49 and G28."
+            .to_owned(),
+    );
     all
 }
 

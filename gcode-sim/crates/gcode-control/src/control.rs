@@ -310,6 +310,12 @@ impl Control {
         self.executor.registers.state.modal.unit == Unit::Inch
     }
 
+    /// Returns the zero of the active work coordinate system in machine coordinates, mm and degrees.
+    pub fn work_zeros(&self) -> Position {
+        let registers = &self.executor.registers;
+        registers.data.zeros(&registers.state)
+    }
+
     /// Returns the tool centre in machine coordinates, mm and degrees.
     pub fn machine_position(&self) -> Position {
         let mut centre = self.executor.registers.state.machine_position;

@@ -50,11 +50,25 @@ impl HoleTable {
                 kept.retain(|column| Some(*column) != least);
             }
         };
+        let left_out: Vec<&str> =
+            (0..self.columns.len()).filter(|c| !kept.contains(c)).map(|c| self.columns[c].head).collect();
+        let left_out = match left_out.is_empty() {
+            true => Vec::new(),
+            false => font.wrapped(&format!("no room for {}", left_out.join(", ")), size, area.width(), 3),
+        };
         // A line is the head's, and one counts the rest.
-        let lines = (area.height() / (LEADING * size)) as usize;
+        let all_lines = (area.height() / (LEADING * size)) as usize;
+        let lines = all_lines.saturating_sub(left_out.len());
         let count = if self.rows.len() < lines { self.rows.len() } else { lines.saturating_sub(2) };
         if self.rows.is_empty() || count < MIN_ROWS.min(self.rows.len()) {
-            return Vec::new();
+            let words = format!("no room for a table of {} holes", self.rows.len());
+            let words = font.wrapped(&words, size, area.width(), 3);
+            let is_fitting = !self.rows.is_empty() && words.len() <= all_lines;
+            return if is_fitting {
+                text_lines(words, area, area.top + ASCENT * size, size)
+            } else {
+                Vec::new()
+            };
         }
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         if count < self.rows.len() {
@@ -87,7 +101,9 @@ impl HoleTable {
         if 0 < rest {
             let at = px(area.left, base + LEADING * size);
             commands.push(DrawCommand::text(at, size, format!("… {rest} more"), palette::SOFT_TEXT));
+            base += LEADING * size;
         }
+        commands.extend(text_lines(left_out, area, base + LEADING * size, size));
         commands.extend(symbols);
         commands
     }
@@ -99,6 +115,15 @@ impl HoleTable {
         };
         kept.iter().map(width).collect()
     }
+}
+
+/// Writes lines from a base line down.
+fn text_lines(lines: Vec<String>, area: Rect, base: f64, size: f64) -> Vec<DrawCommand> {
+    let line = |(number, text): (usize, String)| {
+        let at = px(area.left, base + LEADING * size * number as f64);
+        DrawCommand::text(at, size, text, palette::SOFT_TEXT)
+    };
+    lines.into_iter().enumerate().map(line).collect()
 }
 
 #[cfg(test)]
@@ -142,7 +167,14 @@ mod tests {
 
     #[test]
     fn a_narrow_panel_leaves_the_least_important_column_out() {
-        assert_eq!(texts(&table(3), 90.0, 300.0)[..3], ["hole", "x", "1"]);
-        assert!(texts(&table(3), 300.0, 60.0).is_empty(), "too low for three rows");
+        let narrow = texts(&table(3), 90.0, 300.0);
+        assert_eq!(narrow[..3], ["hole", "x", "1"]);
+        assert_eq!(narrow[8..].join(" "), "no room for depth");
+        assert_eq!(
+            texts(&table(3), 300.0, 60.0),
+            ["no room for a table of 3 holes"],
+            "too low for three rows"
+        );
+        assert!(texts(&table(3), 300.0, 15.0).is_empty(), "no room for a line");
     }
 }

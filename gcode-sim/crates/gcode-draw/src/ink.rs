@@ -122,15 +122,17 @@ pub(super) struct Ink {
     pub(super) width: f64,
     /// Dash, gap, dash, gap, pixels; `None` for a solid line.
     pub(super) dash: Option<[f64; 4]>,
+    /// Length of the dash pattern that precedes the line, pixels.
+    pub(super) phase: f64,
 }
 
 impl Ink {
     pub(super) const fn solid(width: f64, color: Rgb) -> Self {
-        Self { color, width, dash: None }
+        Self { color, width, dash: None, phase: 0.0 }
     }
 
     pub(super) const fn dashed(width: f64, color: Rgb, [dash, gap]: [f64; 2]) -> Self {
-        Self { color, width, dash: Some([dash, gap, dash, gap]) }
+        Self { color, width, dash: Some([dash, gap, dash, gap]), phase: 0.0 }
     }
 }
 
@@ -156,6 +158,13 @@ pub(super) enum DrawCommand {
         radius: f64,
         color: Rgb,
     },
+    /// Rim of paper about the letters of a text, so that it is legible on lines and hides little of them.
+    Halo {
+        at: Px,
+        align: Align,
+        size: f64,
+        text: String,
+    },
     /// Text with `at` on the base line; `size` is the em in pixels.
     Text {
         at: Px,
@@ -177,6 +186,11 @@ impl DrawCommand {
 
     pub(super) fn outline(points: Vec<Px>, ink: Ink) -> Self {
         Self::Line { points, closed: true, ink }
+    }
+
+    /// Returns the width of the rim of a halo about text of this size.
+    pub(super) fn halo_width(size: f64) -> f64 {
+        (0.14 * size).max(1.5)
     }
 
     pub(super) fn text(at: Px, size: f64, text: impl Into<String>, color: Rgb) -> Self {

@@ -108,7 +108,7 @@ impl LabelLayout {
         sheet.commands.extend(leaders.map(|(from, to)| DrawCommand::line(from, to, ink)));
         for label in &self.labels {
             let lines = scene.marks[label.mark].label[..label.lines].to_vec();
-            write(lines, &label.placement, frame, sheet);
+            write(lines, &label.placement, Ground::Halo, frame, sheet);
         }
     }
 
@@ -117,7 +117,9 @@ impl LabelLayout {
         let mut notes = Vec::new();
         let without = self.unlabelled(scene);
         if 0 < without {
-            notes.push(format!("{without} of {} holes without a number: no room.", scene.marks.len()));
+            // A hole has a symbol in each view, and its label in one.
+            let holes = scene.marks.iter().filter(|mark| !mark.label.is_empty()).count();
+            notes.push(format!("{without} of {holes} holes without a number: no room."));
         }
         let cut = self.labels.iter().filter(|l| l.lines < scene.marks[l.mark].label.len()).count();
         match cut {
@@ -200,7 +202,11 @@ pub(super) fn caption_strokes(
                 sheet.commands.push(DrawCommand::line(from, to, palette::leader(frame.text_size)));
                 sheet.commands.push(DrawCommand::Disc { centre: from, radius, color });
             }
-            write(lines, &spot, frame, sheet);
+            // A number on its line interrupts it, as a dimension does.
+            let is_on_line = spot.leader.is_none()
+                && stroke.pen != Pen::Ruler
+                && matches!(stroke.shape, Shape::Line(_) | Shape::Circle { .. });
+            write(lines, &spot, if is_on_line { Ground::Paper } else { Ground::Halo }, frame, sheet);
         } else if !matches!(stroke.pen, Pen::Scale | Pen::Ruler) {
             left.push(caption.clone());
         }
@@ -249,10 +255,21 @@ fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
     (widest + 0.3 * frame.text_size, height + 0.1 * frame.text_size)
 }
 
-/// Writes the lines in a box that interrupts the lines below it, as a dimension interrupts its line.
-fn write(lines: Vec<String>, spot: &LabelPlacement, frame: &Frame, sheet: &mut Sheet) {
+/// What lies between a label and the drawing below it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ground {
+    /// The box of the label, which interrupts what is below it.
+    Paper,
+    /// A rim about each letter: lines stay visible between them.
+    Halo,
+}
+
+/// Writes the lines of a label.
+fn write(lines: Vec<String>, spot: &LabelPlacement, ground: Ground, frame: &Frame, sheet: &mut Sheet) {
     let (rect, size, align) = (spot.rect, frame.text_size, spot.align);
-    sheet.commands.push(DrawCommand::Area { points: rect.corners(), color: palette::PAPER });
+    if ground == Ground::Paper {
+        sheet.commands.push(DrawCommand::Area { points: rect.corners(), color: palette::PAPER });
+    }
     let x = match align {
         Align::Left => rect.left + 0.15 * size,
         Align::Centre => rect.centre().x,
@@ -261,6 +278,9 @@ fn write(lines: Vec<String>, spot: &LabelPlacement, frame: &Frame, sheet: &mut S
     for (n, line) in lines.iter().enumerate() {
         let at = px(x, rect.top + size * (0.05 + ASCENT + LEADING * n as f64));
         let color = if n == 0 { palette::TEXT } else { palette::SOFT_TEXT };
+        if ground == Ground::Halo {
+            sheet.commands.push(DrawCommand::Halo { at, align, size, text: line.clone() });
+        }
         sheet.commands.push(DrawCommand::Text { at, align, size, text: line.clone(), color });
     }
     sheet.labels.push((rect, lines));

@@ -4,6 +4,7 @@
 //! position. A label never covers anything in the area, so two labels never overlap.
 use super::ink::{Px, Rect, px};
 use super::obstacle::Obstacle;
+use super::path_cover::PathCover;
 use super::scene::Align;
 use gcode_lang::units::Deg;
 
@@ -63,11 +64,15 @@ pub(super) struct LabelArea {
     cells: Vec<Vec<Obstacle>>,
     /// Lines that a label may interrupt if no better position is free.
     soft_obstacles: Vec<Obstacle>,
+    /// Lines of tool paths, which labels avoid where a position nearby is free of them.
+    path_cover: PathCover,
 }
 
 const DIRECTIONS: u32 = 24;
 /// Distances between symbol and label in line heights; from the second on the label has a leader.
 const DISTANCES: [f64; 12] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5, 9.0, 12.0, 16.0, 21.0];
+/// Cost of a label that lies on tool paths throughout, in the costs of a distance of half a line height.
+const PATH_COST: f64 = 6.0;
 /// Number of distances tried for a label whose leader must not cross other symbols.
 const NEAR_DISTANCES: usize = 8;
 
@@ -75,7 +80,14 @@ impl LabelArea {
     pub(super) fn new(area: Rect, cell: f64) -> Self {
         let columns = (area.width() / cell).max(0.0) as usize + 1;
         let rows = (area.height() / cell).max(0.0) as usize + 1;
-        Self { area, cell, columns, cells: vec![Vec::new(); columns * rows], soft_obstacles: Vec::new() }
+        Self {
+            area,
+            cell,
+            columns,
+            cells: vec![Vec::new(); columns * rows],
+            soft_obstacles: Vec::new(),
+            path_cover: PathCover::new(area, 0.3 * cell),
+        }
     }
 
     /// Adds an obstacle that no label may cover.
@@ -89,6 +101,11 @@ impl LabelArea {
     /// Adds an obstacle that labels avoid if possible.
     pub(super) fn discourage(&mut self, obstacle: Obstacle) {
         self.soft_obstacles.push(obstacle);
+    }
+
+    /// Adds a piece of a tool path, which labels avoid if a position nearby is free.
+    pub(super) fn cover(&mut self, from: Px, to: Px) {
+        self.path_cover.add(from, to);
     }
 
     pub(super) fn is_free(&self, rect: &Rect) -> bool {
@@ -138,7 +155,7 @@ impl LabelArea {
                 }
                 let doubt = if is_doubtful { 3.0 } else { 0.0 };
                 let covered = self.soft_obstacles.iter().filter(|o| o.hits(&rect)).count();
-                let cost = cost + doubt + 2.0 * covered as f64;
+                let cost = cost + doubt + 2.0 * covered as f64 + PATH_COST * self.path_cover.share(&rect);
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, LabelPlacement { rect, leader, align: symbol.align(&rect) }));
                 }

@@ -2,7 +2,7 @@
 use super::PictureError;
 use super::deviation_dials::{Detail, DeviationDials};
 use super::font::Font;
-use super::ink::{Rect, px};
+use super::ink::{DrawCommand, Rect, px};
 use super::label_layout::{LabelLayout, caption_strokes};
 use super::labels::LabelArea;
 use super::lines::{are_arrows_hidden, axes, block_stroke, scale_bar, shape_commands};
@@ -100,6 +100,8 @@ impl Plan {
         let (places, strokes): (Vec<&Stroke>, Vec<&Stroke>) =
             scene.strokes.iter().partition(|stroke| matches!(stroke.shape, Shape::Sign { .. }));
         let draw = |stroke: &Stroke| shape_commands(stroke, &frame.scale, frame.text_size);
+        let (ticks, strokes): (Vec<&Stroke>, Vec<&Stroke>) =
+            strokes.into_iter().partition(|stroke| stroke.pen == Pen::Ruler);
         sheet.commands.extend(strokes.into_iter().flat_map(draw));
         scene.strokes.iter().for_each(|stroke| block_stroke(&mut field, stroke, frame));
         sheet.commands.extend(axes(scene, frame, extent, drawing, &mut field));
@@ -107,6 +109,18 @@ impl Plan {
         // any.
         let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !stroke.pen.is_path();
         let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut sheet);
+        // A tick whose number has no room says nothing.
+        let has_number = |stroke: &&Stroke| {
+            let (Shape::Line(points), Some(number)) = (&stroke.shape, &stroke.caption) else { return true };
+            let Some(end) = points.last().map(|end| frame.scale.px(*end)) else { return true };
+            let is_its = |(rect, lines): &(Rect, Vec<String>)| {
+                lines == std::slice::from_ref(number)
+                    && rect.nearest(end).distance(end) < 0.5 * frame.text_size
+            };
+            sheet.labels.iter().any(is_its)
+        };
+        let ticks: Vec<DrawCommand> = ticks.into_iter().filter(has_number).flat_map(draw).collect();
+        sheet.commands.extend(ticks);
         let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
         // Bad holes are drawn last, on top.
@@ -209,7 +223,6 @@ fn extent(scene: &Scene) -> (Point, Point) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ink::DrawCommand;
     use crate::picture::{LegendItem, Sample, Title};
     use crate::scene::{Axis, Mark, ZoneDeviation};
     use proptest::prelude::*;
@@ -274,7 +287,7 @@ mod tests {
             DrawCommand::Ring { centre, radius, .. } | DrawCommand::Disc { centre, radius, .. } => {
                 Rect::around(*centre, (2.0 * radius, 2.0 * radius))
             }
-            DrawCommand::Text { at, align, size, text, .. } => {
+            DrawCommand::Text { at, align, size, text, .. } | DrawCommand::Halo { at, align, size, text } => {
                 let width = font.width(text, *size);
                 Rect::new(at.x - align.fraction_left() * width, at.y - 0.76 * size, width, 0.98 * size)
             }

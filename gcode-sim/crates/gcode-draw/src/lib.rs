@@ -71,6 +71,7 @@ mod measure;
 mod obstacle;
 mod palette;
 mod panel;
+mod path_cover;
 mod pdf;
 mod picture;
 mod plot;

@@ -33,7 +33,11 @@ pub(super) fn shape_commands(stroke: &Stroke, scale: &Scale, text: f64) -> Vec<D
 /// Adds a stroke to the label area: labels never cover edges, symbols and texts, and avoid other lines.
 pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame) {
     let is_symbol = matches!(stroke.shape, Shape::Zero(_) | Shape::Sign { .. } | Shape::Text { .. });
-    let hard = stroke.pen == Pen::Outline || is_symbol;
+    // The frame of a plane view; the floor of an isometric one may lie below numbers.
+    let is_upright = |ends: &[Point]| ends[0][0] == ends[1][0] || ends[0][1] == ends[1][1];
+    let is_frame = stroke.pen == Pen::Scale
+        && matches!(&stroke.shape, Shape::Line(points) if 2 < points.len() && points.windows(2).all(is_upright));
+    let hard = stroke.pen == Pen::Outline || is_frame || is_symbol;
     let segments = |points: &[Point], step: usize| -> Vec<Obstacle> {
         let ends: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
         ends.windows(2).map(|w| Obstacle::Segment(w[0], w[1])).collect()
@@ -43,7 +47,14 @@ pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame
         Shape::Line(points) if stroke.pen.is_path() && stroke.caption.is_some() => {
             segments(points, (points.len() / 40).max(1))
         }
-        Shape::Line(_) | Shape::Circle { .. } | Shape::Arrow(_) if stroke.pen.is_path() => Vec::new(),
+        // The area that a cutter sweeps is no line.
+        Shape::Line(points) if stroke.pen.is_path() => {
+            if stroke.style.is_none_or(|style| style.width.is_none()) {
+                points.windows(2).for_each(|w| field.cover(frame.scale.px(w[0]), frame.scale.px(w[1])));
+            }
+            Vec::new()
+        }
+        Shape::Circle { .. } | Shape::Arrow(_) if stroke.pen.is_path() => Vec::new(),
         Shape::Line(points) => segments(points, 1),
         Shape::Arrow(ends) => segments(ends, 1),
         Shape::Circle { centre, radius } => {
@@ -59,7 +70,9 @@ pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame
             let wide = frame.font.width(text, frame.text_size);
             let at = frame.scale.px(*at);
             let (left, top) = (at.x - align.fraction_left() * wide, at.y - frame.text_size);
-            vec![Obstacle::Box(Rect::new(left, top, wide, 1.2 * frame.text_size))]
+            // A space keeps a label beside it from reading as its continuation.
+            let gap = 0.7 * frame.text_size;
+            vec![Obstacle::Box(Rect::new(left - gap, top, wide + 2.0 * gap, 1.2 * frame.text_size))]
         }
     };
     for obstacle in obstacles {

@@ -90,7 +90,7 @@ const DASHES: [[f64; 4]; PATTERNS as usize - 1] = [
 /// Returns the line style of a stroke at a text height of `text` pixels and `scale` pixels a millimetre.
 pub(super) fn ink(of: Pen, style: Option<Style>, text: f64, scale: f64) -> Ink {
     let base = pen(of, text);
-    let Some(Style { tint, pattern, width }) = style else { return base };
+    let Some(Style { tint, pattern, width, phase }) = style else { return base };
     let color = match tint {
         None => base.color,
         Some(Tint::Shade(value)) => shade(value),
@@ -99,7 +99,7 @@ pub(super) fn ink(of: Pen, style: Option<Style>, text: f64, scale: f64) -> Ink {
     };
     let pattern = usize::from(pattern % PATTERNS).checked_sub(1).and_then(|index| DASHES.get(index));
     let dash = pattern.map(|lengths| lengths.map(|length| length * text)).or(base.dash);
-    Ink { color, width: width.map_or(base.width, |mm| mm * scale), dash }
+    Ink { color, width: width.map_or(base.width, |mm| mm * scale), dash, phase: phase * scale }
 }
 
 /// Returns the line style of a pen at a text height of `text` pixels.
@@ -131,7 +131,8 @@ pub(super) fn pen(pen: Pen, text: f64) -> Ink {
         Pen::Limit => (VERMILION, 0.12, dashed(0.8, 0.5)),
         Pen::Comparison => (Rgb(204, 121, 167), 0.14, dashed(0.22, 0.3)),
     };
-    Ink { color, width: width * text, dash: dash.map(|lengths| lengths.map(|length| length * text)) }
+    let dash = dash.map(|lengths: [f64; 4]| lengths.map(|length| length * text));
+    Ink { color, width: width * text, dash, phase: 0.0 }
 }
 
 #[cfg(test)]

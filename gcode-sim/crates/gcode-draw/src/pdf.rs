@@ -4,11 +4,15 @@ use std::io::Write as _;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use pdf_writer::types::{CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap};
+use pdf_writer::types::{
+    CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, TextRenderingMode, UnicodeCmap,
+};
 use pdf_writer::{Content, Filter, Finish as _, Name, Pdf, Rect, Ref, Str, TextStr};
 
 use super::font::{ASCENT, DESCENT, Font};
 use super::ink::{DrawCommand, Ink, Px, Rgb};
+use super::palette;
+use super::scene::Align;
 use super::sheet::Sheet;
 
 /// Length of a pixel in points: 96 pixels are an inch.
@@ -78,21 +82,32 @@ impl Writing {
                 self.circle(*centre, *radius);
                 self.content.fill_nonzero();
             }
+            DrawCommand::Halo { at, align, size, text } => {
+                let [r, g, b] = components(palette::PAPER);
+                let width = 2.0 * DrawCommand::halo_width(*size);
+                self.content.set_stroke_rgb(r, g, b).set_line_width(width as f32);
+                self.content.set_dash_pattern([], 0.0);
+                self.text((*at, *align), *size, text, TextRenderingMode::Stroke);
+            }
             DrawCommand::Text { at, align, size, text, color } => {
-                let left = at.x - align.fraction_left() * self.font.width(text, *size);
-                let mut codes = Vec::with_capacity(2 * text.len());
-                for character in text.chars() {
-                    let glyph = self.font.glyph(character);
-                    let width = self.font.width(character.encode_utf8(&mut [0; 4]), 1000.0);
-                    self.glyphs.entry(glyph).or_insert((character, width as f32));
-                    codes.extend(glyph.to_be_bytes());
-                }
                 self.set_fill(*color);
-                self.content.begin_text().set_font(FONT, *size as f32);
-                self.content.set_text_matrix([1.0, 0.0, 0.0, -1.0, left as f32, at.y as f32]);
-                self.content.show(Str(&codes)).end_text();
+                self.text((*at, *align), *size, text, TextRenderingMode::Fill);
             }
         }
+    }
+
+    fn text(&mut self, (at, align): (Px, Align), size: f64, text: &str, mode: TextRenderingMode) {
+        let left = at.x - align.fraction_left() * self.font.width(text, size);
+        let mut codes = Vec::with_capacity(2 * text.len());
+        for character in text.chars() {
+            let glyph = self.font.glyph(character);
+            let width = self.font.width(character.encode_utf8(&mut [0; 4]), 1000.0);
+            self.glyphs.entry(glyph).or_insert((character, width as f32));
+            codes.extend(glyph.to_be_bytes());
+        }
+        self.content.begin_text().set_font(FONT, size as f32).set_text_rendering_mode(mode);
+        self.content.set_text_matrix([1.0, 0.0, 0.0, -1.0, left as f32, at.y as f32]);
+        self.content.show(Str(&codes)).end_text();
     }
 
     fn polygon(&mut self, points: &[Px], is_closed: bool) {
@@ -129,12 +144,12 @@ impl Writing {
         self.content.close_path();
     }
 
-    fn set_ink(&mut self, Ink { color, width, dash }: Ink) {
+    fn set_ink(&mut self, Ink { color, width, dash, phase }: Ink) {
         let [r, g, b] = components(color);
         let cap = if dash.is_none() { LineCapStyle::RoundCap } else { LineCapStyle::ButtCap };
         let lengths = dash.into_iter().flatten().map(|length| length as f32);
         self.content.set_stroke_rgb(r, g, b).set_line_width(width as f32);
-        self.content.set_line_cap(cap).set_dash_pattern(lengths, 0.0);
+        self.content.set_line_cap(cap).set_dash_pattern(lengths, phase as f32);
     }
 
     fn set_fill(&mut self, color: Rgb) {
@@ -197,7 +212,7 @@ fn deflated(bytes: &[u8]) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Align, Pen, Scene, Shape, Stroke};
+    use crate::scene::{Pen, Scene, Shape, Stroke};
 
     /// Returns the content of the page of a scene at 2 units a millimetre, its zero point 30 units from the top.
     fn content(shape: Shape) -> (String, BTreeMap<u16, (char, f32)>) {

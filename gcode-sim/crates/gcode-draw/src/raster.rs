@@ -8,6 +8,10 @@ use super::font::Font;
 use super::ink::{DrawCommand, Ink, Px, Rgb};
 use super::palette;
 use super::sheet::Sheet;
+use gcode_lang::units::Deg;
+
+/// Number of displaced copies of a text that make its halo.
+const HALO_COPIES: u32 = 12;
 
 /// Paints a sheet: an opaque picture of exactly its size.
 pub fn paint(sheet: &Sheet) -> Pixmap {
@@ -45,6 +49,15 @@ fn put(pixmap: &mut Pixmap, font: &Font, command: &DrawCommand) {
         DrawCommand::Area { points, color } => fill(pixmap, polygon(points, true), *color),
         DrawCommand::Ring { centre, radius, ink } => stroke(pixmap, circle(*centre, *radius), *ink),
         DrawCommand::Disc { centre, radius, color } => fill(pixmap, circle(*centre, *radius), *color),
+        DrawCommand::Halo { at, align, size, text } => {
+            let left = at.x - align.fraction_left() * font.width(text, *size);
+            let rim = DrawCommand::halo_width(*size);
+            for turn in 0..HALO_COPIES {
+                let angle = Deg(360.0 / f64::from(HALO_COPIES) * f64::from(turn));
+                let at = Px { x: left + rim * angle.cos(), y: at.y.round() + rim * angle.sin() };
+                font.cover(text, *size, at, |x, y, coverage| blend(pixmap, x, y, coverage, palette::PAPER));
+            }
+        }
         DrawCommand::Text { at, align, size, text, color } => {
             // A base line on whole pixels keeps small text sharp.
             let at = Px { x: at.x - align.fraction_left() * font.width(text, *size), y: at.y.round() };
@@ -76,13 +89,14 @@ fn fill(pixmap: &mut Pixmap, path: Option<Path>, color: Rgb) {
 }
 
 /// Strokes a path; a line thinner than a pixel would fade.
-fn stroke(pixmap: &mut Pixmap, path: Option<Path>, Ink { color, width, dash }: Ink) {
+fn stroke(pixmap: &mut Pixmap, path: Option<Path>, Ink { color, width, dash, phase }: Ink) {
     let Some(path) = path else { return };
     let stroke = Stroke {
         width: width.max(1.0) as f32,
         line_cap: if dash.is_none() { LineCap::Round } else { LineCap::Butt },
         line_join: LineJoin::Round,
-        dash: dash.and_then(|pattern| StrokeDash::new(pattern.map(|length| length as f32).to_vec(), 0.0)),
+        dash: dash
+            .and_then(|pattern| StrokeDash::new(pattern.map(|length| length as f32).to_vec(), phase as f32)),
         ..Stroke::default()
     };
     pixmap.stroke_path(&path, &paint_of(color), &stroke, Transform::identity(), None);

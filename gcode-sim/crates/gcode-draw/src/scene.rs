@@ -64,6 +64,9 @@ pub struct Style {
     /// Width, mm; `None` for the pen's.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
+    /// Length of the path before this piece of it, mm: its dashes continue those of the pieces before.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub phase: f64,
 }
 
 /// Colour of a line by its meaning.

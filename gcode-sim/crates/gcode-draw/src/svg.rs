@@ -42,19 +42,26 @@ fn element(command: &DrawCommand) -> String {
         DrawCommand::Disc { centre, radius, color } => {
             circle(*centre, *radius, &format!("fill=\"{}\"", colour(*color)))
         }
+        DrawCommand::Halo { at, align, size, text } => {
+            let width = 2.0 * DrawCommand::halo_width(*size);
+            let rim = format!("stroke=\"{}\" stroke-width=\"{}\"", colour(palette::PAPER), number(width));
+            written_text(*at, *align, *size, text, &rim)
+        }
         DrawCommand::Text { at, align, size, text, color } => {
-            let anchor = match align {
-                Align::Left => "start",
-                Align::Centre => "middle",
-                Align::Right => "end",
-            };
-            let [x, y, size] = [at.x, at.y, *size].map(number);
-            let (color, text) = (colour(*color), escaped(text));
-            format!(
-                "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\" fill=\"{color}\">{text}</text>"
-            )
+            written_text(*at, *align, *size, text, &format!("fill=\"{}\"", colour(*color)))
         }
     }
+}
+
+fn written_text(at: Px, align: Align, size: f64, text: &str, look: &str) -> String {
+    let anchor = match align {
+        Align::Left => "start",
+        Align::Centre => "middle",
+        Align::Right => "end",
+    };
+    let [x, y, size] = [at.x, at.y, size].map(number);
+    let text = escaped(text);
+    format!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\" {look}>{text}</text>")
 }
 
 fn circle(centre: Px, radius: f64, style: &str) -> String {
@@ -67,9 +74,11 @@ fn coordinates(points: &[Px]) -> String {
     pairs.collect::<Vec<_>>().join(" ")
 }
 
-fn stroke(Ink { color, width, dash }: Ink) -> String {
+fn stroke(Ink { color, width, dash, phase }: Ink) -> String {
     let dash = dash.map_or(String::new(), |lengths| {
-        format!(" stroke-dasharray=\"{}\" stroke-linecap=\"butt\"", lengths.map(number).join(" "))
+        let offset =
+            if phase == 0.0 { String::new() } else { format!(" stroke-dashoffset=\"{}\"", number(phase)) };
+        format!(" stroke-dasharray=\"{}\"{offset} stroke-linecap=\"butt\"", lengths.map(number).join(" "))
     });
     format!("stroke=\"{}\" stroke-width=\"{}\"{dash}", colour(color), number(width))
 }

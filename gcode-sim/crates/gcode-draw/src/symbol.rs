@@ -183,7 +183,7 @@ mod tests {
             DrawCommand::Area { points, .. } => format!("area {}", points.len()),
             DrawCommand::Ring { ink, .. } => format!("ring {:?}", ink.dash),
             DrawCommand::Disc { radius, .. } => format!("disc {radius}"),
-            DrawCommand::Text { text, .. } => format!("text {text}"),
+            DrawCommand::Text { text, .. } | DrawCommand::Halo { text, .. } => format!("text {text}"),
         });
         kinds.collect()
     }

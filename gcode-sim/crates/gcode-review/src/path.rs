@@ -12,7 +12,7 @@ use super::steps::StepKind;
 use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};
 use gcode_inspect::tool_path::for_each_drawn_pose;
-use gcode_lang::motion::{Position, StopKind};
+use gcode_lang::motion::{AxisIndex, Position, StopKind};
 
 /// Largest deviation of a curved path from its chords, mm.
 const CHORD: f64 = 0.05;
@@ -139,7 +139,7 @@ impl Record {
         let mut setup = Setup::default();
         let mut from = Position::default();
         let (mut left, mut exact_left) = (points, exact_points);
-        let unknown_starts = self.moves_from_unknown_positions(machine);
+        let unknown_starts = self.unknown_axes(machine).iter().map(|(_, moves)| moves + 1).max().unwrap_or(0);
         let mut move_number = 0;
         for (index, step) in self.steps.iter().enumerate() {
             set_up(&mut setup, step.kind);
@@ -184,15 +184,33 @@ impl Record {
         legs
     }
 
-    /// Counts the first moves that start at an unknown position: one of the axes that the program commands has not been commanded
-    /// by then, and the machine file does not state its start.
-    fn moves_from_unknown_positions(&self, machine: &Machine) -> usize {
-        let is_stated = |name: &str| {
-            let axis = name.bytes().next().and_then(|letter| self.axes.find(letter));
-            machine.start.iter().any(|(stated, _)| Some(*stated) == axis)
+    /// Returns what the position display shows at the end of each leg, which are those of the whole path: axis and coordinate in
+    /// the work coordinate system, mm and degrees, of the axes that the program has commanded by then.
+    pub fn displays(&self, machine: &Machine, legs: &[Leg]) -> Vec<Vec<(AxisIndex, f64)>> {
+        let axes: BTreeSet<AxisIndex> = self.commanded_axes().map(|(axis, _)| axis).collect();
+        let unknown = self.unknown_axes(machine);
+        let mut made = 0;
+        let display = |leg: &Leg| {
+            made += leg.moves;
+            let shown = self.steps.displayed(*leg.steps.end());
+            let is_known =
+                |axis: &&AxisIndex| unknown.iter().all(|(of, before)| of != *axis || *before < made);
+            axes.iter().filter(is_known).map(|axis| (*axis, shown[*axis])).collect()
         };
+        legs.iter().map(display).collect()
+    }
+
+    /// Returns each axis that the program commands with the number of moves before its first command; those whose start the
+    /// machine file states are left out.
+    fn unknown_axes(&self, machine: &Machine) -> Vec<(AxisIndex, usize)> {
+        let is_stated = |axis: AxisIndex| machine.start.iter().any(|(stated, _)| *stated == axis);
+        self.commanded_axes().filter(|(axis, _)| !is_stated(*axis)).collect()
+    }
+
+    /// Iterates over the axes that the program commands, each with the number of moves before.
+    fn commanded_axes(&self) -> impl Iterator<Item = (AxisIndex, usize)> {
         let axes = self.first_commands.iter().flatten().filter(|first| first.what == CommandKind::Axis);
-        axes.filter(|axis| !is_stated(&axis.name)).map(|axis| axis.moves + 1).max().unwrap_or(0)
+        axes.filter_map(|first| Some((self.axes.find(first.name.bytes().next()?)?, first.moves)))
     }
 }
 
@@ -280,6 +298,23 @@ mod tests {
             assert!((0..3).all(|i| (end[i] - point[i]).abs() < 1e-9), "{end:?} instead of {point:?}");
         }
         assert_eq!(path.len(), 3);
+    }
+
+    /// G54 is X −300 Z −400, H1 is 50 long: the machine stands at Z −400 + 50 + 10 where the display shows Z 10. G55 has other zeros,
+    /// and shows other numbers for the same place. B, which nothing has commanded yet, is not shown.
+    #[test]
+    fn a_display_shows_work_coordinates() {
+        let text = "O1\nG10 L2 P1 X-300. Y0 Z-400.\nG10 L2 P2 X-100. Y0 Z0.\nG10 L10 P1 R50.\nG90 G54 G0 X5. Y0\nG43 H1 Z10.\nB90.\n\
+                    G55 X5.\nM30\n";
+        let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
+        let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
+        let legs = revision.record.path(&request.machine, 10, 1000);
+        let shown = revision.record.displays(&request.machine, &legs);
+        assert_eq!(shown[0], [(0, 5.0), (1, 0.0)]);
+        assert_eq!(shown[1], [(0, 5.0), (1, 0.0), (2, 10.0)]);
+        assert_eq!(shown[2][3].1, 90.0);
+        // From machine X −295 to −95; Z is that of the machine, −340, less the length alone: G55's zero is 0.
+        assert_eq!(shown[3], [(0, 5.0), (1, 0.0), (2, -390.0), (shown[2][3].0, 90.0)]);
     }
 
     /// A zigzag of 40 feeds of 1 mm, 0.4 high, and the rapid before it from an unknown position, in 5 legs: 8 feeds each. The points of the zigzag are 0.4 from

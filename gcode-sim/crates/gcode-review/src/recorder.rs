@@ -67,8 +67,15 @@ pub(super) struct Recorder {
     seen: Option<(Modal, u32, u32, Option<f64>)>,
     /// Aspects that the block before its execution commands, and the groups of its modal codes without moves.
     commanded: ([bool; 6], Vec<u32>),
-    /// Last blocks and their conditions: a move may wait until the blocks after it are read.
-    recent: VecDeque<(Span, usize)>,
+    /// Last blocks with what they leave: a move may wait until the blocks after it are read.
+    recent: VecDeque<(Span, BlockContext)>,
+}
+
+/// What a block leaves: the number of its modal conditions, and the work zero.
+#[derive(Clone, Copy, Debug)]
+struct BlockContext {
+    condition: usize,
+    zero: Position,
 }
 
 /// A block before its execution.
@@ -196,15 +203,17 @@ impl Recorder {
         let set = is_speed.then(|| (UnsimulatedKind::Speed, format!("S{speed}")));
         for (what, text) in called.into_iter().chain(set) {
             let (kind, block_number) = (StepKind::Silent(what, text), self.numbers.number(backtrace));
-            let step = NewStep { kind, at, length, block_number, set_by: None, condition: 0 };
+            let zero = Position::default();
+            let step = NewStep { kind, at, length, zero, block_number, set_by: None, condition: 0 };
             self.pending.insert(0, (step, backtrace.block));
         }
     }
 
     /// Ends the record: removes T words that a later M06 used, and S words that a later M03 or M04 used.
     pub(super) fn finish(&mut self) {
-        let under = self.conditions.len().saturating_sub(1);
-        self.settle(|_| under);
+        let condition = self.conditions.len().saturating_sub(1);
+        let zero = self.recent.back().map_or_else(Position::default, |(_, last)| last.zero);
+        self.settle(|_| BlockContext { condition, zero });
         let is_word = |kind: &StepKind| {
             matches!(kind, StepKind::Silent(UnsimulatedKind::Tool | UnsimulatedKind::Speed, _))
         };
@@ -261,25 +270,26 @@ impl Recorder {
             }
             self.seen = Some(now);
         }
-        let under = self.conditions.len() - 1;
+        let now = BlockContext { condition: self.conditions.len() - 1, zero: control.work_zeros() };
         if self.recent.len() == LOOKAHEAD {
             self.recent.pop_front();
         }
         if let Some(backtrace) = &self.last {
-            self.recent.push_back((backtrace.block, under));
+            self.recent.push_back((backtrace.block, now));
         }
         let recent = std::mem::take(&mut self.recent);
         self.settle(|block| {
             let known = recent.iter().rev().find(|(known, _)| *known == block);
-            known.map_or(under, |(_, under)| *under)
+            known.map_or(now, |(_, context)| *context)
         });
         self.recent = recent;
     }
 
-    /// Moves the pending steps to the others, with the conditions of their blocks.
-    fn settle(&mut self, condition: impl Fn(Span) -> usize) {
+    /// Moves the pending steps to the others, with what their blocks leave.
+    fn settle(&mut self, context: impl Fn(Span) -> BlockContext) {
         for (step, block) in self.pending.drain(..) {
-            self.steps.push(NewStep { condition: condition(block), ..step });
+            let BlockContext { condition, zero } = context(block);
+            self.steps.push(NewStep { condition, zero, ..step });
         }
     }
 
@@ -288,8 +298,8 @@ impl Recorder {
         if !self.is_truncated {
             let set_by = self.set_by(&kind, backtrace);
             let block_number = self.numbers.number(backtrace);
-            let (at, length) = (self.at, self.length);
-            let step = NewStep { kind, at, length, block_number, set_by, condition: 0 };
+            let (at, length, zero) = (self.at, self.length, Position::default());
+            let step = NewStep { kind, at, length, zero, block_number, set_by, condition: 0 };
             self.pending.push((step, backtrace.block));
         }
     }

@@ -18,6 +18,8 @@ pub(super) struct StepList {
     at: Positions,
     /// Tool length offset of each step.
     lengths: Runs<Position>,
+    /// Work zero of each step; 0 in an accepted result, which does not record it.
+    zeros: Runs<Position>,
     block_numbers: CountingRuns,
     set_by: Runs<Option<u32>>,
     conditions: Runs<u32>,
@@ -31,6 +33,8 @@ pub(super) struct NewStep {
     pub at: Position,
     /// Tool length offset in force.
     pub length: Position,
+    /// Zero of the work coordinate system in force, in machine coordinates.
+    pub zero: Position,
     pub block_number: usize,
     pub set_by: Option<usize>,
     pub condition: usize,
@@ -39,11 +43,12 @@ pub(super) struct NewStep {
 impl StepList {
     /// Appends a step.
     pub(super) fn push(&mut self, step: NewStep) {
-        let NewStep { kind, at, length, block_number, set_by, condition } = step;
+        let NewStep { kind, at, length, zero, block_number, set_by, condition } = step;
         let kind = self.kind_number(kind);
         self.of_step.push(kind);
         self.at.push(at);
         self.lengths.push(length);
+        self.zeros.push(zero);
         self.block_numbers.push(block_number);
         self.set_by.push(set_by.map(|number| number as u32));
         self.conditions.push(condition as u32);
@@ -100,6 +105,11 @@ impl StepList {
         self.kind(number).is_move()
     }
 
+    /// Returns the axis positions after a step in its work coordinates, as the position display of a control shows them.
+    pub(super) fn displayed(&self, number: usize) -> Position {
+        difference(&difference(&self.at.get(number), self.lengths.get(number)), self.zeros.get(number))
+    }
+
     /// Returns the number of the block of a step.
     pub(super) fn block_number(&self, number: usize) -> usize {
         self.block_numbers.get(number)
@@ -144,6 +154,7 @@ impl StepList {
                 kind: step.kind.clone(),
                 at: step.at,
                 length: *self.lengths.get(number),
+                zero: *self.zeros.get(number),
                 block_number: step.block_number,
                 set_by: step.set_by,
                 condition: step.condition,

@@ -387,6 +387,7 @@ impl Steps<'_> {
             kind,
             at: self.at,
             length: self.length,
+            zero: Position::default(),
             block_number,
             set_by,
             condition: self.conditions.len() - 1,

@@ -59,7 +59,10 @@ impl OutputFile {
     fn write(&self, text: &str) -> Result<(), UsageError> {
         match &self.output {
             None => output::print(text),
-            Some(path) => overwrite_guard::write_new(path, text, self.force),
+            Some(path) => {
+                overwrite_guard::write_new(path, text, self.force)?;
+                output::print(&format!("written: {}\n", path.display()))
+            }
         }
     }
 

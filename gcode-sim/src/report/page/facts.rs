@@ -32,8 +32,6 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
                     (conclusion.answer.word()) ", " (shown(conclusion.summary))
                 }
-                @let total = Total::Holes(verdict.holes.len() + verdict.extra.len());
-                @for assumption in &verdict.assumptions { p.note { "Assumes " (shown(&assumption.sentence(total))) } }
                 @for cause in &verdict.likely_causes { p.note { "Likely cause: " (shown(cause)) } }
             } @else {
                 @if record.outcome() != "end" {
@@ -45,14 +43,19 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                 @if page.old.is_none() && let Some(worst) = messages::worst_findings(side) {
                     p.answer.no { a href="#messages" { (worst) } }
                 }
-                @for assumption in assumptions_alone(page, side) { p.note { "Assumes " (shown(&assumption)) } }
             }
         }
+        @let assumed: usize = sides.iter().map(|side| assumptions(page, side).len()).sum();
+        @if 0 < assumed { p.note { a href="#assumptions" { "Assumes " (figures::count(assumed, "value")) } " that the program does not set" } }
     }
 }
 
-/// Returns the assumptions of a program without a reference; a comparison of two has none.
-fn assumptions_alone(page: &Page<'_>, side: &ReviewSide<'_>) -> Vec<String> {
+/// Returns what the results of a side assume; a comparison of two programs without a reference assumes nothing.
+fn assumptions(page: &Page<'_>, side: &ReviewSide<'_>) -> Vec<String> {
+    if let Some(verdict) = side.observed.verdict {
+        let total = Total::Holes(verdict.holes.len() + verdict.extra.len());
+        return verdict.assumptions.iter().map(|assumption| assumption.sentence(total)).collect();
+    }
     if page.old.is_some() {
         return Vec::new();
     }
@@ -91,6 +94,18 @@ pub(super) fn summary(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                         (row("Worst position", &worst))
                         @if sides.iter().any(|side| side.observed.verdict.is_some_and(|v| !v.not_checked.is_empty())) {
                             (row("Not checked", &|side| side.observed.verdict.map_or_else(String::new, |v| v.not_checked.join("; "))))
+                        }
+                    }
+                }
+            }
+        }
+        @if sides.iter().any(|side| !assumptions(page, side).is_empty()) {
+            div #assumptions {
+                @for side in sides {
+                    @for assumption in assumptions(page, side) {
+                        p.note {
+                            @if sides.len() == 2 { (heading(side, sides)) ": assumes " } @else { "Assumes " }
+                            (shown(&assumption))
                         }
                     }
                 }

@@ -130,11 +130,13 @@ impl Page<'_> {
 
     fn title(&self) -> String {
         let name = |seen: &ObservedProgram<'_>| words::shown(&seen.request.name);
+        let memory = self.new.revision.simulation.run.control.memory();
+        let label = words::shown(&memory.get(memory.main()).label());
         match &self.old {
             Some((old, _)) => format!("Review of {} against {}", name(&self.new), name(old)),
             None => {
                 let name = name(&self.new);
-                format!("Program {}", name.rsplit(['/', '\\']).next().unwrap_or(&name))
+                format!("Program {label} ({})", name.rsplit(['/', '\\']).next().unwrap_or(&name))
             }
         }
     }
@@ -164,7 +166,7 @@ impl Page<'_> {
             Section::Path => html! {
                 div.beside {
                     (path::viewer(sides, data))
-                    div { (listing::listing(self, sides)) }
+                    div #programs { (listing::listing(self, sides)) }
                 }
             },
             Section::Messages => messages::messages(self, sides),

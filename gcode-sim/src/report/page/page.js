@@ -20,6 +20,14 @@
     callers.forEach((caller) => document.getElementById(caller)?.classList.add("from"));
   }
 
+  // Scrolls the programs beside the drawing, and nothing else, until a line is in sight.
+  function scrollTo(anchor) {
+    const [pane, line] = [document.getElementById("programs"), document.getElementById(anchor)];
+    if (!line || pane.scrollHeight <= pane.clientHeight || getComputedStyle(pane).overflowY !== "auto") return;
+    const [inside, box] = [pane.getBoundingClientRect(), line.getBoundingClientRect()];
+    if (box.top < inside.top || inside.bottom < box.bottom) pane.scrollTop += (box.top + box.bottom - inside.top - inside.bottom) / 2;
+  }
+
   function land(anchor) {
     if (!document.getElementById(anchor)) return;
     if (location.hash === `#${anchor}`) document.getElementById(anchor).scrollIntoView();
@@ -66,21 +74,36 @@
     return next - first === 1 ? `move ${first}` : `moves ${first} to ${next - 1}`;
   }
 
+  // Work coordinates after a move, with the control's own letters.
+  function display(side, move) {
+    const decimals = side.display_unit === "inch" ? 4 : 3;
+    const shown = new Map();
+    for (let at = move; at >= 0 && shown.size < side.axes.length; at--) {
+      side.display[at].forEach(([axis, value]) => shown.has(axis) || shown.set(axis, value));
+    }
+    const axes = [...shown.keys()].sort((a, b) => a - b);
+    const text = axes.map((axis) => `${side.axes[axis]} ${shown.get(axis).toFixed("ABC".includes(side.axes[axis]) ? 3 : decimals)}`);
+    return text.join(" ") + (side.display_unit === "inch" ? " (inch)" : "");
+  }
+
   // Describes a move; of several that are one line the one at a part of it, if its exact points are known.
   function pickMove(side, move, part) {
     viewer.pick = { side, move };
     const exact = side.known.get(move);
     const isOne = part !== undefined && exact && side.joined[move] === exact.length / 3 - 1;
     const points = isOne ? exact : side.xyz;
-    const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${points[3 * at + axis].toFixed(3)}`).join(" ");
+    const point = (at) => [0, 1, 2].map((axis) => `${"xyz"[axis]} ${points[3 * at + axis].toFixed(3)}`).join(" ");
     const [first, last] = isOne ? [part, part + 1] : [side.starts[move], side.starts[move + 1] - 1];
-    const way = first < last ? `from ${point(first)} to ${point(last)}` : `from an unknown position to ${point(last)}`;
+    const way = first < last ? `from ${point(first)} to ${point(last)}` : `to ${point(last)}, from an unknown position`;
     const all = numbers(side, move);
     const which = isOne && exact.length > 6 ? `move ${side.firsts[move] + part}` : all;
+    // Inside a line of several moves the display is that at its end.
+    const shown = isOne && exact.length > 6 ? "" : `, to ${display(side, move)} on the position display`;
     const others = which === all ? "" : `, one of ${all}, which begin at the block`;
-    describe(`${name(side)}${which} of ${side.all_moves}, ${side.kinds[side.kind[move]]} ${way}${others}`, side, linesOf(viewer.pick));
+    describe(`${name(side)}${which} of ${side.all_moves}, ${side.kinds[side.kind[move]]}${shown}; on the part ${way} mm${others}`, side, linesOf(viewer.pick));
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
+    scrollTo(anchor);
     tellEditor(anchor);
     viewer.ask();
   }
@@ -88,8 +111,8 @@
   function pickHole(side, hole) {
     viewer.pick = { side, hole, row: hole.row ?? undefined };
     table.show(hole.row);
-    const at = hole.entry.map((value, axis) => `${"XYZ"[axis]} ${value.toFixed(3)}`).join(" ");
-    describe(`${name(side)}hole ${hole.id} at ${at}, depth ${hole.depth.toFixed(3)}`, side, hole.lines);
+    const at = hole.entry.map((value, axis) => `${"xyz"[axis]} ${value.toFixed(3)}`).join(" ");
+    describe(`${name(side)}hole ${hole.id} on the part at ${at}, depth ${hole.depth.toFixed(3)}`, side, hole.lines);
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     tellEditor(anchor);

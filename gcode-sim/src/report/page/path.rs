@@ -10,8 +10,9 @@ use super::rows::HoleRowState;
 use super::words::{count, shown};
 use super::{Page, ReviewSide, exact_path, heading, stock_edges};
 use crate::report::figures::short;
+use crate::report::tool_path;
 use gcode_draw::{HoleStatus, Mark, Pen, Scene, Shape, Stroke};
-use gcode_inspect::machine::HeadKind;
+use gcode_inspect::machine::{HeadKind, Machine};
 use gcode_part::Hole;
 use gcode_review::{BlockLocation, Leg};
 
@@ -20,6 +21,7 @@ const MOST_MOVES: usize = 40_000;
 const MOST_POINTS: usize = 160_000;
 /// Number of points of the exact path, which the page draws where it is zoomed in.
 const MOST_EXACT_POINTS: usize = 2_000_000;
+const MM_PER_INCH: f64 = 25.4;
 /// Number of holes drawn.
 const MOST_HOLES: usize = 10_000;
 
@@ -30,6 +32,8 @@ pub(super) struct Data {
     up: char,
     /// Edges of the stock, mm.
     stock: Vec<Vec<[f64; 3]>>,
+    /// Work zeros: name and place, mm.
+    zeros: Vec<(String, [f64; 3])>,
     sides: Vec<SidePath>,
 }
 
@@ -55,6 +59,12 @@ struct SidePath {
     #[serde(rename = "places")]
     blocks: Vec<Vec<usize>>,
     holes: Vec<HoleLinks>,
+    /// Letters of the axes.
+    axes: Vec<String>,
+    /// What the position display shows after each move, in its decimals: axis and coordinate of those that change.
+    display: Vec<Vec<(usize, f64)>>,
+    /// Unit of lengths on the position display, `mm` or `inch`.
+    display_unit: &'static str,
     /// Number of moves.
     all_moves: usize,
     /// Number of moves of each stroke; empty if each stroke is one.
@@ -95,7 +105,12 @@ pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable)
     let drawn =
         sides.iter().enumerate().map(|(side_index, side)| drawn(page, side_index, side, table, sides.len()));
     let stock = page.reference.and_then(|reference| reference.stock.as_ref()).or(page.machine.stock.as_ref());
-    Data { up, stock: stock.map(stock_edges::edges).unwrap_or_default(), sides: drawn.collect() }
+    Data {
+        up,
+        stock: stock.map(stock_edges::edges).unwrap_or_default(),
+        zeros: tool_path::zeros(page.machine),
+        sides: drawn.collect(),
+    }
 }
 
 /// Returns the axis of the part that points up: along a vertical spindle; without a known head that of most holes.
@@ -173,8 +188,12 @@ fn drawn(
     };
     let joined: Vec<usize> =
         if legs.len() < all_moves { legs.iter().map(|leg| leg.moves).collect() } else { Vec::new() };
+    let is_inch = side.observed.revision.simulation.run.control.is_inch();
     SidePath {
         word: side.word,
+        axes: (0..page.machine.axes.len()).map(|axis| page.machine.axes.letter(axis).to_string()).collect(),
+        display: changes_of_display(&record.displays(page.machine, &legs), page.machine, is_inch),
+        display_unit: if is_inch { "inch" } else { "mm" },
         scene: Scene { strokes: legs.iter().map(stroke).collect(), marks, ..Scene::default() },
         kind: legs.iter().map(|leg| kinds.binary_search(&kind(leg)).unwrap_or_default()).collect(),
         kinds,
@@ -192,6 +211,24 @@ fn drawn(
         ends_with_alarm: side.observed.revision.simulation.run.stop_finding().is_some(),
         all_holes: side.observed.revision.simulation.extracted.holes.len(),
     }
+}
+
+/// Returns the coordinates of each display that differ from the display before, in its unit.
+fn changes_of_display(
+    displays: &[Vec<(usize, f64)>],
+    machine: &Machine,
+    is_inch: bool,
+) -> Vec<Vec<(usize, f64)>> {
+    let mut before: BTreeMap<usize, f64> = BTreeMap::new();
+    let in_unit = |(axis, at): &(usize, f64)| match is_inch && !machine.axes.is_rotary(*axis) {
+        true => (*axis, rounded(at / MM_PER_INCH, 1e4)),
+        false => (*axis, rounded(*at, 1e3)),
+    };
+    let changes = |display: &Vec<(usize, f64)>| {
+        let shown = display.iter().map(in_unit);
+        shown.filter(|(axis, at)| before.insert(*axis, *at) != Some(*at)).collect()
+    };
+    displays.iter().map(changes).collect()
 }
 
 fn stroke(leg: &Leg) -> Stroke<3> {
@@ -272,6 +309,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                 @if sides.len() == 2 { label { input #changed-only type="checkbox"; " Changes only" } }
             }
             @if sides.len() == 1 { (player(data)) }
+            p #picked aria-live="polite" { "Click a move or a hole to see its block and its calls." }
             div.canvases {
                 @for side in sides {
                     figure {
@@ -282,7 +320,8 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                     }
                 }
             }
-            p #picked aria-live="polite" { "Click a move or a hole to see its block and its calls." }
+        }
+        div #under {
             ul.legend {
                 @if data.has_pen(Pen::Rapid) { li.rapid { "rapid" } }
                 @if data.has_pen(Pen::Feed) { li.feed { "feed, arc" } }
@@ -297,6 +336,11 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                 }
                 @if data.has_hole(|status| status == HoleStatus::Missing) { li.absent { "missing hole" } }
                 @if !data.stock.is_empty() { li.stock { "stock" } }
+                @if !data.zeros.is_empty() { li.zero { "work zero" } }
+                @if data.sides.iter().any(|side| !side.scene.strokes.is_empty()) {
+                    li.start { "start" }
+                    li.end { "end" }
+                }
                 @if data.sides.iter().any(|side| side.ends_with_alarm) { li.alarm-end { "position at the alarm" } }
             }
             details.note #keys {

@@ -262,7 +262,9 @@ pub(super) fn judged_rows(
                 (HoleRowState::Altered, format!("in tolerance, but: {}", words.join("; ")))
             }
             (Some(hole), None) if hole.ok => (HoleRowState::Good, "in tolerance".to_owned()),
-            (Some(hole), _) => (HoleRowState::Bad, hole.error_codes.join(", ")),
+            (Some(hole), _) => {
+                (HoleRowState::Bad, faults(&hole.error_codes, judged.last().map(|(_, verdict)| *verdict)))
+            }
         };
         let holes = found_by.iter().map(|hole| hole.map(|hole| hole.drilled_index)).collect();
         HoleTableRow { id: shown(id), state, words, cells, holes }
@@ -302,4 +304,19 @@ fn extra_rows(
         }
     };
     verdict.extra.iter().enumerate().map(row).collect()
+}
+/// Returns the faults of a hole in words, each once.
+fn faults(codes: &[&'static str], verdict: Option<&Verdict>) -> String {
+    let title = |code: &&'static str| {
+        let finding = verdict?.diagnostics.iter().find(|finding| finding.kind.code == *code)?;
+        Some(finding.kind.title)
+    };
+    let mut words: Vec<&str> = Vec::new();
+    for code in codes {
+        let word = title(code).unwrap_or(code);
+        if !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    words.join("; ")
 }

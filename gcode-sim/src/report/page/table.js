@@ -31,7 +31,9 @@ function holeTable(onRow) {
 
   heads.forEach((head, column) => head.querySelector("button").addEventListener("click", () => sort(column)));
   body.addEventListener("click", (event) => {
+    // A press on one row that is released on another belongs to neither.
     const row = event.target.closest("tr");
+    if (!row) return;
     onRow(Number(row.dataset.row));
     if (!event.target.closest("a")) row.querySelector("a.go")?.click();
   });

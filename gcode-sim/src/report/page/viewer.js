@@ -220,9 +220,107 @@ class Side {
       this.strokeMoves(colours.pick, 5, [], (move) => move === pick.move);
     }
     this.drawHoles(colours, pick);
+    this.drawZeros(colours);
+    this.drawEnds(colours, this.ends_with_alarm && upTo === null);
     if (this.ends_with_alarm && upTo === null) this.drawAlarm(colours);
     if (upTo !== null) this.drawTool(colours, upTo);
     this.drawAxes(colours);
+    if (this.overview) this.drawOverview(colours);
+  }
+
+  // Draws the work zeros: a circle with two black quarters, and its name where the first of them is not the only one.
+  drawZeros(colours) {
+    const context = this.context;
+    for (const [name, at] of this.zeros) {
+      const [x, y] = this.point(at);
+      Object.assign(context, { strokeStyle: colours.ink, fillStyle: colours.paper, lineWidth: 1.5 });
+      context.beginPath();
+      context.arc(x, y, 8, 0, 2 * Math.PI);
+      context.fill();
+      context.stroke();
+      context.fillStyle = colours.ink;
+      for (const from of [-Math.PI / 2, Math.PI / 2]) {
+        context.beginPath();
+        context.moveTo(x, y);
+        context.arc(x, y, 8, from, from + Math.PI / 2);
+        context.fill();
+      }
+      context.font = "12px system-ui, sans-serif";
+      this.write(name, x + 11, y - 8, colours);
+    }
+  }
+
+  // Marks the start of the path by a ring and, unless an alarm ends it, its end by a square.
+  drawEnds(colours, hasAlarm) {
+    if (this.moves.length === 0) return;
+    const context = this.context;
+    const last = 2 * (this.starts[this.moves.length] - 1);
+    // Beyond the canvas they are at its edge.
+    const inside = (at) => [
+      Math.max(8, Math.min(this.view.width - 8, this.screen[at])),
+      Math.max(8, Math.min(this.view.height - 8, this.screen[at + 1])),
+    ];
+    Object.assign(context, { strokeStyle: colours.ink, fillStyle: colours.ink, lineWidth: 2 });
+    const [endX, endY] = inside(last);
+    if (!hasAlarm) context.fillRect(endX - 5, endY - 5, 10, 10);
+    context.beginPath();
+    context.arc(...inside(0), 6, 0, 2 * Math.PI);
+    context.fillStyle = colours.paper;
+    context.fill();
+    context.stroke();
+  }
+
+  // Draws the whole part small in a corner, with a cross at the place that the drawing shows larger.
+  drawOverview(colours) {
+    const { rows, middle, width, height, zoom } = this.view;
+    const [wide, high] = [Math.min(150, 0.3 * width), Math.min(105, 0.3 * height)];
+    if (zoom < 4) return;
+    const { factor, centre } = this.overview(rows, wide, high);
+    const [left, top] = [width - wide - 8, 8];
+    const context = this.context;
+    Object.assign(context, { fillStyle: colours.paper, strokeStyle: colours.soft, lineWidth: 1 });
+    context.fillRect(left, top, wide, high);
+    context.strokeRect(left, top, wide, high);
+    const place = (at) => {
+      const off = at.map((mm, axis) => mm - centre[axis]);
+      const seen = [0, 1].map((row) => rows[row].reduce((sum, part, axis) => sum + part * off[axis], 0));
+      return [left + wide / 2 + factor * seen[0], top + high / 2 - factor * seen[1]];
+    };
+    context.save();
+    context.beginPath();
+    context.rect(left, top, wide, high);
+    context.clip();
+    context.strokeStyle = colours.feed;
+    context.beginPath();
+    const step = Math.max(1, Math.ceil(this.moves.length / 4000));
+    for (let move = 0; move < this.moves.length; move += step) {
+      if (this.moves[move].pen === "rapid") continue;
+      for (let at = this.starts[move]; at < this.starts[move + 1]; at++) {
+        const [x, y] = place([...this.xyz.slice(3 * at, 3 * at + 3)]);
+        if (at === this.starts[move]) context.moveTo(x, y);
+        else context.lineTo(x, y);
+      }
+    }
+    context.stroke();
+    context.strokeStyle = colours.hole;
+    context.beginPath();
+    for (const hole of this.holes) {
+      const [[x, y], radius] = [place(hole.entry), Math.max(1.5, hole.radius * factor)];
+      context.moveTo(x + radius, y);
+      context.arc(x, y, radius, 0, 2 * Math.PI);
+    }
+    context.stroke();
+    const [x, y] = place(middle);
+    Object.assign(context, { strokeStyle: colours.pick, lineWidth: 2 });
+    context.beginPath();
+    for (const [dx, dy] of [[9, 0], [0, 9]]) {
+      context.moveTo(x - dx, y - dy);
+      context.lineTo(x + dx, y + dy);
+    }
+    context.stroke();
+    context.restore();
+    Object.assign(context, { font: "12px system-ui, sans-serif", fillStyle: colours.ink });
+    if (this.focus) this.write(this.focus, 8, 18, colours);
   }
 
   drawStock(colours) {
@@ -411,10 +509,11 @@ function toSegment(x, y, ax, ay, bx, by) {
 // Fits the extents into the canvases, and draws after changes.
 class Viewer {
   constructor(data, sides) {
-    sides.forEach((side) => (side.stock = data.stock));
+    sides.forEach((side) => Object.assign(side, { stock: data.stock, zeros: data.zeros }));
     Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false, upTo: null } });
     // A change is seen larger without the stock.
     this.extents = [...sides.flatMap((side) => side.extent()), ...(sides.length === 1 ? data.stock.flat(2) : [])];
+    if (sides.length === 2) sides.forEach((side) => (side.overview = (...box) => this.whole(...box)));
     this.middle = [0, 1, 2].map((axis) => {
       let [low, high] = [Infinity, -Infinity];
       for (let at = axis; at < this.extents.length; at += 3) {
@@ -442,8 +541,9 @@ class Viewer {
   first() {
     this.camera.look("reset");
     const change = this.sides.length === 2 ? this.displacement() : null;
+    this.sides.forEach((side) => (side.focus = null));
     if (!change) return;
-    const [from, to] = change;
+    const { ends: [from, to], hole, where } = change;
     const way = to.map((mm, axis) => mm - from[axis]);
     const length = Math.hypot(...way);
     // A displacement along the upright axis is seen from the front, another from above.
@@ -451,6 +551,8 @@ class Viewer {
     const rows = this.camera.axes();
     const fitting = Math.min(...this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight)));
     if (!(fitting > 0)) return;
+    const text = `${hole ? `hole ${hole.id}, ${where}: ` : "first cut that differs: "}${Number(length.toPrecision(3))} mm apart`;
+    this.sides.forEach((side) => (side.focus = text));
     // It spans 40 pixels, so that 0.05 mm are seen as well as 50.
     this.camera.zoom = Math.max(1, Math.min(1e5, 40 / length / fitting));
     this.camera.offset = from.map((mm, axis) => (mm + to[axis]) / 2 - this.middle[axis]);
@@ -460,17 +562,22 @@ class Viewer {
   displacement() {
     const [old, now] = this.sides;
     const rows = new Map(old.holes.filter((hole) => hole.row !== null).map((hole) => [hole.row, hole]));
-    const far = ([a, b]) => Math.hypot(...a.map((mm, axis) => mm - b[axis]));
+    const far = ({ ends: [a, b] }) => Math.hypot(...a.map((mm, axis) => mm - b[axis]));
     const holes = now.holes.filter((hole) => rows.has(hole.row)).flatMap((hole) => {
       const before = rows.get(hole.row);
-      return [[before.entry, hole.entry], [before.bottom, hole.bottom]];
+      return ["entry", "bottom"].map((where) => ({ ends: [before[where], hole[where]], hole, where }));
     });
     const end = (side, move) => [...side.xyz.slice(3 * side.starts[move + 1] - 3, 3 * side.starts[move + 1])];
     const cut = (side) => [...side.isChanged].find((move) => side.moves[move].pen !== "rapid");
     const cuts = [cut(old), cut(now)];
-    const moves = cuts.every((move) => move !== undefined) ? [[end(old, cuts[0]), end(now, cuts[1])]] : [];
+    const moves = cuts.every((move) => move !== undefined) ? [{ ends: [end(old, cuts[0]), end(now, cuts[1])] }] : [];
     const largest = [...holes, ...(holes.some((pair) => far(pair) > 1e-3) ? [] : moves)].sort((a, b) => far(b) - far(a))[0];
     return largest && far(largest) > 1e-3 ? largest : null;
+  }
+
+  // Returns scale and middle of the whole part in a box of this size.
+  whole(rows, width, height) {
+    return { factor: this.fitting(rows, width, height + STRIP), centre: this.middle };
   }
 
   fit() {

@@ -1,6 +1,7 @@
 //! The set-up sheet of any program: what the person at the machine needs to set up, start and watch it.
 pub mod layout;
 pub(crate) mod recorder;
+mod rotary;
 
 use std::collections::BTreeSet;
 
@@ -17,6 +18,8 @@ use gcode_part::{Assumption, Total};
 use gcode_session::{Request, Simulation};
 use layout::{BASIS, blank, cell, digest, table};
 use recorder::{OffsetObserver, SheetStop, ToolUse, UseRecorder};
+
+const MM_PER_INCH: f64 = 25.4;
 
 /// Largest number of stops and of findings that are listed.
 const MAX_LISTED: usize = 200;
@@ -57,6 +60,7 @@ impl ProgramSheet<'_> {
             (self.answer())
             (self.programs())
             (self.work_zeros())
+            (rotary::section(&self.request.machine, self.offsets))
             (self.tools())
             (self.stops())
             (self.m_codes())
@@ -97,8 +101,35 @@ impl ProgramSheet<'_> {
                     td { (count(self.tool_count(), "tool")) ", " (count(self.uses.stops.len(), "operator stop")) }
                 }
             } } }
-            p.note { "Lengths in mm, angles in degrees, feeds in mm/min. Fill in empty lines by hand." }
+            p.note {
+                @if self.is_inch() {
+                    "The program is in inches (G20): work zeros and F are in inches, as on the control; lengths and diameters of the "
+                    "machine file, and all else, in mm. "
+                } @else { "Lengths in mm, angles in degrees, feeds in mm/min. " }
+                "Fill in empty lines by hand."
+            }
         }
+    }
+
+    /// Returns true if the program is in inches.
+    fn is_inch(&self) -> bool {
+        self.simulation.run.control.is_inch()
+    }
+
+    /// Formats a length or a feed in mm in the program's unit.
+    fn in_unit(&self, mm: f64) -> String {
+        if self.is_inch() { short((mm / MM_PER_INCH * 1e4).round() / 1e4) } else { short(mm) }
+    }
+
+    /// Formats a range of values in mm in the program's unit.
+    fn range_in_unit(&self, range: Option<[f64; 2]>) -> String {
+        range_of(range, |mm| self.in_unit(mm))
+    }
+
+    /// Returns ` (not set)` for an offset whose value neither the program nor a file states.
+    fn mark_of(&self, offset: &str) -> &'static str {
+        let is_assumed = self.assumptions.iter().any(|assumption| assumption.what == offset);
+        if is_assumed { " (not set)" } else { "" }
     }
 
     fn tool_count(&self) -> usize {
@@ -148,8 +179,16 @@ impl ProgramSheet<'_> {
             let stated = machine.offsets.iter().find(|offset| offset.system == *system);
             let axes = stated.map(|offset| offset.values.iter());
             let values: Option<Vec<String>> = axes.map(|values| {
+                // In the order of the position screen: X, Y, Z, then the rotary axes.
+                let mut values: Vec<_> = values.copied().collect();
+                values.sort_by_key(|(axis, _)| (machine.axes.is_rotary(*axis), *axis));
                 values
-                    .map(|(axis, value)| format!("{} {}", machine.axes.letter(*axis), short(*value)))
+                    .into_iter()
+                    .map(|(axis, value)| {
+                        let is_angle = machine.axes.is_rotary(axis);
+                        let value = if is_angle { short(value) } else { self.in_unit(value) };
+                        format!("{} {value}", machine.axes.letter(axis))
+                    })
                     .collect()
             });
             let value = match values {
@@ -170,26 +209,48 @@ impl ProgramSheet<'_> {
         let rows = self.uses.uses.iter().filter(|one| one.first_block.is_some()).map(|one| {
             let made = holes.iter().filter(|hole| hole.passes().any(|pass| pass.tool == one.tool)).count();
             let offsets = self.offsets.radius_offsets.iter().filter(|(tool, _)| Some(*tool) == one.tool);
-            let offsets: Vec<String> = offsets.map(|(_, number)| format!("D{number}")).collect();
+            let name = |(_, number): &(u32, u32)| format!("D{number}");
+            let offsets: Vec<String> =
+                offsets.map(name).map(|name| format!("{name}{}", self.mark_of(&name))).collect();
+            let known = machine.tools.iter().find(|tool| Some(tool.number) == one.tool);
+            let length = known.and_then(|tool| tool.length);
+            let per_revolution = one.tool.and_then(|tool| self.offsets.feeds_per_revolution.get(&tool));
+            let unit = if self.is_inch() { "inch/rev" } else { "mm/rev" };
+            let per_revolution =
+                per_revolution.map(|feeds| format!(" ({} {unit}, G95)", range_of(Some(*feeds), short)));
             vec![
                 cell(one.tool.map_or("in the spindle".to_owned(), |tool| format!("T{tool}"))),
                 kind(machine, one),
-                cell(lengths(one)),
+                cell(length.map_or_else(String::new, short)),
+                cell(self.lengths(one)),
                 cell(offsets.join(" ")),
-                cell(range(one.speed) + if one.is_reversed { " M04" } else { "" }),
-                cell(range(one.feed)),
+                cell(range_of(one.speed, short) + if one.is_reversed { " M04" } else { "" }),
+                cell(self.range_in_unit(one.feed) + &per_revolution.unwrap_or_default()),
                 cell(one.coolants.iter().map(|code| format!("M{code:02}")).collect::<Vec<_>>().join(" ")),
                 cell(if made == 0 { String::new() } else { made.to_string() }),
                 cell(rounded(one.seconds / 60.0, 1)),
                 cell(one.first_block.as_ref().map_or_else(String::new, |at| self.location(at))),
             ]
         });
-        let columns = ["tool", "kind, diameter", "H", "D", "#S", "#F", "coolant", "#holes", "#min", "from"];
+        let columns =
+            ["tool", "kind, diameter", "#length", "H", "D", "#S", "#F", "coolant", "#holes", "#min", "from"];
         html! {
             h2 { "Tools, in the order of use" }
             (table(&columns, rows))
-            p.note { "S and F are those of its cuts. A kind that no machine file states is left empty; check H and D against the offset page." }
+            p.note { "S and F are those of its cuts; a length is that of the machine file, from the gauge line to the tip. A kind that no machine file states is left empty; check H and D against the offset page." }
         }
+    }
+
+    /// Returns `H1`, or `none` for cuts without a length offset.
+    fn lengths(&self, one: &ToolUse) -> String {
+        let names = one.length_offsets.iter().map(|offset| match offset {
+            LengthCompensation::Off => "none".to_owned(),
+            LengthCompensation::Plus(number) => format!("H{number}{}", self.mark_of(&format!("H{number}"))),
+            LengthCompensation::Minus(number) => {
+                format!("H{number} (G44){}", self.mark_of(&format!("H{number}")))
+            }
+        });
+        names.collect::<Vec<_>>().join(" ")
     }
 
     /// Returns `O1234 line 12, called from O1 line 5`.
@@ -318,21 +379,11 @@ fn kind(machine: &Machine, one: &ToolUse) -> Markup {
     }
 }
 
-/// Returns `H1`, or `none` for cuts without a length offset.
-fn lengths(one: &ToolUse) -> String {
-    let names = one.length_offsets.iter().map(|offset| match offset {
-        LengthCompensation::Off => "none".to_owned(),
-        LengthCompensation::Plus(number) => format!("H{number}"),
-        LengthCompensation::Minus(number) => format!("H{number} (G44)"),
-    });
-    names.collect::<Vec<_>>().join(" ")
-}
-
 /// Returns `800` or `800 to 1200`; nothing without a cut.
-fn range(range: Option<[f64; 2]>) -> String {
-    match range {
+fn range_of(range: Option<[f64; 2]>, format: impl Fn(f64) -> String) -> String {
+    match range.map(|ends| ends.map(format)) {
         None => String::new(),
-        Some([min, max]) if min == max => short(min),
-        Some([min, max]) => format!("{} to {}", short(min), short(max)),
+        Some([min, max]) if min == max => min,
+        Some([min, max]) => format!("{min} to {max}"),
     }
 }

@@ -1,15 +1,20 @@
 //! Recorders of a run for the person at the machine: uses of tools in order, offsets, stops, and times.
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_control::{Control, Observer};
 use gcode_lang::motion::{
-    Backtrace, Event, EventKind, EventSink, LengthCompensation, SpindleDirection, StopKind,
+    AxisIndex, Backtrace, Event, EventKind, EventSink, LengthCompensation, SpindleDirection, StopKind,
 };
 use gcode_lang::program::modes::{ModalGroup, WorkSystem};
 use gcode_lang::source::Span;
 
 /// G40, as code × 10.
 const CUTTER_COMPENSATION_OFF: u32 = 400;
+
+/// G00, G80 and G95.
+const RAPID: u32 = 0;
+const NO_CYCLE: u32 = 800;
+const FEED_PER_REVOLUTION: u32 = 950;
 
 /// From one tool change to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -152,6 +157,10 @@ pub(crate) struct OffsetObserver {
     pub work_systems: Vec<WorkSystem>,
     /// Cutter radius offsets, as tool and D.
     pub radius_offsets: BTreeSet<(u32, u32)>,
+    /// Least and largest F of the cuts of a tool in G95, in the program's unit a revolution.
+    pub feeds_per_revolution: BTreeMap<u32, [f64; 2]>,
+    /// Rotary axes with their first commanded positions in work coordinates, degrees.
+    pub first_angles: Vec<(AxisIndex, f64)>,
     moves: u64,
 }
 
@@ -161,15 +170,30 @@ impl Observer for OffsetObserver {
     }
 
     fn after_block(&mut self, control: &Control) {
+        let state = control.state();
+        // A move with compensation waits for the next one.
+        if state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF {
+            self.radius_offsets.insert((state.tool, state.modal_words.d));
+        }
         if control.moves() == self.moves {
             return;
         }
-        let state = control.state();
         if !self.work_systems.contains(&state.modal.work) {
             self.work_systems.push(state.modal.work);
         }
-        if state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF {
-            self.radius_offsets.insert((state.tool, state.modal_words.d));
+        let is_cut = state.modal.code_in(ModalGroup::Motion) != RAPID
+            || state.modal.code_in(ModalGroup::Cycle) != NO_CYCLE;
+        if is_cut && state.modal.code_in(ModalGroup::FeedMode) == FEED_PER_REVOLUTION {
+            let feed = state.modal_words.f;
+            let range = self.feeds_per_revolution.entry(state.tool).or_insert([feed, feed]);
+            *range = [range[0].min(feed), range[1].max(feed)];
+        }
+        let uncommanded = control.unknown_axes().uncommanded;
+        let axes = &control.settings().axes;
+        for axis in (0..axes.len()).filter(|axis| axes.is_rotary(*axis) && uncommanded >> axis & 1 == 0) {
+            if self.first_angles.iter().all(|(known, _)| *known != axis) {
+                self.first_angles.push((axis, control.work_position(axis)));
+            }
         }
     }
 }
@@ -207,5 +231,19 @@ mod tests {
         ] {
             assert_eq!(is_reversed(&lines), expected, "{lines}");
         }
+    }
+
+    /// A move with compensation waits for the next block; D11 is in force all the same. F of G95 counts for cuts, not for rapids.
+    #[test]
+    fn offsets_and_feeds_a_revolution_are_those_of_the_cuts() {
+        let text = "O1\nG21 G90 G54 G40 G80\nT3 M6\nS500 M3\nG0 X0. Y0. Z5. A30.\nG95 F0.5\nG0 X1.\nG41 D11 G1 X20. F0.1\nY20.\n\
+                    G40 X30.\nG81 X1. Y1. Z-5. R2. F0.25\nG80\nG94 G1 X50. F200.\nM30\n";
+        let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
+        let mut observer = OffsetObserver::default();
+        gcode_session::run_observed(&request, &mut NoLibrary, &mut (), &mut observer).unwrap();
+        assert_eq!(observer.radius_offsets, BTreeSet::from([(3, 11)]));
+        assert_eq!(observer.feeds_per_revolution, BTreeMap::from([(3, [0.1, 0.25])]));
+        let a = request.machine.axes.find(b'A').unwrap();
+        assert_eq!(observer.first_angles, [(a, 30.0)], "B and C are not commanded");
     }
 }

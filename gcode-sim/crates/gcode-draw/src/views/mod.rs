@@ -1,5 +1,6 @@
 //! Views of a part, one per file: each turns holes and paths into a scene.
 pub(super) mod development;
+pub(super) mod drawn_lines;
 pub(super) mod flute_view;
 pub(super) mod flutes;
 pub(super) mod helix;

@@ -2,7 +2,7 @@
 use super::path_places::{MAX_PLACES, limits, places, zeros};
 use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale, stock_outline};
 use super::path_view::{Arrangement, ColorBy, PathView, RunKind, StandardView};
-use super::top::{TopView, hole_mark};
+use super::top::{DrawnHole, TopView, hole_mark};
 use super::view_frames::{Frames, PlacedView, ViewBox};
 use crate::measure::plain;
 use crate::picture::{LegendItem, Picture, Sample};
@@ -70,7 +70,13 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     if MAX_PLACES < path.places.len() {
         notes.push(format!("the first {MAX_PLACES} of {} stops are marked", path.places.len()));
     }
-    let legend = legend(view, &drawer, &scene, arrangement, &height_name);
+    let is_faced = |hole: &&DrawnHole| frames.views.iter().any(|placed| faces_view(hole, placed));
+    let (all, faced) = (view.holes.len(), view.holes.iter().filter(is_faced).count());
+    if faced < all && arrangement.views != [StandardView::Isometric] {
+        notes.push(format!("{} of {all} holes have no symbol: they do not face a view", all - faced));
+    }
+    let is_shown = |tool: usize| frames.views.iter().any(|placed| drawer.shows_feeds(placed, tool));
+    let legend = legend(view, &drawer, &scene, arrangement, &height_name, is_shown);
     let mut title = view.title(title_of(arrangement), view.tolerance, None);
     title.lines.extend(notes);
     Picture { title, scene, legend, table: view.table(), ..Picture::default() }
@@ -118,16 +124,10 @@ fn tool_order(path: &PathView) -> Vec<Option<usize>> {
 
 /// Returns the marks of the holes: all in the top view, in others those that face the reader. Each has its label in the first view that shows it.
 fn marks(view: &TopView, placed: &PlacedView, is_crowded: bool, labelled: &mut [bool]) -> Vec<Mark> {
-    let towards = placed.side.towards();
     let mut marks = Vec::new();
     for (index, hole) in view.holes.iter().enumerate() {
-        let Some(shown) = hole.shown() else { continue };
-        let facing = Vector3::from(shown.axis).dot(&towards).abs();
-        match placed.kind {
-            StandardView::Top => {}
-            StandardView::Isometric => continue,
-            StandardView::Front | StandardView::Right if facing < FACING => continue,
-            StandardView::Front | StandardView::Right => {}
+        if !faces_view(hole, placed) {
+            continue;
         }
         let Some(mark) = hole_mark(hole, view) else { continue };
         let mut mark = mark.seen_from(placed.side);
@@ -145,16 +145,30 @@ fn marks(view: &TopView, placed: &PlacedView, is_crowded: bool, labelled: &mut [
     marks
 }
 
+/// Returns true if a view has a symbol for a hole.
+fn faces_view(hole: &DrawnHole, placed: &PlacedView) -> bool {
+    let Some(shown) = hole.shown() else { return false };
+    match placed.kind {
+        StandardView::Top => true,
+        StandardView::Isometric => false,
+        StandardView::Front | StandardView::Right => {
+            FACING <= Vector3::from(shown.axis).dot(&placed.side.towards()).abs()
+        }
+    }
+}
+
 fn legend(
     view: &TopView,
     drawer: &PathDrawer<'_>,
     scene: &Scene,
     arrangement: &Arrangement,
     height_name: &str,
+    is_shown: impl Fn(usize) -> bool,
 ) -> Vec<LegendItem> {
     let path = drawer.path;
     let mut items = view.status_legend(&scene.marks);
-    if let Some(scale) = drawer.shades {
+    let is_shaded = |stroke: &Stroke| matches!(stroke.style, Some(Style { tint: Some(Tint::Shade(_)), .. }));
+    if let Some(scale) = drawer.shades.filter(|_| scene.strokes.iter().any(is_shaded)) {
         items.push(match (arrangement.color_by, scale.is_flat()) {
             (ColorBy::Feed, false) => {
                 LegendItem::new(Sample::Shades(scale.low, scale.high), "feed rate, mm/min")
@@ -171,13 +185,13 @@ fn legend(
             }
         });
     }
-    items.extend(tool_lines(drawer));
+    items.extend(tool_lines(drawer, is_shown));
     if arrangement.color_by == ColorBy::Program {
         let mut used: Vec<usize> =
             path.runs.iter().filter(|run| run.kind == RunKind::Feed).map(|run| run.program).collect();
         used.sort_unstable();
         used.dedup();
-        let style = |class: usize| Style { tint: Some(Tint::Class(class)), pattern: 0, width: None };
+        let style = |class: usize| Style { tint: Some(Tint::Class(class)), ..Style::default() };
         let line = |program: usize| {
             let name = path.programs.get(program).map_or("", String::as_str);
             LegendItem::new(Sample::Line(Pen::Feed, style(program)), name)
@@ -193,7 +207,7 @@ fn legend(
         scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Sign { sign, .. } if sign == of))
     };
     let has_zero = scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Zero(_)));
-    let pale = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(0.6) };
+    let pale = Style { tint: Some(Tint::Pale), width: Some(0.6), ..Style::default() };
     let outline = if path.stock.is_some() { "stock" } else { "part outline" };
     let others = [
         (has_pen(Pen::Rapid), Sample::Pen(Pen::Rapid), "rapid"),
@@ -221,11 +235,12 @@ fn legend(
     items
 }
 
-/// Returns a line for each tool that feeds.
-fn tool_lines(drawer: &PathDrawer<'_>) -> Vec<LegendItem> {
+/// Returns a line for each tool whose feeds are drawn as lines.
+fn tool_lines(drawer: &PathDrawer<'_>, is_shown: impl Fn(usize) -> bool) -> Vec<LegendItem> {
     let path = drawer.path;
     let mut cutting: Vec<(usize, usize)> =
         drawer.tool_order.iter().enumerate().filter_map(|(tool, order)| Some(((*order)?, tool))).collect();
+    cutting.retain(|(_, tool)| is_shown(*tool));
     cutting.sort_unstable();
     let line = |tool: usize| {
         let run = path.runs.iter().find(|run| run.kind == RunKind::Feed && run.tool == tool)?;

@@ -1,6 +1,7 @@
 //! Lines of a tool path in one view: colour by a value or a class, dash pattern by tool, clipped to the frame.
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
+use super::drawn_lines::{DrawnCells, DrawnSegments, SAME_LINE, distance};
 use super::path_view::{ColorBy, PathRun, PathView, RunKind, StandardView};
 use super::view_frames::{PlacedView, axis_index};
 use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint, arc};
@@ -91,7 +92,7 @@ impl PathDrawer<'_> {
             ColorBy::Feed => self.shades.map(|scale| scale.tint(scale.level(run.feed))),
             ColorBy::Depth => None,
         };
-        Style { tint, pattern: (order % 6) as u8, width: None }
+        Style { tint, pattern: (order % 6) as u8, ..Style::default() }
     }
 
     /// Draws the areas that the cutters sweep along the feeds.
@@ -100,9 +101,11 @@ impl PathDrawer<'_> {
         let swept = feeds.filter_map(|run| {
             let width = self.path.tools.get(run.tool)?.diameter?;
             let points = self.sparse(view, run);
-            let style = Style { tint: Some(Tint::Pale), pattern: 0, width: Some(width) };
-            (1 < points.len())
-                .then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
+            let style = Style { tint: Some(Tint::Pale), width: Some(width), ..Style::default() };
+            // A plunge sweeps no more than its hole, which has a symbol.
+            let has_extent =
+                points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]));
+            has_extent.then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
         });
         swept.collect()
     }
@@ -111,10 +114,8 @@ impl PathDrawer<'_> {
     pub(super) fn rapids(&self, view: &PlacedView) -> (Vec<Stroke>, bool) {
         let (mut strokes, mut is_cut) = (Vec::new(), false);
         let mut line: Vec<Point> = Vec::new();
-        // Dashes drawn twice would fill each other's gaps.
-        let mut drawn: BTreeSet<[[i64; 2]; 2]> = BTreeSet::new();
-        let grid = 2.0 * RESOLUTION * self.extent;
-        let cell = |point: Point| point.map(|mm| (mm / grid).round() as i64);
+        let mut drawn = DrawnSegments::new(2.0 * RESOLUTION * self.extent);
+        let mut cells = DrawnCells::new(view.frame, SAME_LINE * self.extent);
         for run in self.path.runs.iter().filter(|run| run.kind == RunKind::Rapid) {
             for pair in self.sparse(view, run).windows(2) {
                 let Some([from, to]) = clipped([pair[0], pair[1]], view.frame) else {
@@ -122,34 +123,68 @@ impl PathDrawer<'_> {
                     continue;
                 };
                 is_cut |= from != pair[0] || to != pair[1];
-                let mut ends = [cell(from), cell(to)];
-                ends.sort_unstable();
-                if !drawn.insert(ends) {
-                    continue;
+                for [from, to] in drawn.add([from, to]) {
+                    if cells.covers([from, to]) {
+                        continue;
+                    }
+                    if line.last() != Some(&from) {
+                        flush(&mut strokes, &mut line, view, Pen::Rapid, None);
+                        line = vec![from];
+                    }
+                    line.push(to);
+                    cells.add([from, to]);
                 }
-                if line.last() != Some(&from) {
-                    flush(&mut strokes, &mut line, view, Pen::Rapid, None);
-                    line = vec![from];
-                }
-                line.push(to);
             }
+            cells.end_run();
         }
         flush(&mut strokes, &mut line, view, Pen::Rapid, None);
         (strokes, is_cut)
     }
 
-    /// Draws feeds and probing moves.
+    /// Returns true if a view shows feeds of a tool as lines.
+    pub(super) fn shows_feeds(&self, view: &PlacedView, tool: usize) -> bool {
+        let is_of_tool = |run: &&PathRun| run.kind == RunKind::Feed && run.tool == tool;
+        self.path.runs.iter().filter(is_of_tool).any(|run| {
+            let points = self.sparse(view, run);
+            points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]))
+        })
+    }
+
+    /// Draws feeds and probing moves. Where a tool repeats a line, as the turns of a helix seen along its axis do, the last one is
+    /// drawn: dashes of all would fill each other's gaps.
     pub(super) fn feeds(&self, view: &PlacedView) -> Vec<Stroke> {
+        let all = self.path.runs.iter().filter(|run| run.kind != RunKind::Rapid);
+        let is_dashed = |run: &PathRun| run.kind == RunKind::Feed && self.style(run).pattern != 0;
+        let points: usize = all.clone().filter(|run| is_dashed(run)).map(|run| run.points.len()).sum();
+        if MAX_SWEPT_POINTS < points {
+            return all.flat_map(|run| self.feed(view, run)).collect();
+        }
+        let mut drawn: BTreeMap<usize, DrawnSegments> = BTreeMap::new();
         let mut strokes = Vec::new();
-        for run in self.path.runs.iter().filter(|run| run.kind != RunKind::Rapid) {
-            let pen = if run.kind == RunKind::Probe { Pen::Probe } else { Pen::Feed };
-            let style = Some(self.style(run)).filter(|_| run.kind == RunKind::Feed);
-            match (self.shades, self.color_by, style) {
-                (Some(scale), ColorBy::Depth, Some(style)) => {
-                    self.shaded(view, run, scale, style, &mut strokes);
-                }
-                _ => flush(&mut strokes, &mut self.sparse(view, run), view, pen, style),
+        for run in all.rev() {
+            let lines = self.feed(view, run);
+            if !is_dashed(run) {
+                strokes.extend(lines.into_iter().rev());
+                continue;
             }
+            let of_tool =
+                drawn.entry(run.tool).or_insert_with(|| DrawnSegments::new(2.0 * RESOLUTION * self.extent));
+            strokes.extend(lines.into_iter().rev().flat_map(|stroke| of_tool.without_repeats(stroke)));
+        }
+        strokes.reverse();
+        strokes
+    }
+
+    /// Draws a feed or a probing move.
+    fn feed(&self, view: &PlacedView, run: &PathRun) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
+        let pen = if run.kind == RunKind::Probe { Pen::Probe } else { Pen::Feed };
+        let style = Some(self.style(run)).filter(|_| run.kind == RunKind::Feed);
+        match (self.shades, self.color_by, style) {
+            (Some(scale), ColorBy::Depth, Some(style)) => {
+                self.shaded(view, run, scale, style, &mut strokes);
+            }
+            _ => flush(&mut strokes, &mut self.sparse(view, run), view, pen, style),
         }
         strokes
     }
@@ -165,7 +200,14 @@ impl PathDrawer<'_> {
     ) {
         let depth = |point: [f64; 3]| point[self.height.0] * self.height.1;
         let least = RESOLUTION * self.extent;
-        let styled = |level: f64| Some(Style { tint: Some(scale.tint(level)), ..style });
+        let mut drawn = 0.0;
+        let mut flush_shade = |line: &mut Vec<Point>, level: f64| {
+            let length: f64 = line.windows(2).map(|ends| distance(ends[0], ends[1])).sum();
+            let phase = if style.pattern == 0 { 0.0 } else { drawn };
+            let styled = Some(Style { tint: Some(scale.tint(level)), phase, ..style });
+            flush(to, line, view, Pen::Feed, styled);
+            drawn += length;
+        };
         let points = &self.path.points[run.points.clone()];
         let (mut line, mut current) = (Vec::new(), f64::NAN);
         let Some(first) = points.first() else { return };
@@ -185,7 +227,7 @@ impl PathDrawer<'_> {
                 let middle = (f64::from(piece) + 0.5) / pieces;
                 let level = scale.level(before_depth + (now_depth - before_depth) * middle);
                 if level != current {
-                    flush(to, &mut line, view, Pen::Feed, styled(current));
+                    flush_shade(&mut line, current);
                     line.push(at(f64::from(piece) / pieces));
                     current = level;
                 }
@@ -193,7 +235,7 @@ impl PathDrawer<'_> {
             }
             (before, before_depth) = (now, now_depth);
         }
-        flush(to, &mut line, view, Pen::Feed, styled(current));
+        flush_shade(&mut line, current);
     }
 
     /// Returns the projected points of a run without those that a sheet can't tell from the one before.

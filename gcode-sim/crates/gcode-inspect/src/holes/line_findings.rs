@@ -13,7 +13,7 @@ use crate::findings::{
     BACK_BORED, CYCLE_IN_AIR, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
     RAPID_INTO_PART, START_UNKNOWN, TOOL_NOT_CHANGED,
 };
-use crate::machine::{HeadKind, TOUCH_DEPTH};
+use crate::machine::{HeadKind, TOUCH_DEPTH, ToolKind};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, LengthCompensation};
 use gcode_lang::units::Deg;
@@ -183,6 +183,9 @@ impl HoleExtractor<'_> {
             return;
         }
         let Some(depth) = inside else {
+            if !self.may_drill(line) {
+                return;
+            }
             self.engagement.uncounted.add_unretracted(line.backtrace(), line.cut_depth());
             return;
         };
@@ -209,6 +212,13 @@ impl HoleExtractor<'_> {
                 Some(_) => "retract along the hole before anything else moves",
             })
         });
+    }
+
+    /// Returns true if a feed of an unknown body may be meant as a hole: along the tool, or along an upright one if the direction of
+    /// this one is unknown, and not by an end mill.
+    fn may_drill(&self, line: &CuttingLine) -> bool {
+        let is_mill = self.machine.kind_of(line.cutting_state.tool) == Some(ToolKind::EndMill);
+        !is_mill && !line.is_across_tool() && !line.is_across_upright()
     }
 
     /// Returns true if a line is a stroke of known diameter that cuts a nominal hole.

@@ -350,6 +350,13 @@ impl CuttingLine {
     }
 }
 
+impl CuttingLine {
+    /// Returns true for a feed across an upright tool, if the direction of this one is unknown.
+    pub(super) fn is_across_upright(&self) -> bool {
+        self.upright.is_some_and(|upright| upright.dot(&self.out) < MIN_UPRIGHT_COSINE)
+    }
+}
+
 impl HoleExtractor<'_> {
     /// Returns the kind of a stroke that the tool has left, in feed if `is_feeding`.
     pub(super) fn cut_kind(&self, line: &CuttingLine, is_feeding: bool) -> CutKind {

@@ -98,7 +98,6 @@ tool 1; rapid X1 Z5; feed Z-12; rapid Z5; rapid X80; feed Z-12; rapid Z5; tool 2
 a feed across, then a hole
 rapid Z2; feed X50; feed Z-5; rapid Z2
 50 0 2, 0 0 1, 7
-feed-without-retract
 
 a feed without retract is no hole
 rapid Z2; feed Z-5; rapid X50

@@ -290,7 +290,7 @@ impl Machine {
     }
 
     /// Returns the axes that move the tool, the part, the head or the wheel, as bits.
-    pub(crate) fn used_axes(&self) -> u8 {
+    pub fn used_axes(&self) -> u8 {
         let used = self.axes.iter().filter(|(axis, _)| self.is_axis_used(*axis));
         used.fold(0, |all, (axis, _)| all | 1 << axis)
     }

@@ -373,6 +373,11 @@ V = 1.0
 tilt = [0.0, nan, 0.0]
 => line 2: key 'part.tilt' is NaN: -360 to 360 degrees
 
+[[tool]]
+number = 1
+length = -412.35
+=> line 3: key 'tool.length' is -412.35: 0 to 10000 mm from the gauge line to the tip; leave it out if tools are touched off at the part (H is negative)
+
 tool = [{ number = 1, length = 5.0 }]
 => line 1: key 'tool.length' acts along the tool"#;
         for case in cases.trim().split("\n\n") {

@@ -6,7 +6,7 @@ use crate::machine::{Head, HeadKind, Tool, ToolKind};
 use gcode_lang::units::Deg;
 use gcode_part::Hand;
 use gcode_part::reader::bounds::{
-    Bounded, GaugeLength, OffsetNumber, PointAngle, RadiusOffset, ToolDiameter,
+    Bounded, GaugeLength, OffsetNumber, PointAngle, RadiusOffset, TipLength, ToolDiameter,
 };
 use gcode_part::reader::{FileError, FileKey, Optional, Reader, Word, WordList};
 
@@ -17,7 +17,7 @@ pub(super) struct FileTool {
     /// Its number, and that of its length offset; unique.
     pub(super) number: Bounded<OffsetNumber>,
     /// From the gauge line to the tip, mm [default: as long as the length offset in effect].
-    length: Option<Bounded<GaugeLength>>,
+    length: Option<Bounded<TipLength>>,
     /// mm [default: unknown].
     diameter: Option<Bounded<ToolDiameter>>,
     /// Cutter radius offset D of its number, mm [default: what the program sets, else 0].
