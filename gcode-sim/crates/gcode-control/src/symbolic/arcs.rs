@@ -9,6 +9,7 @@ use super::term::{Term, TermOperation, Terms, Test};
 use super::words::BlockTerms;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::AxisIndex;
+use gcode_lang::program::modes::FeedMode;
 use gcode_lang::syntax::ast::{Function, Relation};
 
 /// Part of the largest coordinate that bounds the rounding errors of a radius many times over.
@@ -151,7 +152,11 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         let short = self.node(TermOperation::Subtract, half, magnitude);
         if !alarms {
             let is_short = self.exceeds(short, 0.0, margin)?;
-            return if is_short { Err(Halt::unfollowed("an arc by a short R")) } else { Ok(()) };
+            return if is_short {
+                Err(Halt::unfollowed("an arc by a short R"))
+            } else {
+                self.check_known_feed()
+            };
         }
         if self.exceeds(short, tolerance, margin)? {
             return small(self);
@@ -160,6 +165,19 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         let largest = self.largest(&[a, b, c, d, radius]);
         if largest > LARGEST_BY_RADIUS {
             return Err(Halt::unfollowed("an arc by R with large coordinates"));
+        }
+        self.check_known_feed()
+    }
+
+    /// Raises the alarm of an arc by R without a feed: the plan has no move where the numbers in the place of terms end at the
+    /// start, and doesn't look at the feed then.
+    fn check_known_feed(&self) -> Symbolic<()> {
+        let state = &self.plan.state;
+        if state.modal.feed_mode != FeedMode::PerMinute {
+            return Err(Halt::unfollowed("an arc by R in G93 or G95"));
+        }
+        if self.terms.feed.is_none() && state.modal_words.f <= 0.0 {
+            return Err(Alarm::ArcFeedZero.located_at(self.span).into());
         }
         Ok(())
     }
