@@ -96,7 +96,7 @@ impl Transformation {
         let (before, count) = if is_open { (before, count) } else { (0, subset.len()) };
         // Beside a whole pattern extra holes are extra.
         let is_unfinished =
-            |pair: &HolePair| exceeds(pair.deviation.depth_error.abs(), comparison.tolerances.depth);
+            |pair: &HolePair| exceeds(-pair.deviation.depth_error, comparison.tolerances.depth);
         let is_whole = comparison.missing.is_empty() && !comparison.pairs.iter().any(is_unfinished);
         if count < MIN_HOLES || subset.len() < MIN_HOLES || !is_open && is_whole {
             return None;
