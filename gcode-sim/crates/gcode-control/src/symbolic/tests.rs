@@ -106,7 +106,7 @@ fn each_answer_is_a_way_of_its_own_and_a_question_changes_nothing() {
 #[test]
 fn what_depends_on_a_term_and_is_not_followed_is_named() {
     for (text, named) in [
-        ("G90 G02 X#1 Y0. R5. F100.\nM30\n", "G02"),
+        ("G90 G02 X#1 Y0. R5. F100.\nM30\n", "an arc by R that ends at its start"),
         ("G90 G00 X#1\nG28 X0\nM30\n", "G28"),
         ("G90 G00 B#1\n#100=#5005\nM30\n", "#5005"),
         ("#5221=#1\nM30\n", "#5221"),

@@ -1,10 +1,15 @@
 //! Taps: they leave their thread as they came, at its pitch, and the hole before them is wide enough.
 use super::features::Judgement;
-use super::threads::{CORE_SHARE, THREAD_DEPTH};
 use super::*;
 use crate::findings::{TAP_DRILL, TAP_PITCH};
 use crate::verify::hole_cuts::Cut;
 use gcode_part::{Feature, NOISE};
+
+/// Depth of an internal thread by its pitch, in diameter (ISO 724).
+pub(super) const THREAD_DEPTH: f64 = 1.082_532;
+
+/// Part of a thread's depth from which on a cut after the tap belongs to the hole for the thread, and not to its mouth.
+pub(super) const CORE_SHARE: f64 = 0.75;
 
 /// Depth of a Whitworth thread by its pitch, in diameter (ISO 228-1): that of a metric thread, ISO 724, is less.
 const WHITWORTH_DEPTH: f64 = 1.280_654;

@@ -1,7 +1,7 @@
 //! Threads: the hole is drilled deeper than its thread, before it, and no wider than the thread leaves metal; feed and speed
 //! give the pitch, and the spindle the hand.
 use super::features::{Judgement, ShapeGap};
-use super::tap_motion;
+use super::tap_motion::{self, CORE_SHARE, THREAD_DEPTH};
 use super::*;
 use crate::findings::{FEATURE_DEPTH, HOLE_ROUNDNESS, TAP_DRILL, TAP_HAND, TAP_PITCH};
 use crate::holes::{Helix, PITCH_TOLERANCE};
@@ -16,9 +16,6 @@ const LEAD_TOLERANCE: f64 = 1e-3;
 
 /// Largest distance along the axis between two passes of one thread, mm.
 const MAX_STEP: f64 = 0.05;
-
-/// Depth of an internal thread by its pitch, in diameter (ISO 724).
-pub(super) const THREAD_DEPTH: f64 = 1.082_532;
 
 /// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
@@ -197,9 +194,6 @@ fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize, slack
         "drill deeper than the thread, before the tap, by the point of the drill and the lead of the tap",
     ))
 }
-
-/// Part of a thread's depth from which on a cut after the tap belongs to the hole for the thread, and not to its mouth.
-pub(super) const CORE_SHARE: f64 = 0.75;
 
 /// Reports a thread in a hole that is drilled to its width only afterwards.
 fn drilled_after(
