@@ -6,7 +6,7 @@ use super::arc_run::{PartArc, Ring};
 use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
-use gcode_part::exceeds;
+use gcode_part::{MAX_EDGE_BREAK, exceeds};
 
 impl Engagement {
     /// Returns the circles of one hole among some rings; `None` without a ring, and if their axes differ in direction. A
@@ -125,13 +125,19 @@ impl HoleExtractor<'_> {
         holes.filter(|circles| self.is_at_nominal_wall(&circles.widest, cutter)).collect()
     }
 
-    /// Returns true if a circle is at no nominal hole, and all metal that it removes is in a pocket.
+    /// Returns true if all metal that a circle removes is in a pocket. At a nominal hole that is a groove or a recess which is wider than
+    /// the hole, as high as the edges of the mill.
     fn is_in_pocket(&self, ring: &Ring, cutter: Option<f64>) -> bool {
-        if self.strokes.nominal_of_ring(ring, true).is_some() {
-            return false;
-        }
-        let up = ring.out.into_inner() * self.metal.removed.height_of_metal(&ring.centre, &ring.out);
         let radius = ring.radius + cutter.unwrap_or(0.0) / 2.0;
+        let mut height = self.metal.removed.height_of_metal(&ring.centre, &ring.out);
+        if let Some(axis) = self.strokes.nominal_of_ring(ring, true) {
+            if axis.radius.is_none_or(|own| radius <= own + MAX_EDGE_BREAK) {
+                return false;
+            }
+            let edges = self.tool_body.iter().filter(|part| part.is_cutter).map(|part| part.to);
+            height = edges.reduce(f64::max).map_or(height, |edges| height.min(edges));
+        }
+        let up = ring.out.into_inner() * height;
         self.is_round_in_pocket(&[ring.centre, ring.centre + up], &ring.out, radius)
     }
 

@@ -301,13 +301,20 @@ fn push_holes<'p>(
 
 /// Returns the finishing pass: the last pass of the largest tool that reaches half the depth of the hole, without
 /// diameters of the last tool. A countersink is too shallow; a spot drill, however deep, is followed by a deeper tool.
+/// The depth counts from the highest feed of a stroke. A circle begins at any height from which its mill came down in rapid: without a
+/// stroke the lowest of these counts.
 fn finishing_pass<'p>(
     cutting: &[&'p DrillPass],
     lowest: f64,
     height: impl Fn(&Point3<f64>) -> f64,
     machine: &Machine,
 ) -> &'p DrillPass {
-    let longest = cutting.iter().map(|pass| height(&pass.cut.start) - lowest).fold(0.0, f64::max);
+    let starts = |is_milled| {
+        let passes = cutting.iter().filter(move |pass| pass.cut.milled.is_some() == is_milled);
+        passes.map(|pass| height(&pass.cut.start))
+    };
+    let start = starts(false).reduce(f64::max).or_else(|| starts(true).reduce(f64::min));
+    let longest = start.map_or(0.0, |start| start - lowest);
     let deep = |p: &DrillPass| height(&p.cut.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {

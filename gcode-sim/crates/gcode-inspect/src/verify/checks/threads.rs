@@ -49,7 +49,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         let turns = turns(judged, feature, cut);
         let faults = [
             turns.iter().find_map(|cut| pitch(id, feature, cut)),
-            tap_motion::uneven_retract(judged, cut),
+            turns.iter().find_map(|cut| tap_motion::uneven_retract(judged, cut)),
             tap_motion::narrow(judged, feature, cut),
             turns.iter().find_map(|cut| hand(id, feature, cut)),
             turns.iter().find_map(|cut| tapered(id, cut, width)),
@@ -249,13 +249,13 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     )))
 }
 
-/// Returns the cuts that make a thread: the one that makes it whole, and all helices that cut its flanks.
+/// Returns the cuts that make a thread: the one that makes it whole, and all taps and helices that cut its flanks.
 fn turns<'c>(judged: &Judgement<'c>, feature: &Feature, made: &Cut<'c>) -> Vec<Cut<'c>> {
     let minor = feature.diameter - THREAD_DEPTH * feature.pitch.unwrap_or(feature.diameter);
     let is_single = stated_threads(judged.nominal).len() == 1;
     let is_turn = |cut: &&Cut<'_>| {
         std::ptr::eq(cut.pass.backtrace, made.pass.backtrace)
-            || is_single && cut.thread.is_some() && cut.pass.diameter.is_none_or(|own| minor < own)
+            || is_single && cut.is_thread() && cut.pass.diameter.is_none_or(|own| minor < own)
     };
     judged.near.iter().filter(is_turn).copied().collect()
 }

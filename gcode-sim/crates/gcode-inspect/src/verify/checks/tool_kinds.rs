@@ -167,10 +167,13 @@ fn in_solid(
     Some(finding.help("drill before it, and deeper by the point of the drill"))
 }
 
-/// Reports a tap whose spindle doesn't reverse in a hole without features; with them the thread is missing.
+/// Reports a tap whose spindle doesn't reverse in a hole without features, or where another tap makes the thread; else the thread is
+/// missing.
 fn torn(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<Diagnostic> {
-    let is_torn =
-        cut.kind == Some(ToolKind::Tap) && !cut.pass.cut.is_tapping && judged.nominal.features.is_empty();
+    let is_other_sound = || judged.near.iter().any(|other| other.is_thread() && !other.is_stuck_tap());
+    let is_torn = cut.kind == Some(ToolKind::Tap)
+        && !cut.pass.cut.is_tapping
+        && (judged.nominal.features.is_empty() || is_other_sound());
     let message =
         format!("hole {}: {} is a tap, and the spindle does not reverse in the hole", judged.id, cut.name());
     let finding = Diagnostic::new(&TOOL_KIND, message).with_backtrace(cut.pass.backtrace.clone());
