@@ -76,7 +76,7 @@ gcode_lang::finding_kinds! {
     TAP_DRILL = "tap-drill", Error, "a thread is as deep as its drilled hole, or deeper";
     TAP_HAND = "tap-hand", Error, "the spindle turns against the hand of the thread";
     TAP_PITCH = "tap-pitch", Error, "feed and speed do not give the pitch of the thread";
-    TOOL_CUTS_NOTHING = "tool-cuts-nothing", Warning, "a tool cuts nothing in any hole";
+    TOOL_CUTS_NOTHING = "tool-cuts-nothing", Warning, "a tool cuts nothing";
     TOOL_KIND = "tool-kind", Error, "a tool makes a cut that its kind can't make";
     TOOL_LEFT_IN_HOLE = "tool-left-in-hole", Error, "the run ends, or the tool is changed, in the metal";
     TOOL_NOT_CHANGED = "tool-not-changed", Error, "the tool that is selected is not in the spindle";

@@ -314,6 +314,7 @@ impl HoleExtractor<'_> {
         let backtrace = line.backtrace();
         self.check_clamped(backtrace, line.clamp_state);
         if let Some(feeds) = line.cutting_feeds() {
+            self.milling.record_cut(line.cutting_state.tool);
             let origin = self.offset_origin.as_ref();
             self.cut_conditions.add(
                 backtrace,

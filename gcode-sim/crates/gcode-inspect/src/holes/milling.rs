@@ -6,15 +6,27 @@ use nalgebra::Point3;
 use super::HoleExtractor;
 use super::cutting::{CuttingState, PeckExtent};
 use super::strokes::MIN_TOOL_COSINE;
-use crate::findings::TOOL_KIND;
+use crate::findings::{TOOL_CUTS_NOTHING, TOOL_KIND};
 use crate::machine::tool_name;
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Event, SpindleDirection};
+use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
 
-/// Slowest and fastest rate at which tools have milled in each state of the cut with each selected tool. A rate is judged at
-/// its block unless it lies between them.
+/// Feeds of mills so far.
 #[derive(Debug, Default)]
-pub(super) struct MillingRates(BTreeMap<([u64; 4], Option<u32>), [f64; 2]>);
+pub(super) struct Milling {
+    /// Slowest and fastest rate at which tools have milled in each state of the cut with each selected tool. A rate is judged at
+    /// its block unless it lies between them.
+    rates: BTreeMap<([u64; 4], Option<u32>), [f64; 2]>,
+    /// First feed across of each tool that has met no metal so far; `None` once it has cut.
+    idle: BTreeMap<u32, Option<Backtrace>>,
+}
+
+impl Milling {
+    /// Records that a tool cuts.
+    pub(super) fn record_cut(&mut self, tool: Option<u32>) {
+        self.idle.extend(tool.map(|tool| (tool, None)));
+    }
+}
 
 impl HoleExtractor<'_> {
     /// Checks the tool, its spindle and its rate in a feed that cuts metal across the tool.
@@ -23,15 +35,20 @@ impl HoleExtractor<'_> {
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
         let is_stopped = state.spindle_direction == SpindleDirection::Off;
         let key = (state.key(), state.selected_tool);
-        let range = self.milling.0.get(&key).copied();
+        let range = self.milling.rates.get(&key).copied();
         let is_known = range.is_some_and(|[least, most]| least <= rate.0 && rate.0 <= most);
         let is_straight = path.len() == 2;
         let kind = self.machine.kind_of(state.tool);
         let wrong_kind = kind.filter(|kind| is_straight && kind.cuts_with_end());
         let is_done = is_known && !is_stopped && wrong_kind.is_none();
-        if is_done || !path.windows(2).any(|chord| self.mills(&chord[0], &chord[1])) {
+        if is_done {
             return;
         }
+        if !path.windows(2).any(|chord| self.mills(&chord[0], &chord[1])) {
+            self.record_idle_feed(event, path, &state);
+            return;
+        }
+        self.milling.record_cut(state.tool);
         let backtrace = event.backtrace();
         // A full circle has its own finding.
         if is_stopped && is_straight {
@@ -46,11 +63,38 @@ impl HoleExtractor<'_> {
         }
         if !is_known {
             let [least, most] = range.unwrap_or([rate.0; 2]);
-            self.milling.0.insert(key, [least.min(rate.0), most.max(rate.0)]);
+            self.milling.rates.insert(key, [least.min(rate.0), most.max(rate.0)]);
             self.check_tool_changed(&backtrace, &state);
             let feeds = ([rate, rate], [(rate, state.speed); 2]);
             let origin = self.offset_origin.as_ref();
             self.cut_conditions.add(&backtrace, &state, false, feeds, PeckExtent::default(), origin);
+        }
+    }
+
+    /// Records a straight feed across a turning tool of known diameter that meets no metal of a known body.
+    fn record_idle_feed(&mut self, event: &Event<'_>, path: &[Point3<f64>], state: &CuttingState) {
+        let [from, to] = path else { return };
+        let along = to - from;
+        let is_across =
+            self.pose.axis.is_some_and(|axis| axis.dot(&along).abs() < MIN_TOOL_COSINE * along.norm());
+        let is_known = self.surface.is_some() && self.tool_radius().is_some();
+        if is_across && is_known && state.spindle_direction != SpindleDirection::Off {
+            self.milling.idle.entry(state.tool.unwrap_or(0)).or_insert_with(|| Some(event.backtrace()));
+        }
+    }
+
+    /// Reports the tools whose feeds all miss the metal.
+    pub(super) fn report_idle_mills(&mut self) {
+        let idle = std::mem::take(&mut self.milling.idle).into_iter();
+        for (tool, backtrace) in idle.filter_map(|(tool, first)| Some((tool, first?))) {
+            self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool, 1, |kind| {
+                let name = tool_name(Some(tool).filter(|tool| *tool != 0));
+                Diagnostic::new(
+                    kind,
+                    format!("{name} cuts nothing: all its feeds miss the metal of the part"),
+                )
+                .help("check T and M06 before it, its H, the sign of Z and the stock")
+            });
         }
     }
 

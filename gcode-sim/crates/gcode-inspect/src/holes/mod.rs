@@ -84,7 +84,7 @@ use self::low_rapid::LowRapid;
 use self::metal::KnownMetal;
 use self::milled::{Engagement, Path};
 use self::milled_blocks::MilledBlocks;
-use self::milling::MillingRates;
+use self::milling::Milling;
 use self::per_block::Findings;
 use self::profile::Profile;
 use self::strokes::{MilledStrokes, Strokes};
@@ -153,7 +153,7 @@ pub struct HoleExtractor<'m> {
     findings: Findings,
     close_motions: CloseMotions,
     cut_conditions: CutConditionsByBlock,
-    milling: MillingRates,
+    milling: Milling,
     /// Blocks that mill stated pockets.
     milled_blocks: MilledBlocks,
     length_mismatches: Vec<LengthMismatch>,
@@ -226,7 +226,7 @@ impl<'m> HoleExtractor<'m> {
             findings: Findings::default(),
             close_motions: CloseMotions::default(),
             cut_conditions: CutConditionsByBlock::default(),
-            milling: MillingRates::default(),
+            milling: Milling::default(),
             milled_blocks: MilledBlocks::default(),
             length_mismatches: Vec::new(),
             offset_tools: BTreeSet::new(),
@@ -294,6 +294,7 @@ impl<'m> HoleExtractor<'m> {
         let unsearched = last_block.filter(|_| self.is_feed_unsearched.get());
         unsearched.into_iter().for_each(|block| self.unsearched_feeds.count(|| block));
         self.end_engagement();
+        self.report_idle_mills();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         self.find_cores(&mut holes);
@@ -370,6 +371,7 @@ impl<'m> HoleExtractor<'m> {
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.change_retract.end();
             self.report_low_rapid();
+            self.report_idle_mills();
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             // With the same axes unknown the motion itself is known.
             match was == is && !is_rotating {
@@ -447,6 +449,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
                 self.report_low_rapid();
+                self.report_idle_mills();
                 self.check_tool_known(event, *number);
                 self.begin_change(event);
                 self.milled_blocks.end_tool();
