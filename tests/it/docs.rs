@@ -106,3 +106,18 @@ fn the_summary_of_the_book_has_every_page_once() {
     pages.sort();
     assert_eq!(listed, pages);
 }
+
+/// The title of an explain page in the book's index is its heading.
+#[test]
+fn the_summary_of_the_book_has_the_headings_of_the_explain_pages() {
+    let docs = workspace().join("docs");
+    let summary = std::fs::read_to_string(docs.join("SUMMARY.md")).unwrap();
+    let entries = summary.lines().filter_map(|line| line.split_once('[')?.1.rsplit_once("]("));
+    let mut compared = 0;
+    for (title, page) in entries.filter(|(_, page)| page.starts_with("explain/")) {
+        let text = std::fs::read_to_string(docs.join(page.trim_end_matches(')'))).unwrap();
+        assert_eq!(format!("# {}", title.replace('\\', "")), text.lines().next().unwrap(), "{page}");
+        compared += 1;
+    }
+    assert!(200 < compared, "{compared} pages");
+}

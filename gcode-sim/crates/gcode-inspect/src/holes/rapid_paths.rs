@@ -179,10 +179,10 @@ impl HoleExtractor<'_> {
         let tip = self.pose_at(to).tip;
         let begin = start.unwrap_or(tip);
         let Some(axis) = self.axis_in_motion(&begin, &tip) else { return };
-        // Out along its axis the tool leaves the way that it has come.
+        // Out along its axis the tool leaves the way that it has come, unless it has cut wider than it is above.
         let out = (tip - begin).dot(&axis);
         let is_way_back = 0.0 < out && (tip - begin - axis.into_inner() * out).norm() <= TOUCH_DEPTH;
-        if is_straight && (start.is_none() || is_way_back) {
+        if is_straight && (start.is_none() || is_way_back && !self.cuts_undercut()) {
             return;
         }
         let sides = match path.len() < 2 {
@@ -201,6 +201,14 @@ impl HoleExtractor<'_> {
         let severity = error_if(is_straight || self.process_limits.clearance.is_none());
         let orders = if path.len() < 2 { "" } else { " on some of its paths" };
         self.report_side(event, cut, severity, orders);
+    }
+
+    /// Returns true for a tool whose edges are wider than a part above them: a side cutter, or a cutter for T slots.
+    fn cuts_undercut(&self) -> bool {
+        let edges = || self.tool_body.iter().filter(|part| part.is_cutter);
+        self.tool_body.iter().any(|above| {
+            edges().any(|edge| edge.to <= above.from && above.radius() + TOUCH_DEPTH < edge.radius())
+        })
     }
 
     /// Returns the largest radius of the tool's parts, mm; 0 if it is unknown.
