@@ -35,7 +35,8 @@ impl HoleExtractor<'_> {
                 let (before, after) = (line.depth_of(&from), line.depth_of(&tip));
                 let is_beyond = kind == MotionKind::Rapid && after < 0.0 && after < before;
                 let mut free_from = is_beyond.then_some(if before > 0.0 { line.start } else { from });
-                if after < before {
+                // In a pocket there is no thread.
+                if after < before && !self.metal.is_point_in_pocket(&from) {
                     let feed = match event.kind {
                         EventKind::Feed { rate, .. } => Some((*rate, self.cutting_state.speed)),
                         _ => None,

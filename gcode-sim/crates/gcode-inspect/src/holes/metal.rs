@@ -148,7 +148,7 @@ impl KnownMetal {
         axis: &Unit<Vector3<f64>>,
     ) -> Option<(usize, PointInMetal)> {
         let holes = self.holes.as_deref()?;
-        if self.pockets_near(&[*tip, *tip]).any(|pocket| -TOUCH_DEPTH < pocket.depth(tip)) {
+        if self.is_point_in_pocket(tip) {
             return None;
         }
         let up = tip + axis.into_inner() * self.removed.height_of_metal(tip, axis);
@@ -215,6 +215,11 @@ impl KnownMetal {
             let [least, greatest] = pocket.bounds();
             (0..3).all(|i| low[i] <= greatest[i] && least[i] <= high[i])
         })
+    }
+
+    /// Returns true if a point is in a pocket, or on its wall.
+    pub(super) fn is_point_in_pocket(&self, p: &Point3<f64>) -> bool {
+        self.pockets_near(&[*p, *p]).any(|pocket| -TOUCH_DEPTH < pocket.depth(p))
     }
 
     /// Returns true if all metal on a line is in one pocket.

@@ -18,12 +18,17 @@ const WHITWORTH_DEPTH: f64 = 1.280_654;
 const MAX_THREAD_DEPTH: f64 = 2.0;
 
 /// Reports a tap that leaves its thread by a rapid, or at another feed a revolution than it came in.
-pub(super) fn uneven_retract(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<Diagnostic> {
+pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     let retract = cut.pass.cut.uneven_retract?;
     let Hole { entry, axis, .. } = judged.nominal;
     let depth = (Point3::from(*entry) - retract.from).dot(&Vector3::from(*axis));
-    // Above the entry it is free.
-    if depth <= NOISE {
+    // Above the entry, and where the hole is wider than the thread, it is free.
+    let wide = |other: &Cut<'_>| {
+        let own = other.pass.diameter.filter(|own| !other.is_thread() && feature.diameter <= *own)?;
+        Some(other.full_depth(own).unwrap_or(other.tip))
+    };
+    let free = judged.near.iter().filter_map(wide).fold(0.0, f64::max);
+    if depth <= free + NOISE {
         return None;
     }
     let how = match retract.feed {

@@ -49,7 +49,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         let turns = turns(judged, feature, cut);
         let faults = [
             turns.iter().find_map(|cut| pitch(id, feature, cut)),
-            turns.iter().find_map(|cut| tap_motion::uneven_retract(judged, cut)),
+            turns.iter().find_map(|cut| tap_motion::uneven_retract(judged, feature, cut)),
             tap_motion::narrow(judged, feature, cut),
             turns.iter().find_map(|cut| hand(id, feature, cut)),
             turns.iter().find_map(|cut| tapered(id, cut, width)),
