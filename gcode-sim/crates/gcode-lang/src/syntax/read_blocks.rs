@@ -1,4 +1,6 @@
 //! Blocks that were read before an edit: those on lines that the edit leaves as they are need not be read again.
+use std::cell::Cell;
+
 use super::ast::Block;
 use super::token::is_space;
 use crate::source::Bytes;
@@ -15,6 +17,8 @@ pub struct ReadBlocks {
 pub struct KnownBlocks {
     starts: Vec<u32>,
     blocks: Vec<Option<Block>>,
+    /// Place behind the block that was found last: most are asked for in order.
+    next: Cell<usize>,
 }
 
 impl ReadBlocks {
@@ -60,17 +64,26 @@ impl KnownBlocks {
     /// Takes blocks of the same state of the text, in order.
     pub fn of(blocks: Vec<Block>) -> Self {
         let starts = blocks.iter().map(|block| block.span.start).collect();
-        Self { starts, blocks: blocks.into_iter().map(Some).collect() }
+        Self { starts, blocks: blocks.into_iter().map(Some).collect(), next: Cell::default() }
     }
 
     /// Returns the block that begins its line at an offset.
     pub(crate) fn find(&self, start: u32) -> Option<&Block> {
-        self.blocks[self.starts.binary_search(&start).ok()?].as_ref()
+        self.blocks[self.place(start)?].as_ref()
     }
 
     /// Takes the block that begins its line at an offset.
     pub(crate) fn take(&mut self, start: u32) -> Option<Block> {
-        self.blocks[self.starts.binary_search(&start).ok()?].take()
+        let place = self.place(start)?;
+        self.blocks[place].take()
+    }
+
+    fn place(&self, start: u32) -> Option<usize> {
+        let next = self.next.get();
+        let is_next = self.starts.get(next) == Some(&start);
+        let place = if is_next { next } else { self.starts.binary_search(&start).ok()? };
+        self.next.set(place + 1);
+        Some(place)
     }
 }
 
