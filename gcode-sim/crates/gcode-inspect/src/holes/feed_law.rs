@@ -154,6 +154,7 @@ impl HoleExtractor<'_> {
         }
         if let Some(gouge) = worst {
             self.gouge_count += 1;
+            self.milling.record_cut(self.setup.tool);
             self.report_gouge(&event.backtrace(), gouge);
         }
     }
