@@ -371,7 +371,6 @@ impl<'m> HoleExtractor<'m> {
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.change_retract.end();
             self.report_low_rapid();
-            self.report_idle_mills();
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
             // With the same axes unknown the motion itself is known.
             match was == is && !is_rotating {
@@ -449,7 +448,6 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => {
                 self.report_low_rapid();
-                self.report_idle_mills();
                 self.check_tool_known(event, *number);
                 self.begin_change(event);
                 self.milled_blocks.end_tool();
