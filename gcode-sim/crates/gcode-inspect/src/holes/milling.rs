@@ -1,7 +1,7 @@
 //! Feeds across the tool: the tool that mills, its spindle and its feed, where it cuts known metal.
 use std::collections::BTreeMap;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::cutting::{CuttingState, PeckExtent};
@@ -18,13 +18,13 @@ pub(super) struct Milling {
     /// its block unless it lies between them.
     rates: BTreeMap<([u64; 4], Option<u32>), [f64; 2]>,
     /// First feed across of each tool that has met no metal so far; `None` once it has cut.
-    idle: BTreeMap<u32, Option<Backtrace>>,
+    idle: BTreeMap<Option<u32>, Option<Backtrace>>,
 }
 
 impl Milling {
     /// Records that a tool cuts.
     pub(super) fn record_cut(&mut self, tool: Option<u32>) {
-        self.idle.extend(tool.map(|tool| (tool, None)));
+        self.idle.insert(tool, None);
     }
 }
 
@@ -74,12 +74,10 @@ impl HoleExtractor<'_> {
     /// Records a straight feed across a turning tool of known diameter that meets no metal of a known body.
     fn record_idle_feed(&mut self, event: &Event<'_>, path: &[Point3<f64>], state: &CuttingState) {
         let [from, to] = path else { return };
-        let along = to - from;
-        let is_across =
-            self.pose.axis.is_some_and(|axis| axis.dot(&along).abs() < MIN_TOOL_COSINE * along.norm());
+        let is_across = self.pose.axis.is_some_and(|axis| is_across(&axis, &(to - from)));
         let is_known = self.surface.is_some() && self.tool_radius().is_some();
         if is_across && is_known && state.spindle_direction != SpindleDirection::Off {
-            self.milling.idle.entry(state.tool.unwrap_or(0)).or_insert_with(|| Some(event.backtrace()));
+            self.milling.idle.entry(state.tool).or_insert_with(|| Some(event.backtrace()));
         }
     }
 
@@ -87,8 +85,8 @@ impl HoleExtractor<'_> {
     pub(super) fn report_idle_mills(&mut self) {
         let idle = std::mem::take(&mut self.milling.idle).into_iter();
         for (tool, backtrace) in idle.filter_map(|(tool, first)| Some((tool, first?))) {
-            self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool, 1, |kind| {
-                let name = tool_name(Some(tool).filter(|tool| *tool != 0));
+            self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool.unwrap_or(0), 1, |kind| {
+                let name = tool_name(tool);
                 Diagnostic::new(
                     kind,
                     format!("{name} cuts nothing: all its feeds miss the metal of the part"),
@@ -100,10 +98,14 @@ impl HoleExtractor<'_> {
 
     /// Returns true if a feed across the tool cuts metal that is known.
     fn mills(&self, from: &Point3<f64>, to: &Point3<f64>) -> bool {
-        let along = from - to;
         let Some(axis) = self.axis_in_motion(from, to) else { return false };
-        axis.dot(&along).abs() < MIN_TOOL_COSINE * along.norm()
+        is_across(&axis, &(to - from))
             && self.metal.is_touched(from, to, &axis, self.tool_radius().unwrap_or(0.0))
             && self.cuts_known_metal(from, to) == Some(true)
     }
+}
+
+/// Returns true if a feed leads across the tool, not along it.
+fn is_across(axis: &Unit<Vector3<f64>>, along: &Vector3<f64>) -> bool {
+    axis.dot(along).abs() < MIN_TOOL_COSINE * along.norm()
 }

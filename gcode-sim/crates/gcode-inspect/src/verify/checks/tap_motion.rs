@@ -8,7 +8,7 @@ use gcode_part::{Feature, NOISE};
 /// Depth of an internal thread by its pitch, in diameter (ISO 724).
 pub(super) const THREAD_DEPTH: f64 = 1.082_532;
 
-/// Part of a thread's depth from which on a cut after the tap belongs to the hole for the thread, and not to its mouth.
+/// Part of a thread's depth from which on a cut belongs to the hole for the thread, and not to its mouth.
 pub(super) const CORE_SHARE: f64 = 0.75;
 
 /// Depth of a Whitworth thread by its pitch, in diameter (ISO 228-1): that of a metric thread, ISO 724, is less.
@@ -33,9 +33,7 @@ pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cu
     }
     let how = match retract.feed {
         None => "in rapid".to_owned(),
-        Some((feed, speed)) => {
-            format!("at {:.4} mm a revolution ({} mm/min at S{})", feed.0 / speed.0, feed.0, speed.0)
-        }
+        Some((feed, speed)) => format!("at {}", feed_words(feed.0, speed.0)),
     };
     let message = format!(
         "hole {}: {} leaves its thread {how}, not as it came in: it tears the thread",
@@ -44,6 +42,11 @@ pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cu
     );
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help("feed out at the feed and the speed of the feed in, or tap with G84 or G74"))
+}
+
+/// Returns `1.5000 mm a revolution (750 mm/min at S500)`.
+pub(super) fn feed_words(feed: f64, speed: f64) -> String {
+    format!("{:.4} mm a revolution ({} mm/min at S{speed})", feed / speed, cutting::round_thousandth(feed))
 }
 
 /// Reports a tap in a hole that is narrower than the thread's own core: a warning where it may be that of a taper pipe thread.

@@ -238,9 +238,9 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
         return None;
     }
     let message = format!(
-        "hole {id}: {} feeds {actual:.4} mm a revolution ({} mm/min at S{speed}), the pitch is {nominal}",
+        "hole {id}: {} feeds {}, the pitch is {nominal}",
         cut.name(),
-        cutting::round_thousandth(feed)
+        tap_motion::feed_words(feed, speed)
     );
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help(format!(
