@@ -391,8 +391,12 @@ impl Planner<'_> {
     /// Plans that axes go to machine coordinates. The position on the part is known of those whose work offset is
     /// set.
     fn place_at_machine_coordinates(&self, plan: &mut BlockPlan, axes: u8) {
-        let at_machine_position = axes & !self.axes_with_work_offset(plan);
-        let unknown = UnknownAxes { at_machine_position, ..UnknownAxes::default() };
+        let with_offset = self.axes_with_work_offset(plan);
+        let unknown = UnknownAxes {
+            at_machine_position: axes & !with_offset,
+            at_known_machine_position: axes & with_offset,
+            ..UnknownAxes::default()
+        };
         plan.state.unknown = plan.state.unknown.with_axes_of(axes, unknown);
         self.push_unknown_axes(plan);
     }

@@ -9,10 +9,13 @@ pub struct UnknownAxes {
     pub at_machine_position: u8,
     /// Axes in coordinates that count from an unknown position, as after a G92 there.
     pub shifted: u8,
+    /// Axes at machine coordinates whose work offset is set. The position of the gauge line is known; that of a tool of
+    /// unknown length is not. None of these counts as unknown in itself.
+    pub at_known_machine_position: u8,
 }
 
 impl UnknownAxes {
-    /// Returns the axes of every cause.
+    /// Returns the unknown axes, of every cause.
     pub fn all(self) -> u8 {
         self.uncommanded | self.at_machine_position | self.shifted
     }
@@ -38,6 +41,7 @@ impl UnknownAxes {
             uncommanded: self.uncommanded | other.uncommanded,
             at_machine_position: self.at_machine_position | other.at_machine_position,
             shifted: self.shifted | other.shifted,
+            at_known_machine_position: self.at_known_machine_position | other.at_known_machine_position,
         }
     }
 
@@ -52,6 +56,7 @@ impl UnknownAxes {
             uncommanded: change(self.uncommanded),
             at_machine_position: change(self.at_machine_position),
             shifted: change(self.shifted),
+            at_known_machine_position: change(self.at_known_machine_position),
         }
     }
 }

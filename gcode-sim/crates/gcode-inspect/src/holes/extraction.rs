@@ -37,6 +37,8 @@ pub struct HoleExtraction {
     pub(crate) is_metal_known: bool,
     /// Rapids whose paths are not searched to the end.
     pub(crate) unsearched_rapids: UnsearchedMotions,
+    /// Rapids at machine positions by tools of unknown length without an offset.
+    pub(crate) rapids_of_unknown_tip: UnsearchedMotions,
     /// Rapids that are free only if the tool change before them retracts the tool.
     pub(crate) rapids_behind_change: UnsearchedMotions,
     /// Feeds beside which the metal is not compared with all of the tool.

@@ -3,12 +3,12 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::line::CuttingLine;
 use super::offset_origin::OffsetOrigin;
-use super::unknown_axes::place_below_top;
+use super::unknown_axes::{MAX_SINE, place_below_top};
 use super::{CONTACT_CLEARANCE, HoleExtractor};
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::tool_name;
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Backtrace, Event, LengthCompensation};
+use gcode_lang::motion::{AxisIndex, Backtrace, Event, LengthCompensation, Position};
 
 /// Smallest reported difference, mm.
 const MIN_EXCESS: f64 = 0.001;
@@ -72,7 +72,7 @@ impl HoleExtractor<'_> {
         }
         let depth = match self.surface {
             Some(surface) => self.depth_below_top(&surface, &self.axis_position, 0),
-            None => self.depth_at_entries(),
+            None => self.depth_at_entries(&self.pose.tip),
         };
         let Some(depth) = depth.filter(|depth| -CONTACT_CLEARANCE < *depth) else { return };
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
@@ -85,15 +85,49 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Returns the greatest depth of the tip below the entries of the holes at it, negative above them; `None` beside all holes.
-    fn depth_at_entries(&self) -> Option<f64> {
-        let (holes, tip) = (self.metal.holes.as_deref()?, self.pose.tip);
+    /// Returns true if a rapid leads from or to a place where the tip is unknown: a tool without a known length and without an
+    /// offset stands at machine coordinates, where length 0 would put it on the part. Tools touched off there have their
+    /// length in H alone.
+    pub(super) fn has_unknown_tip(&self, (from, before): (&Position, &Point3<f64>), to: &Position) -> bool {
+        let [was, is] = self.positions.at_machine();
+        if was | is == 0
+            || self.cutting_state.compensation.number().is_some()
+            || self.machine.length_of(self.setup.tool).is_some()
+        {
+            return false;
+        }
+        let is_on_part = |axes: u8, at: &Position, tip: &Point3<f64>| {
+            let depth = match self.surface {
+                Some(surface) => self.depth_below_top(&surface, at, self.positions.unknown_axes().all()),
+                None => self.depth_at_entries(tip),
+            };
+            axes & self.axes_along_tool(at) != 0 && depth.is_some_and(|depth| -CONTACT_CLEARANCE < depth)
+        };
+        is_on_part(was, from, before) || is_on_part(is, to, &self.pose.tip)
+    }
+
+    /// Returns the linear axes that move the tool along itself on the part, as bits.
+    fn axes_along_tool(&self, at: &Position) -> u8 {
+        let pose = self.machine.forward(at, &self.setup);
+        let Some(out) = pose.axis else { return 0 };
+        let is_along = |axis: &AxisIndex| {
+            let mut beside = *at;
+            beside[*axis] += 1.0;
+            let by = self.machine.forward(&beside, &self.setup).tip - pose.tip;
+            !self.machine.axes.is_rotary(*axis) && MAX_SINE < by.dot(&out).abs()
+        };
+        (0..self.machine.axes.len()).filter(is_along).fold(0, |axes, axis| axes | 1 << axis)
+    }
+
+    /// Returns the greatest depth of a tip below the entries of the holes at it, negative above them; `None` beside all holes.
+    fn depth_at_entries(&self, tip: &Point3<f64>) -> Option<f64> {
+        let holes = self.metal.holes.as_deref()?;
         let mut depth: Option<f64> = None;
         let margin = Vector3::repeat(CONTACT_CLEARANCE);
-        holes.around(&(tip - margin), &(tip + margin), &mut |hole| {
+        holes.around(&(*tip - margin), &(*tip + margin), &mut |hole| {
             let collar = holes.collar(hole);
-            if collar.from_axis(&tip) <= collar.rod.radius {
-                depth = Some(depth.map_or(collar.depth(&tip), |most| most.max(collar.depth(&tip))));
+            if collar.from_axis(tip) <= collar.rod.radius {
+                depth = Some(depth.map_or(collar.depth(tip), |most| most.max(collar.depth(tip))));
             }
         });
         depth

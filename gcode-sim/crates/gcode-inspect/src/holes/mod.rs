@@ -168,6 +168,8 @@ pub struct HoleExtractor<'m> {
     search_budget: SearchBudget,
     /// Rapids whose paths are not searched to the end.
     unsearched_rapids: UnsearchedMotions,
+    /// Rapids at machine positions by tools of unknown length without an offset.
+    rapids_of_unknown_tip: UnsearchedMotions,
     /// Feeds beside which the metal is not compared with all of the tool.
     unsearched_feeds: UnsearchedMotions,
     /// Probing moves through metal, up to a signal and without one.
@@ -235,6 +237,7 @@ impl<'m> HoleExtractor<'m> {
             probe_count: 0,
             search_budget: SearchBudget::default(),
             unsearched_rapids: UnsearchedMotions::default(),
+            rapids_of_unknown_tip: UnsearchedMotions::default(),
             unsearched_feeds: UnsearchedMotions::default(),
             probes_in_metal: UnsearchedMotions::default(),
             probes_without_signal: UnsearchedMotions::default(),
@@ -324,6 +327,7 @@ impl<'m> HoleExtractor<'m> {
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
             unsearched_rapids: self.unsearched_rapids,
+            rapids_of_unknown_tip: self.rapids_of_unknown_tip,
             rapids_behind_change: self.change_retract.rapids,
             unsearched_feeds: self.unsearched_feeds,
             probes_in_metal: self.probes_in_metal,
@@ -368,6 +372,15 @@ impl<'m> HoleExtractor<'m> {
             kind => kind,
         };
         let kind = if self.follow_unstopped_probe() { MotionKind::Probe } else { kind };
+        if kind == MotionKind::Rapid && self.has_unknown_tip((&from, &before.tip), to) {
+            self.rapids_of_unknown_tip.count(|| event.backtrace());
+            self.change_retract.end();
+            self.report_low_rapid();
+            self.end_line(Some(kind));
+            self.end_engagement();
+            self.update_start();
+            return;
+        }
         if !was.union(is).is_none() && kind != MotionKind::Feed {
             self.change_retract.end();
             self.report_low_rapid();

@@ -12,7 +12,7 @@ use gcode_lang::motion::{Axes, AxisIndex, Backtrace, Event, Position, UnknownAxe
 use gcode_part::Surface;
 
 /// Sine of the largest angle at which an axis moves along a hole.
-const MAX_SINE: f64 = 1e-3;
+pub(super) const MAX_SINE: f64 = 1e-3;
 
 /// Detail of the finding about a rapid; above those of holes, which are axes as bits.
 const RAPID_DETAIL: u32 = 1 << 8;
@@ -44,6 +44,8 @@ pub(crate) struct PositionTracker {
     has_started: bool,
     current: UnknownAxes,
     upcoming: UnknownAxes,
+    /// Axes at known machine positions before and after the last move, as bits.
+    at_machine: [u8; 2],
     /// First rapid, axes of all rapids, and their number.
     rapids: Option<(Backtrace, u8, u64)>,
 }
@@ -62,7 +64,14 @@ impl PositionTracker {
     /// nothing commands it.
     pub(crate) fn advance(&mut self, machine: &Machine) -> (UnknownAxes, UnknownAxes) {
         let was = std::mem::replace(&mut self.current, self.upcoming);
-        (without_assumed(was, machine), without_assumed(self.current, machine))
+        self.at_machine = [was, self.current].map(|axes| axes.at_known_machine_position);
+        let counted = |axes| UnknownAxes { at_known_machine_position: 0, ..without_assumed(axes, machine) };
+        (counted(was), counted(self.current))
+    }
+
+    /// Returns the axes at known machine positions before and after the last move, as bits.
+    pub(super) fn at_machine(&self) -> [u8; 2] {
+        self.at_machine
     }
 
     /// Counts a rapid from or to an unknown position; one whose axes are merely not commanded yet is not counted.
@@ -379,7 +388,7 @@ impl HoleExtractor<'_> {
 /// Returns the finding about a cut with axes of unknown position; `cut` is its subject and verb, as in `hole 1 is cut`.
 pub(crate) fn unknown_position_finding(names: &Axes, axes: UnknownAxes, cut: &str) -> Diagnostic {
     let letters = |axes| names.names(axes);
-    let UnknownAxes { uncommanded, at_machine_position, shifted } = axes;
+    let UnknownAxes { uncommanded, at_machine_position, shifted, .. } = axes;
     if uncommanded != 0 {
         let letters = letters(uncommanded);
         let starts: Vec<_> = names

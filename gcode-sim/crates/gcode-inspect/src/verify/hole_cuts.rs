@@ -65,6 +65,11 @@ impl<'a> Cut<'a> {
         (self.pass.tool, self.pass.diameter) == (other.tool, other.diameter)
     }
 
+    /// Returns true if the program makes another pass before this one.
+    pub(super) fn follows(&self, other: &Self) -> bool {
+        other.pass.cut.order < self.pass.cut.order
+    }
+
     /// Returns true if a mill goes round the axis; false for a stroke.
     pub(super) fn is_circle(&self) -> bool {
         self.pass.cut.milled.is_some()

@@ -105,6 +105,12 @@ pub(super) fn list(
             "give [rapid] in the machine file",
         ),
         (
+            &extraction.rapids_of_unknown_tip,
+            "rapids at machine positions without a length offset",
+            "rapid",
+            "the tool length is unknown, and length 0 would put the tip on the part; give the length in the machine file",
+        ),
+        (
             &extraction.unsearched_feeds,
             "the side of the tool in some feeds",
             "feed",

@@ -173,6 +173,12 @@ impl Judgement<'_> {
         }
     }
 
+    /// Returns true if what is drilled from both sides of a through hole, each from its own entry, meets.
+    pub(super) fn is_drilled_through(&self, drilled: f64, from_other_side: f64) -> bool {
+        let Hole { through, depth, .. } = *self.nominal;
+        through && !exceeds(depth - from_other_side - drilled, self.comparison.tolerances.depth)
+    }
+
     fn goes_through(&self, feature: &Feature) -> bool {
         self.nominal.through && !exceeds(self.nominal.depth, feature.bottom())
     }
@@ -407,6 +413,14 @@ impl Judgement<'_> {
             .help("correct the programmed depth, or give the hole's features in the reference")
             .with_backtrace(cut.pass.backtrace.clone());
         self.findings.push(finding);
+    }
+}
+
+/// Returns how deep a hole is drilled from this side and from the other, in words.
+pub(super) fn drilled_depths(drilled: f64, from_other_side: f64) -> String {
+    match from_other_side {
+        0.0 => format!("{drilled:.3} mm"),
+        _ => format!("{drilled:.3} mm, and {from_other_side:.3} mm from the other side,"),
     }
 }
 

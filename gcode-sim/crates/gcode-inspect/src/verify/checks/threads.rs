@@ -1,6 +1,6 @@
 //! Threads: the hole is drilled deeper than its thread, before it, and no wider than the thread leaves metal; feed and speed
 //! give the pitch, and the spindle the hand.
-use super::features::{Judgement, ShapeGap};
+use super::features::{Judgement, ShapeGap, drilled_depths};
 use super::tap_motion::{self, CORE_SHARE, THREAD_DEPTH};
 use super::*;
 use crate::findings::{FEATURE_DEPTH, HOLE_ROUNDNESS, TAP_DRILL, TAP_HAND, TAP_PITCH};
@@ -23,13 +23,15 @@ const MAX_COMB_TURNS: f64 = 2.0;
 /// Adds the findings on the threads of a hole.
 pub(super) fn judge(judged: &mut Judgement<'_>) {
     let (nominal, id) = (judged.nominal, judged.id);
+    let sides = [(&judged.near, &judged.far), (&judged.far, &judged.near)];
+    let drilled = sides.into_iter().flat_map(|(cuts, others)| {
+        cuts.iter().filter_map(|cut| drilled_depth(judged, cut, cuts, others)).collect::<Vec<_>>()
+    });
+    let mut findings: Vec<_> = drilled.collect();
     if !judged.near.iter().any(Cut::is_thread) {
+        judged.findings.extend(findings);
         return;
     }
-    let slack = judged.comparison.tolerances.depth;
-    let drilled =
-        (0..judged.near.len()).filter_map(|cut| drilled_depth(nominal, id, &judged.near, cut, slack));
-    let mut findings: Vec<_> = drilled.collect();
     let width = judged.comparison.tolerances.diameter;
     findings
         .extend((0..judged.near.len()).find_map(|cut| drilled_after(nominal, id, &judged.near, cut, width)));
@@ -171,23 +173,32 @@ fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
 
 /// Reports a thread that ends no higher than what is drilled before it. A thread in a hole that the program doesn't drill is
 /// left open.
-fn drilled_depth(nominal: &Hole, id: &str, cuts: &[Cut<'_>], index: usize, slack: f64) -> Option<Diagnostic> {
-    let tap = cuts.get(index).filter(|cut| cut.is_thread())?;
-    cuts.iter().find(|cut| !cut.is_thread())?;
+fn drilled_depth(
+    judged: &Judgement<'_>,
+    tap: &Cut<'_>,
+    cuts: &[Cut<'_>],
+    others: &[Cut<'_>],
+) -> Option<Diagnostic> {
+    if !tap.is_thread() || !cuts.iter().chain(others).any(|cut| !cut.is_thread()) {
+        return None;
+    }
+    let (nominal, id) = (judged.nominal, judged.id);
     let depth = |cut: &Cut<'_>| cut.full_depth(nominal.diameter.unwrap_or(0.0)).unwrap_or(cut.tip);
-    let before = cuts[..index].iter().filter(|cut| !cut.is_thread()).map(depth);
-    let drilled = before.fold(0.0, f64::max);
-    let is_open = nominal.through && !exceeds(nominal.depth - drilled, slack);
+    let deepest = |cuts: &[Cut<'_>]| {
+        cuts.iter().filter(|cut| !cut.is_thread() && tap.follows(cut)).map(depth).fold(0.0, f64::max)
+    };
+    let (drilled, from_other_side) = (deepest(cuts), deepest(others));
     // A mill needs no room below the thread.
     let room = if tap.thread.is_some() { -NOISE } else { NOISE };
-    if is_open || tap.tip + room < drilled {
+    if judged.is_drilled_through(drilled, from_other_side) || tap.tip + room < drilled {
         return None;
     }
     let verb = if tap.thread.is_some() { "mills a thread" } else { "taps" };
     let message = format!(
-        "hole {id}: {} {verb} {:.3} mm deep where {drilled:.3} mm are drilled before it",
+        "hole {id}: {} {verb} {:.3} mm deep where {} are drilled before it",
         tap.name(),
-        tap.tip
+        tap.tip,
+        drilled_depths(drilled, from_other_side)
     );
     let finding = Diagnostic::new(&TAP_DRILL, message).with_backtrace(tap.pass.backtrace.clone());
     Some(finding.help(

@@ -1,5 +1,5 @@
 //! Cuts that a kind of tool can't make: a reamer, a boring bar or a tap in solid metal, a circle by a tool that cuts with its end.
-use super::features::{Judgement, ShapeGap};
+use super::features::{Judgement, ShapeGap, drilled_depths};
 use super::*;
 use crate::findings::TOOL_KIND;
 use crate::holes::PassCut;
@@ -148,20 +148,22 @@ fn in_solid(
         let missing = own.zip(other.pass.diameter).map(|(own, other)| own - other);
         missing.zip(limit).is_none_or(|(missing, limit)| !exceeds(missing, limit))
     };
-    let makes_hole = before.iter().filter(|other| !other.is_thread()).filter(is_wide);
-    let drilled = makes_hole.map(depth).fold(0.0, f64::max);
-    let slack = judged.comparison.tolerances.depth;
-    let is_open =
-        judged.nominal.through && (!others.is_empty() || !exceeds(judged.nominal.depth - drilled, slack));
-    if is_open || !exceeds(cut.tip - drilled, slack) {
+    let deepest = |cuts: &[Cut<'_>]| {
+        let makes_hole = cuts.iter().filter(|other| !other.is_thread() && cut.follows(other)).filter(is_wide);
+        makes_hole.map(depth).fold(0.0, f64::max)
+    };
+    let (drilled, slack) = (deepest(before), judged.comparison.tolerances.depth);
+    let from_other_side = deepest(others);
+    if judged.is_drilled_through(drilled, from_other_side) || !exceeds(cut.tip - drilled, slack) {
         return None;
     }
     let kind = cut.kind.map_or("tool", ToolKind::name);
     let message = format!(
-        "hole {}: {} is a {kind} and goes {:.3} mm deep where {drilled:.3} mm are drilled before it",
+        "hole {}: {} is a {kind} and goes {:.3} mm deep where {} are drilled before it",
         judged.id,
         cut.name(),
-        cut.tip
+        cut.tip,
+        drilled_depths(drilled, from_other_side)
     );
     let finding = Diagnostic::new(&TOOL_KIND, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help("drill before it, and deeper by the point of the drill"))
