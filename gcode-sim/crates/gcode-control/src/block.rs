@@ -400,6 +400,9 @@ impl Control {
             }
             BlockFlow::CancelModal => self.executor.cancel_modal(),
             BlockFlow::End => {
+                if self.executor.flow.frame.kind != FrameKind::Main {
+                    self.executor.log.note(Note::EndInCall, self.executor.flow.block);
+                }
                 self.executor.registers.panel.part_counters[0] += 1.0;
                 self.executor.registers.block_effects.end_run(RunEnd::ProgramEnd);
             }

@@ -16,6 +16,7 @@ gcode_lang::finding_kinds! {
     DOUBLED_NUMBER = "doubled-number", Warning, "a jump to one of several N";
     DRILL_PLANE = "drill-plane", Warning, "a cycle drills along Z while another plane is active";
     END_BEFORE_SWITCH = "end-before-switch", Warning, "a position read after a change of coordinates";
+    END_IN_CALL = "end-in-call", Note, "M02 or M30 in a called program";
     ENGRAVED_TEXT = "engraved-text", Warning, "the strokes of engraved text are unknown";
     G53_IGNORED = "g53-ignored", Warning, "G53 in G91 moves nothing";
     INTO_LOOP = "into-loop", Warning, "a jump into a loop";
@@ -143,6 +144,8 @@ pub enum Note {
     ProgramZero,
     /// M99 of the main program ends the run, where a control starts again.
     MainRepeats,
+    /// M02 or M30 ends the run in a called program: what follows the call is not executed.
+    EndInCall,
     /// A code × 10 depends on the kinematics of the machine, which nothing states.
     NoKinematics(u32),
     /// A comment extends to the end of its block.
@@ -210,6 +213,7 @@ impl Note {
             Self::PocketClearing => (&POCKET_CLEARING, "not checked: pocket clearing: the run makes one cut along the outline of G150, at its full depth, and none of the passes before it".into(), "check the clearing passes on the control"),
             Self::ProgramZero => (&PROGRAM_ZERO, "O0 is no program number: a control refuses it (PS0074) unless the operator gives another one when it is read".into(), "write O1 to O99999999"),
             Self::MainRepeats => (&MAIN_REPEATS, "M99 ends the main program: a control starts it again for ever, the run ends after the first pass".into(), "end it with M30, or state the passes with --cycles 1"),
+            Self::EndInCall => (&END_IN_CALL, "this block ends the run in a called program: nothing behind the call is executed".into(), "write M99 where the caller goes on"),
             Self::NoKinematics(code @ (542 | 544)) => (&NO_KINEMATICS, format!("the offsets of {} are taken as 0: nothing states them, and where X, Y and Z are on the part is unknown", name(code)), "write the offset into a work offset, or end it with P0"),
             Self::NoKinematics(code) => (&NO_KINEMATICS, format!("{} without the rotary axes of the machine: X, Y and Z go on as if a table had turned the part, and where they and the rotary axes are on the machine is unknown", name(code)), "describe [[table]] or [[head.axis]], and [head], in the machine file"),
             Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),

@@ -3,7 +3,7 @@ use nalgebra::Point3;
 
 use super::HoleExtractor;
 use super::per_block::PerBlock;
-use crate::machine::{AxisMotion, LinkMotion, Pose};
+use crate::machine::{AxisMotion, LinkMotion, Pose, TOUCH_DEPTH};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event};
 use gcode_lang::units::Deg;
 use gcode_part::{NearestPoint, Surface};
@@ -104,6 +104,11 @@ impl HoleExtractor<'_> {
         }
         let is_towards = steepness < -STEEP_COSINE;
         if nearest.distance < CONTACT_CLEARANCE {
+            // Where it is milled the blank has lost its surface.
+            let down = nearest.normal.into_inner() * (nearest.distance + CONTACT_CLEARANCE + TOUCH_DEPTH);
+            if self.metal.uncut(&[from - down, to - down]).is_none() {
+                return;
+            }
             let kind = if is_towards { CloseMotionKind::RapidTowards } else { CloseMotionKind::RapidPast };
             self.close_motions.add(event, kind, nearest.distance, None);
         } else if let (true, Some(approach)) = (is_towards, approach) {
