@@ -71,6 +71,7 @@ fn feature(
         ToolKind::SpotDrill | ToolKind::Countersink => {
             return Some(countersink(pass, tool, depth, all, machine));
         }
+        ToolKind::Probe => return None,
         ToolKind::Drill => FeatureKind::Drill,
         ToolKind::Reamer => FeatureKind::Ream,
         ToolKind::BoringBar => FeatureKind::Bore,

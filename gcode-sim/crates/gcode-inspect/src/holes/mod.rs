@@ -369,6 +369,11 @@ impl<'m> HoleExtractor<'m> {
             MotionKind::Probe if was.union(is).is_none() && !is_rotating => {
                 self.kind_of_probing(event, &before.tip)
             }
+            MotionKind::Feed | MotionKind::Rapid
+                if self.is_probe() && was.union(is).is_none() && !is_rotating =>
+            {
+                self.kind_of_probe_motion(event, kind, &before.tip)
+            }
             kind => kind,
         };
         let kind = if self.follow_unstopped_probe() { MotionKind::Probe } else { kind };

@@ -1,7 +1,13 @@
 //! Probing moves: the signal of a probe, and moves that go on through metal.
 use nalgebra::Point3;
 
+use super::metal::PointInMetal;
+use super::near_metal::FeedPart;
+use super::rapids::format_point;
 use super::{HoleExtractor, MotionKind};
+use crate::findings::FEED_BESIDE_HOLE;
+use crate::machine::{ToolKind, tool_name};
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, EventKind, SkipMove, SkipSignal};
 
 impl HoleExtractor<'_> {
@@ -16,7 +22,7 @@ impl HoleExtractor<'_> {
     /// Returns the kind of a probing move: a feed if a tool of some kind goes through metal, since tools of all kinds cut. Other ones
     /// through metal are counted.
     pub(super) fn kind_of_probing(&mut self, event: &Event<'_>, from: &Point3<f64>) -> MotionKind {
-        let is_cutter = self.machine.kind_of(self.setup.tool).is_some();
+        let is_cutter = self.machine.kind_of(self.setup.tool).is_some() && !self.is_probe();
         match self.metal.uncut(&[*from, self.pose.tip]) {
             Some(_) if is_cutter => MotionKind::Feed,
             Some(_) => {
@@ -30,6 +36,41 @@ impl HoleExtractor<'_> {
             }
             None => MotionKind::Probe,
         }
+    }
+
+    /// Returns true for a tool that the machine file gives as a touch probe: it cuts nothing, and its feeds only position it.
+    pub(super) fn is_probe(&self) -> bool {
+        self.machine.kind_of(self.setup.tool) == Some(ToolKind::Probe)
+    }
+
+    /// Returns the kind of a feed or a rapid of a touch probe: neither, where it is fed or moves in a pocket. A feed through metal
+    /// that has to stay is reported; in a pocket that nothing has milled the blank may be open.
+    pub(super) fn kind_of_probe_motion(
+        &mut self,
+        event: &Event<'_>,
+        kind: MotionKind,
+        from: &Point3<f64>,
+    ) -> MotionKind {
+        let travel = [*from, self.pose.tip];
+        let kept = self.metal.gouge(&travel, FeedPart::Tip);
+        match kept.filter(|_| kind == MotionKind::Feed) {
+            Some(PointInMetal { point, depth }) => {
+                let probe = tool_name(self.setup.tool);
+                self.findings.add(&FEED_BESIDE_HOLE, &event.backtrace(), 3, |kind| {
+                    let point = format_point(&point);
+                    let message =
+                        format!("{probe} is a probe and is fed {depth:.3} mm into the metal at {point}");
+                    Diagnostic::new(kind, message)
+                        .help("G31 stops at the surface; lead other feeds of a probe through the air")
+                });
+            }
+            None if kept.is_none() && self.metal.uncut(&travel).is_some() => {
+                self.probes_in_metal.count(|| event.backtrace());
+                return MotionKind::Probe;
+            }
+            None => {}
+        }
+        if kind == MotionKind::Feed { MotionKind::Probe } else { kind }
     }
 
     /// Returns true if the tool comes from where a probing move without a signal has left it in the metal: a real probe stands

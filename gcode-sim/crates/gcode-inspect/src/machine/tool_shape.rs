@@ -23,6 +23,8 @@ pub enum ToolKind {
     BoringBar,
     /// Tap.
     Tap,
+    /// Touch probe, which cuts nothing.
+    Probe,
 }
 
 /// End of a tool.
@@ -38,7 +40,7 @@ pub(crate) enum PointShape {
 
 impl ToolKind {
     /// Kinds with their names in the machine file.
-    pub(crate) const NAMES: [(&'static str, Self); 8] = [
+    pub(crate) const NAMES: [(&'static str, Self); 9] = [
         ("drill", Self::Drill),
         ("spot-drill", Self::SpotDrill),
         ("countersink", Self::Countersink),
@@ -47,6 +49,7 @@ impl ToolKind {
         ("reamer", Self::Reamer),
         ("boring-bar", Self::BoringBar),
         ("tap", Self::Tap),
+        ("probe", Self::Probe),
     ];
 
     /// Returns the name in the machine file.
@@ -69,6 +72,7 @@ impl ToolKind {
             }
             Self::Reamer => matches!(feature, FeatureKind::Drill | FeatureKind::Ream),
             Self::Tap => feature == FeatureKind::Tap,
+            Self::Probe => false,
         }
     }
 }

@@ -126,7 +126,7 @@ pub(super) fn list(
             &extraction.probes_in_metal,
             "what probing moves touch",
             "move",
-            "G31 leads through metal up to its signal",
+            "G31 leads through metal up to its signal, or a probe moves in a pocket that no feed has milled",
         ),
         (
             &extraction.probes_without_signal,
