@@ -6,7 +6,11 @@ use super::arc_run::{PartArc, Ring};
 use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
-use gcode_part::{MAX_EDGE_BREAK, exceeds};
+use super::swept_tool::ring as directions;
+use gcode_part::{MAX_EDGE_BREAK, Taper, exceeds};
+
+/// Number of directions in which the cone of a mill is compared with a pocket.
+const CONE_SPOKES: u32 = 64;
 
 impl Engagement {
     /// Returns the circles of one hole among some rings; `None` without a ring, and if their axes differ in direction. A
@@ -131,14 +135,44 @@ impl HoleExtractor<'_> {
         let radius = ring.radius + cutter.unwrap_or(0.0) / 2.0;
         let mut height = self.metal.removed.height_of_metal(&ring.centre, &ring.out);
         if let Some(axis) = self.strokes.nominal_of_ring(ring, true) {
-            if axis.radius.is_none_or(|own| radius <= own + MAX_EDGE_BREAK) {
-                return false;
+            let Some(own) = axis.radius.filter(|own| own + MAX_EDGE_BREAK < radius) else { return false };
+            if self.tool_body.iter().any(|part| part.is_cutter && 0.0 < part.taper.slope) {
+                return self.is_cone_in_pocket(ring, own);
             }
             let edges = self.tool_body.iter().filter(|part| part.is_cutter).map(|part| part.to);
             height = edges.reduce(f64::max).map_or(height, |edges| height.min(edges));
         }
         let up = ring.out.into_inner() * height;
         self.is_round_in_pocket(&[ring.centre, ring.centre + up], &ring.out, radius)
+    }
+
+    /// Returns true if a pocket holds all metal that a pointed mill removes beside a nominal hole of a radius on its circle, and that
+    /// is more than an edge break.
+    fn is_cone_in_pocket(&self, ring: &Ring, own: f64) -> bool {
+        let out = ring.out.into_inner();
+        let spokes = directions(&ring.out, &Vector3::zeros(), 1.0, CONE_SPOKES);
+        let mut widest = 0.0f64;
+        let mut is_inside = true;
+        for part in self.tool_body.iter().filter(|part| part.is_cutter) {
+            let Taper { slope, .. } = part.taper;
+            let wide = |height: f64| ring.radius + part.taper.at(height);
+            // Below this height the part is inside the hole.
+            let begin = match wide(part.from) < own {
+                true if slope == 0.0 => continue,
+                true => part.from + (own - wide(part.from)) / slope,
+                false => part.from,
+            };
+            let end = part.to.min(self.metal.removed.height_of_metal(&ring.centre, &ring.out));
+            if end <= begin {
+                continue;
+            }
+            widest = widest.max(wide(end));
+            is_inside &= spokes.iter().all(|spoke| {
+                let line = [begin, end].map(|height| ring.centre + spoke * wide(height) + out * height);
+                self.metal.is_in_pocket(&line)
+            });
+        }
+        is_inside && own + MAX_EDGE_BREAK < widest
     }
 
     /// Returns true if a circle is at a nominal hole and cuts its wall; round it the circle mills something else.

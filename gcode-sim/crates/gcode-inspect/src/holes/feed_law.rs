@@ -393,7 +393,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the gouge of the current line, in the metal before it.
-    fn plunge_gouge(&self, line: &CuttingLine) -> Option<Gouge> {
+    pub(super) fn plunge_gouge(&self, line: &CuttingLine) -> Option<Gouge> {
         let Plunge { travel, axis, before } =
             self.plunge.filter(|_| line.cutting_state.tool == self.setup.tool)?;
         let is_allowed = self.metal.is_allowed(&travel, &axis, &self.flat_tool());

@@ -195,12 +195,14 @@ impl HoleExtractor<'_> {
         if is_judged && is_followed && !self.has_gouged(line) {
             return;
         }
+        let note = self.plunge_gouge(line).filter(|_| is_judged).and_then(|gouge| self.pocket_note(gouge));
         self.gouge_count += u32::from(is_judged);
         let findings = if is_judged { &mut self.findings } else { &mut self.engagement.errors };
         findings.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
             let message =
                 format!("the feed ends {depth:.3} mm inside the part and the tool does not retract along it");
-            Diagnostic::new(kind, message).help(match line.tool_axis {
+            let finding = note.into_iter().fold(Diagnostic::new(kind, message), Diagnostic::note);
+            finding.help(match line.tool_axis {
                 None => {
                     "if it mills, give [head] in the machine file: without the direction of the tool each feed into the \
                      part counts as a hole; else retract along the hole before anything else moves"

@@ -31,9 +31,23 @@ pub struct Finding {
     pub hole: Option<String>,
     /// The block of the finding.
     pub from: Option<Origin>,
+    /// Further blocks, such as the first cut with a wrong length offset.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub labels: Vec<BlockLabel>,
     /// For a finding on flutes: positions on the part, the worst first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sites: Vec<PartPoint>,
+}
+
+/// A further block of a finding.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct BlockLabel {
+    /// The program of the block.
+    pub program: String,
+    /// The block's line.
+    pub line: u32,
+    /// What the block does.
+    pub text: String,
 }
 
 /// A position on the part, mm.
@@ -58,6 +72,10 @@ pub(super) fn finding_of(
     from_motion: bool,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Finding {
+    let label = |(span, text): &(Span, String)| {
+        let (program, line) = locate(*span);
+        BlockLabel { program, line, text: text.clone() }
+    };
     Finding {
         kind: finding.kind,
         code: finding.code(),
@@ -68,6 +86,7 @@ pub(super) fn finding_of(
         from_motion,
         hole: hole.map(str::to_owned),
         from: finding.backtrace.as_ref().map(|backtrace| origin(backtrace.block, None, locate)),
+        labels: finding.labels.iter().map(label).collect(),
         sites: finding.sites.iter().map(Into::into).collect(),
     }
 }

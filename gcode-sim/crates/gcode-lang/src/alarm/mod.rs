@@ -67,6 +67,11 @@ pub enum Alarm {
         /// Letter of the address.
         letter: char,
     },
+    /// A number has two signs.
+    TwoSigns {
+        /// Letter of the address.
+        letter: char,
+    },
     /// A system variable does not allow a negative value.
     NegativeVariable {
         /// Number of the variable.
