@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
-use super::cutting::{CuttingState, PeckExtent};
+use super::cutting::{CuttingState, PeckExtent, RecordedCut};
 use super::strokes::MIN_TOOL_COSINE;
 use crate::findings::{TOOL_CUTS_NOTHING, TOOL_KIND};
 use crate::machine::{TOUCH_DEPTH, tool_name};
@@ -79,9 +79,14 @@ impl HoleExtractor<'_> {
             let [least, most] = range.unwrap_or([rate.0; 2]);
             self.milling.rates.insert(key, [least.min(rate.0), most.max(rate.0)]);
             self.check_tool_changed(&backtrace, &state);
-            let feeds = ([rate, rate], [(rate, state.speed); 2]);
-            let origin = self.offset_origin.as_ref();
-            self.cut_conditions.add(&backtrace, &state, false, feeds, PeckExtent::default(), origin);
+            self.cut_conditions.add(RecordedCut {
+                backtrace: &backtrace,
+                state: &state,
+                is_tapping: false,
+                feeds: ([rate, rate], [(rate, state.speed); 2]),
+                pecks: PeckExtent::default(),
+                offset_origin: self.offset_origin.as_ref(),
+            });
         }
     }
 

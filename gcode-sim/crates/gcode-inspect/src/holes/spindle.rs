@@ -93,6 +93,8 @@ fn cycles_of(kind: Option<ToolKind>) -> &'static str {
         Some(ToolKind::Counterbore | ToolKind::Countersink | ToolKind::EndMill) => {
             "sink with G82 or G81, or in single blocks"
         }
-        Some(ToolKind::Drill | ToolKind::SpotDrill | ToolKind::Tap) | None => "drill with G81, G82, G83 or G73",
+        Some(ToolKind::Drill | ToolKind::SpotDrill | ToolKind::Tap) | None => {
+            "drill with G81, G82, G83 or G73"
+        }
     }
 }

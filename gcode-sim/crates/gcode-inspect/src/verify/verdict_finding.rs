@@ -118,3 +118,24 @@ pub(super) fn origin(block: Span, tool: Option<u32>, locate: &dyn Fn(Span) -> (S
     let (program, line) = locate(block);
     Origin { program, line, tool }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::findings::LENGTH_OFFSET;
+    use gcode_lang::source::SourceId;
+
+    /// A finding at line 3 with a second block at line 7.
+    #[test]
+    fn the_second_place_of_a_finding_is_data() {
+        let at = |start| Span { source: SourceId(0), start, end: start };
+        let locate = |span: Span| ("O1".to_owned(), span.start);
+        let finding =
+            Diagnostic::new(&LENGTH_OFFSET, "T1 cuts with H2").label(at(7), "the first cut with it");
+        let data = finding_of(&finding, None, true, &locate);
+        let labels: Vec<_> =
+            data.labels.iter().map(|l| (l.program.as_str(), l.line, l.text.as_str())).collect();
+        assert_eq!(labels, [("O1", 7, "the first cut with it")]);
+        assert!(finding_of(&Diagnostic::new(&LENGTH_OFFSET, ""), None, true, &locate).labels.is_empty());
+    }
+}

@@ -399,10 +399,7 @@ mod tests {
 
     #[test]
     fn impossible_numbers_have_a_remedy() {
-        assert_eq!(
-            help(Alarm::TwoSigns { letter: 'Z' }, "G00 Z--5", "-5"),
-            "write one sign: Z-5, or Z-[-5]"
-        );
+        assert_eq!(help(Alarm::TwoSigns { letter: 'Z' }, "G00 Z--5", "-5"), "write one sign: Z-5, or Z-[-5]");
         assert_eq!(help(Alarm::DivideByZero, "#1=10/0", "10/0"), "correct the divisor: it is written as 0");
         assert!(help(Alarm::DivideByZero, "#1=10/#2", "10/#2").contains("vacant"));
         let small = |radius: f64| Alarm::RadiusTooSmall { radius, half_chord: 5.0 };
