@@ -69,25 +69,27 @@ impl Engagement {
 
 impl HoleExtractor<'_> {
     /// Returns the circles of each hole that the engagement mills. A path that leads beyond its circles mills something larger
-    /// than a hole, unless nominal holes are at them.
-    pub(super) fn hole_circles(&self) -> Vec<HoleCircles> {
+    /// than a hole, unless nominal holes are at them. The second value is true if circles are left out because pockets hold them.
+    pub(super) fn hole_circles(&self) -> (Vec<HoleCircles>, bool) {
         let engagement = &self.engagement;
         let cutter = self.machine.diameter_of(self.setup.tool);
         if engagement.rings.is_empty() || engagement.is_full() {
-            return Vec::new();
+            return (Vec::new(), false);
         }
         let all: Vec<&Ring> = engagement.rings.iter().collect();
         let is_along_tool =
             |ring: &&Ring| self.pose.axis.as_ref().is_none_or(|axis| MIN_AXIS_COSINE <= axis.dot(&ring.out));
         if !all.iter().all(is_along_tool) {
-            return Vec::new();
+            return (Vec::new(), false);
         }
         let (threads, rings): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|ring| ring.helix.is_some_and(|helix| helix.is_thread));
         let mut holes = self.bored_holes(rings, cutter);
+        let count = holes.len();
         holes.retain(|circles| !self.is_in_pocket(&circles.widest, cutter));
+        let has_pocket = holes.len() < count;
         holes.extend(self.thread_turns(threads, cutter));
-        holes
+        (holes, has_pocket)
     }
 
     /// Returns the turns at nominal threads; a turn along a thread cuts no hole. Of several at one thread the widest decides how far
