@@ -191,7 +191,7 @@ impl NominalAxes {
         self.nearest_of(pass, out, within, |_| true).map(|(index, distance)| (&self.axes[index], distance))
     }
 
-    /// Returns the entry of the nearest hole below whose entry, and above whose bottom, a pass begins; `None` above `within` mm.
+    /// Returns the entry of the nearest hole in which a pass begins; `None` above `within` mm.
     pub fn entered(
         &self,
         pass: [&Point3<f64>; 2],

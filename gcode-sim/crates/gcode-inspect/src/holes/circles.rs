@@ -148,8 +148,8 @@ impl HoleExtractor<'_> {
         self.is_round_in_pocket(&[ring.centre, ring.centre + up], &ring.out, radius)
     }
 
-    /// Returns true if a pocket holds all metal that a pointed mill removes beside a nominal hole of a radius on its circle, and that
-    /// is more than an edge break.
+    /// Returns true if pockets hold all that a pointed mill cuts beside a hole of a radius. A cone that only breaks the edge is
+    /// judged with the hole.
     fn is_cone_in_pocket(&self, ring: &Ring, own: f64) -> bool {
         let out = ring.out.into_inner();
         let spokes = directions(&ring.out, &Vector3::zeros(), 1.0, CONE_SPOKES);

@@ -36,8 +36,8 @@ impl KnownMetal {
         is_in_box || self.hole_around(&base, axis, part).is_some()
     }
 
-    /// Returns true if all metal of a cylinder about the tool, from its lower end by `up`, is in a round pocket: along its axis, or
-    /// across a round body that the pocket holds between its ends.
+    /// Returns true if a cylinder about the tool, as high as `up`, is in a round pocket wherever there is metal. The tool stands along the
+    /// pocket, or across a round body that the pocket holds between its ends.
     fn is_in_rod(&self, pocket: &Rod, base: &[Point3<f64>; 2], up: Vector3<f64>, radius: f64) -> bool {
         let out = pocket.axis.into_inner();
         let from_axis = |p: &Point3<f64>| {
