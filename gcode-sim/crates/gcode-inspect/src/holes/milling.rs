@@ -11,14 +11,17 @@ use crate::machine::{TOUCH_DEPTH, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
 
+/// State of a cut, and the selected tool.
+type MillingKey = ([u64; 4], Option<u32>);
+
 /// Feeds of mills so far.
 #[derive(Debug, Default)]
 pub(super) struct Milling {
     /// Slowest and fastest rate at which tools have milled in each state of the cut with each selected tool. A rate is judged at
     /// its block unless it lies between them.
-    rates: BTreeMap<([u64; 4], Option<u32>), [f64; 2]>,
+    rates: BTreeMap<MillingKey, [f64; 2]>,
     /// Path of the last feed across that was searched and met no metal, with its state.
-    clear: Option<(([u64; 4], Option<u32>), Vec<Point3<f64>>)>,
+    clear: Option<(MillingKey, Vec<Point3<f64>>)>,
     /// First feed across of each tool that has met no metal so far; `None` once it has cut.
     idle: BTreeMap<Option<u32>, Option<Backtrace>>,
 }
@@ -30,7 +33,7 @@ impl Milling {
     }
 
     /// Returns true if a path is beside one that met no metal by no more than a thickness that counts as none.
-    fn is_known_clear(&self, key: &([u64; 4], Option<u32>), path: &[Point3<f64>]) -> bool {
+    fn is_known_clear(&self, key: &MillingKey, path: &[Point3<f64>]) -> bool {
         self.clear.as_ref().is_some_and(|(state, known)| {
             let is_near = |(one, other): (&Point3<f64>, &Point3<f64>)| (one - other).norm() <= TOUCH_DEPTH;
             state == key && known.len() == path.len() && known.iter().zip(path).all(is_near)

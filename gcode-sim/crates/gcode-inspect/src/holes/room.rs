@@ -45,7 +45,8 @@ impl KnownMetal {
             (from_base - out * from_base.dot(&out)).norm()
         };
         let rise = up.dot(&out);
-        let across = radius * (1.0 - (rise / up.norm()).powi(2)).max(0.0).sqrt();
+        let slope = rise / up.norm();
+        let across = radius * (1.0 - slope * slope).max(0.0).sqrt();
         let is_along = up.cross(&out).norm() <= NOISE * up.norm();
         let is_held = match self.body {
             _ if is_along => base.iter().all(|p| from_axis(p) + radius - TOUCH_DEPTH <= pocket.radius),

@@ -497,9 +497,3 @@ impl Alarm {
         Box::new(Spanned::new(self, span))
     }
 }
-
-impl std::fmt::Display for Alarm {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.row().message)
-    }
-}

@@ -171,3 +171,9 @@ fn not_found(what: String, read_error: &Option<String>) -> String {
         None => format!("{what} is not found"),
     }
 }
+
+impl std::fmt::Display for Alarm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.row().message)
+    }
+}
