@@ -265,6 +265,33 @@ fn rapids_across_passes(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
         .bench_local(|| simulate(&request, &mut NoLibrary, metal.clone()).expect("there is a program"));
 }
 
+/// Chords that cross each other in one pocket.
+const CHORDS: [u32; 3] = [1_250, 2_500, 5_000];
+
+/// Follows chords through what all chords before them have removed.
+#[divan::bench(args = CHORDS, sample_count = 5, sample_size = 1)]
+fn chords_across_each_other(bencher: divan::Bencher<'_, '_>, count: u32) {
+    let mut text = "O1\nG21 G17 G40 G49 G54 G80 G90 G94\nT2 M06\nS6000 M03\nG43 H2 Z50.\nG0 X20. Y20.\nZ1.\nG1 Z-3. F500.\n"
+        .to_owned();
+    let mut numbers = spread(11);
+    for _ in 0..count {
+        let [x, y] = std::array::from_fn(|_| numbers.next().unwrap_or_default());
+        writeln!(text, "X{:.1} Y{:.1}", 20.0 + 360.0 * x, 20.0 + 190.0 * y)
+            .expect("a string can be written to");
+    }
+    text.push_str("G0 Z50.\nM30\n");
+    let metal = Metal {
+        body: Some(Surface::Block { min: [0.0, 0.0, -20.0].into(), max: [400.0, 300.0, 0.0].into() }),
+        entries: Some(Arc::new(EntryPlanes::of(&[hole_beside()], 0.1))),
+        pockets: vec![Surface::Block { min: [0.0, 0.0, -5.0].into(), max: [400.0, 230.0, 1.0].into() }],
+    };
+    let machine = Machine::parse(MILL).expect("the machine file is valid");
+    let request = Request::new("O1.nc", text.into_bytes(), machine);
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| simulate(&request, &mut NoLibrary, metal.clone()).expect("there is a program"));
+}
+
 /// Returns a hole beside all milling.
 fn hole_beside() -> Hole {
     Hole {

@@ -127,6 +127,7 @@ fn depends_on_words_alone(alarm: &Alarm) -> bool {
         alarm,
         Alarm::IllegalPoint { .. }
             | Alarm::IllegalMinus { .. }
+            | Alarm::TwoSigns { .. }
             | Alarm::TooManyDigits
             | Alarm::ImproperAddress { .. }
             | Alarm::MissingWord { .. }

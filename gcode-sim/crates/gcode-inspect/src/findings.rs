@@ -68,7 +68,7 @@ gcode_lang::finding_kinds! {
     ROW_SEAM = "row-seam", Error, "the last row does not meet the first";
     ROW_SHORT = "row-short", Error, "all rows of a honeycomb end too early";
     SECOND_START = "second-start", Warning, "the second start of the program makes other holes";
-    SPINDLE_IN_HOLE = "spindle-in-hole", Error, "the spindle stops or reverses while a drill is in the hole";
+    SPINDLE_IN_HOLE = "spindle-in-hole", Error, "the spindle stops or reverses while a tool is in the hole";
     SPINDLE_REVERSED = "spindle-reversed", Error, "the spindle turns against the hand of the tool";
     SPINDLE_STOPPED = "spindle-stopped", Error, "a feed with the spindle stopped";
     START_UNKNOWN = "start-unknown", Error, "a cut with an axis at an unknown position";

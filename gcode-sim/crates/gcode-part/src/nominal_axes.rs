@@ -31,6 +31,8 @@ pub struct NominalAxis {
     pub entry: Point3<f64>,
     /// Direction out of the part.
     pub out: Vector3<f64>,
+    /// Depth of the hole, mm.
+    pub depth: f64,
     /// Distance to the nearest parallel axis, mm; infinite from 1 mm on.
     pub spacing: f64,
     /// Radius of the hole at its widest, mm; `None` if unknown.
@@ -103,6 +105,7 @@ impl NominalAxes {
         let axis = |hole: &Hole| NominalAxis {
             entry: hole.entry.into(),
             out: hole.axis.into(),
+            depth: hole.depth,
             spacing: f64::INFINITY,
             radius: hole.widest_diameter().map(|diameter| diameter / 2.0),
             thread: NominalThread::of(hole),
@@ -186,6 +189,20 @@ impl NominalAxes {
         within: f64,
     ) -> Option<(&NominalAxis, f64)> {
         self.nearest_of(pass, out, within, |_| true).map(|(index, distance)| (&self.axes[index], distance))
+    }
+
+    /// Returns the entry of the nearest hole in which a pass begins; `None` above `within` mm.
+    pub fn entered(
+        &self,
+        pass: [&Point3<f64>; 2],
+        out: &Unit<Vector3<f64>>,
+        within: f64,
+    ) -> Option<Point3<f64>> {
+        let begins_in = |axis: &NominalAxis| {
+            let depth = (axis.entry - pass[0]).dot(&axis.out);
+            MIN_DEPTH < depth && depth < axis.depth
+        };
+        self.nearest_of(pass, out, within, begins_in).map(|(index, _)| self.axes[index].entry)
     }
 
     /// Returns the nearest axis of a hole whose entry is above the bottom of a pass; `None` above `within` mm.
@@ -357,6 +374,12 @@ mod tests {
             axes.nearest_above([&at, &at], &Vector3::z_axis(), 1.0).is_some()
         };
         assert!(above(-0.02) && !above(-0.005) && !above(1.0), "the entry is at 0");
+        let entered = |z: f64| {
+            let (start, bottom) = (Point3::new(0.0, 0.0, z), Point3::new(0.0, 0.0, z - 2.0));
+            axes.entered([&start, &bottom], &Vector3::z_axis(), 0.4).map(|entry| entry.z)
+        };
+        assert_eq!([entered(-9.9), entered(-0.02)], [Some(0.0); 2], "10 deep");
+        assert_eq!([entered(-10.0), entered(0.0)], [None; 2], "at the bottom, and at the entry");
     }
 
     /// Φ12×5 over Φ6 from there to 15: a Φ12 that goes to 5.3 is the step's, an Φ8 to 5.05 too, and to 5.2 it is the hole's.

@@ -1,6 +1,9 @@
 //! Convex bodies with flat faces: the distance of their farthest face, and the exact distance.
 use nalgebra::{Point3, Unit, Vector3};
 
+/// Rounding by which a line that touches a box is beside it, mm.
+const TANGENT: f64 = 1e-12;
+
 /// Distance from a surface, and the normal at the nearest point of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
@@ -17,6 +20,27 @@ pub(super) fn block_face(min: &Point3<f64>, max: &Point3<f64>, p: &Point3<f64>) 
     let mut normal = Vector3::zeros();
     normal[axis] = sign;
     (value, normal)
+}
+
+/// Returns the length along a line at which it leaves a box; `None` if it passes beside it.
+pub(super) fn block_exit(
+    min: &Point3<f64>,
+    max: &Point3<f64>,
+    on: &Point3<f64>,
+    out: &Vector3<f64>,
+) -> Option<f64> {
+    let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
+    for i in 0..3 {
+        if out[i].abs() < f64::MIN_POSITIVE {
+            if (min[i] - on[i]).max(on[i] - max[i]) > TANGENT {
+                return None;
+            }
+            continue;
+        }
+        let (one, other) = ((min[i] - on[i]) / out[i], (max[i] - on[i]) / out[i]);
+        (enters, leaves) = (enters.max(one.min(other)), leaves.min(one.max(other)));
+    }
+    (enters - TANGENT <= leaves).then_some(leaves)
 }
 
 /// Returns the distance of `p` from a box.
@@ -253,6 +277,20 @@ mod tests {
 
     use super::*;
     use crate::Surface;
+
+    /// A box from 0 to 10 in each direction. The line through (2, 5, 5) along (0.6, 0.8, 0) leaves it at y = 10, 5/0.8 along; the
+    /// one through (−1, 5, 5) along y passes 1 mm beside it, that through (0, 50, 5) along its face.
+    #[test]
+    fn a_line_leaves_a_box_or_passes_beside_it() {
+        let (min, max) = (Point3::origin(), Point3::new(10.0, 10.0, 10.0));
+        let exit = |p: [f64; 3], out: [f64; 3]| block_exit(&min, &max, &Point3::from(p), &Vector3::from(out));
+        assert!((exit([2.0, 5.0, 5.0], [0.6, 0.8, 0.0]).unwrap() - 6.25).abs() < 1e-12);
+        assert_eq!(exit([-1.0, 5.0, 5.0], [0.0, 1.0, 0.0]), None);
+        assert_eq!(exit([0.0, 50.0, 5.0], [0.0, 1.0, 0.0]), Some(-40.0), "behind the point");
+        // Through the edge at (10, 0), and 0.001 beside it.
+        assert!((exit([9.0, -1.0, 5.0], [0.6, 0.6, 0.0]).unwrap() - 1.0 / 0.6).abs() < 1e-12);
+        assert_eq!(exit([9.001, -1.0, 5.0], [0.6, 0.6, 0.0]), None);
+    }
 
     fn bodies() -> [Surface; 2] {
         let block =

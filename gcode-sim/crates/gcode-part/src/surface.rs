@@ -2,7 +2,9 @@
 //! gradients.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::solid::{Rod, Taper, block_face, block_span, either, sag, shares_between, shares_within};
+use super::solid::{
+    Rod, Taper, block_exit, block_face, block_span, either, sag, shares_between, shares_within,
+};
 
 /// A convex body; lengths in mm, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +86,9 @@ impl Surface {
     /// Returns the point where a line leaves the body towards `out`; `None` if it misses the body.
     pub fn exit(&self, on: &Point3<f64>, out: &Unit<Vector3<f64>>) -> Option<Point3<f64>> {
         let at = |t: f64| on + out.into_inner() * t;
+        if let Self::Block { min, max } = self {
+            return block_exit(min, max, on, out).map(at);
+        }
         // From a point inside the body a line has one exit.
         let inside = if self.value(on) < 0.0 { 0.0 } else { self.innermost(on, out) };
         // A tangent line meets the body: the remaining value is rounding.

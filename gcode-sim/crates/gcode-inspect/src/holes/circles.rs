@@ -6,7 +6,11 @@ use super::arc_run::{PartArc, Ring};
 use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
-use gcode_part::{MAX_EDGE_BREAK, exceeds};
+use super::swept_tool::ring as directions;
+use gcode_part::{MAX_EDGE_BREAK, Taper, exceeds};
+
+/// Number of directions in which the cone of a mill is compared with a pocket.
+const CONE_SPOKES: u32 = 64;
 
 impl Engagement {
     /// Returns the circles of one hole among some rings; `None` without a ring, and if their axes differ in direction. A
@@ -65,25 +69,27 @@ impl Engagement {
 
 impl HoleExtractor<'_> {
     /// Returns the circles of each hole that the engagement mills. A path that leads beyond its circles mills something larger
-    /// than a hole, unless nominal holes are at them.
-    pub(super) fn hole_circles(&self) -> Vec<HoleCircles> {
+    /// than a hole, unless nominal holes are at them. The second value is true if circles are left out because pockets hold them.
+    pub(super) fn hole_circles(&self) -> (Vec<HoleCircles>, bool) {
         let engagement = &self.engagement;
         let cutter = self.machine.diameter_of(self.setup.tool);
         if engagement.rings.is_empty() || engagement.is_full() {
-            return Vec::new();
+            return (Vec::new(), false);
         }
         let all: Vec<&Ring> = engagement.rings.iter().collect();
         let is_along_tool =
             |ring: &&Ring| self.pose.axis.as_ref().is_none_or(|axis| MIN_AXIS_COSINE <= axis.dot(&ring.out));
         if !all.iter().all(is_along_tool) {
-            return Vec::new();
+            return (Vec::new(), false);
         }
         let (threads, rings): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|ring| ring.helix.is_some_and(|helix| helix.is_thread));
         let mut holes = self.bored_holes(rings, cutter);
+        let count = holes.len();
         holes.retain(|circles| !self.is_in_pocket(&circles.widest, cutter));
+        let has_pocket = holes.len() < count;
         holes.extend(self.thread_turns(threads, cutter));
-        holes
+        (holes, has_pocket)
     }
 
     /// Returns the turns at nominal threads; a turn along a thread cuts no hole. Of several at one thread the widest decides how far
@@ -131,14 +137,44 @@ impl HoleExtractor<'_> {
         let radius = ring.radius + cutter.unwrap_or(0.0) / 2.0;
         let mut height = self.metal.removed.height_of_metal(&ring.centre, &ring.out);
         if let Some(axis) = self.strokes.nominal_of_ring(ring, true) {
-            if axis.radius.is_none_or(|own| radius <= own + MAX_EDGE_BREAK) {
-                return false;
+            let Some(own) = axis.radius.filter(|own| own + MAX_EDGE_BREAK < radius) else { return false };
+            if self.tool_body.iter().any(|part| part.is_cutter && 0.0 < part.taper.slope) {
+                return self.is_cone_in_pocket(ring, own);
             }
             let edges = self.tool_body.iter().filter(|part| part.is_cutter).map(|part| part.to);
             height = edges.reduce(f64::max).map_or(height, |edges| height.min(edges));
         }
         let up = ring.out.into_inner() * height;
         self.is_round_in_pocket(&[ring.centre, ring.centre + up], &ring.out, radius)
+    }
+
+    /// Returns true if pockets hold all that a pointed mill cuts beside a hole of a radius. A cone that only breaks the edge is
+    /// judged with the hole.
+    fn is_cone_in_pocket(&self, ring: &Ring, own: f64) -> bool {
+        let out = ring.out.into_inner();
+        let spokes = directions(&ring.out, &Vector3::zeros(), 1.0, CONE_SPOKES);
+        let mut widest = 0.0f64;
+        let mut is_inside = true;
+        for part in self.tool_body.iter().filter(|part| part.is_cutter) {
+            let Taper { slope, .. } = part.taper;
+            let wide = |height: f64| ring.radius + part.taper.at(height);
+            // Below this height the part is inside the hole.
+            let begin = match wide(part.from) < own {
+                true if slope == 0.0 => continue,
+                true => part.from + (own - wide(part.from)) / slope,
+                false => part.from,
+            };
+            let end = part.to.min(self.metal.removed.height_of_metal(&ring.centre, &ring.out));
+            if end <= begin {
+                continue;
+            }
+            widest = widest.max(wide(end));
+            is_inside &= spokes.iter().all(|spoke| {
+                let line = [begin, end].map(|height| ring.centre + spoke * wide(height) + out * height);
+                self.metal.is_in_pocket(&line)
+            });
+        }
+        is_inside && own + MAX_EDGE_BREAK < widest
     }
 
     /// Returns true if a circle is at a nominal hole and cuts its wall; round it the circle mills something else.

@@ -85,20 +85,27 @@ impl CuttingState {
     }
 }
 
+/// Cut of one block: what is recorded of it.
+#[derive(Debug)]
+pub(super) struct RecordedCut<'c> {
+    pub backtrace: &'c Backtrace,
+    pub state: &'c CuttingState,
+    pub is_tapping: bool,
+    /// Slowest and fastest feed, and those that cut least and most in a revolution with their speeds.
+    pub feeds: ([MmPerMin; 2], [FeedAtSpeed; 2]),
+    pub pecks: PeckExtent,
+    /// Block that puts the length offset in force.
+    pub offset_origin: Option<&'c OffsetOrigin>,
+}
+
 /// Conditions by block and state, in order of first occurrence.
 #[derive(Debug, Default)]
 pub(super) struct CutConditionsByBlock(PerBlock<([u64; 4], bool, [u64; 2]), CutConditions>);
 
 impl CutConditionsByBlock {
-    pub(super) fn add(
-        &mut self,
-        backtrace: &Backtrace,
-        state: &CuttingState,
-        is_tapping: bool,
-        (feed_range, extremes): ([MmPerMin; 2], [FeedAtSpeed; 2]),
-        pecks: PeckExtent,
-        offset_origin: Option<&OffsetOrigin>,
-    ) {
+    pub(super) fn add(&mut self, cut: RecordedCut<'_>) {
+        let RecordedCut { backtrace, state, is_tapping, feeds, pecks, offset_origin } = cut;
+        let (feed_range, extremes) = feeds;
         let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;
         let key = (state.key(), is_tapping, feed_range.map(|feed| feed.0.to_bits()));
         let (_, entry) = self.0.count(backtrace.block, key, || CutConditions {

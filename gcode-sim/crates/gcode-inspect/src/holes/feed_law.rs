@@ -115,21 +115,19 @@ impl HoleExtractor<'_> {
         }
         let radius = self.tool_radius().unwrap_or(0.0);
         let is_judged = is_known && self.metal.holes.is_some();
+        let chords: Vec<(Line, Unit<Vector3<f64>>)> = path
+            .windows(2)
+            .filter_map(|pair| Some(([pair[0], pair[1]], self.axis_in_motion(&pair[0], &pair[1])?)))
+            .collect();
         if is_judged && (self.surface.is_none() || self.has_left_start) {
             self.check_milling(event, path);
-            let chords = path.windows(2).filter_map(|chord| {
-                let chord = [chord[0], chord[1]];
-                Some((chord, self.axis_in_motion(&chord[0], &chord[1])?))
-            });
-            let chords: Vec<_> = if self.metal.pockets.is_empty() { Vec::new() } else { chords.collect() };
             self.note_milled_block(event, &chords);
         }
         let is_judged = is_judged && self.gouge_count < MAX_GOUGES;
         let mut worst: Option<Gouge> = None;
         let is_deepest_wanted = self.gouge_count < MAX_MEASURED_GOUGES;
-        for chord in path.windows(2) {
-            let (from, to) = (chord[0], chord[1]);
-            let Some(axis) = self.axis_in_motion(&from, &to) else { continue };
+        for (chord, axis) in chords {
+            let [from, to] = chord;
             if !self.metal.is_touched(&from, &to, &axis, radius) {
                 continue;
             }
@@ -139,12 +137,12 @@ impl HoleExtractor<'_> {
                 self.pose.axis.is_none() && self.surface.is_some_and(|body| !body.has_flat_faces());
             // A plunge may drill a hole: the motion after it shows that.
             match is_judged && !is_unclear {
-                true if is_plunge => self.record_plunge(&[from, to], &axis),
+                true if is_plunge => self.record_plunge(&chord, &axis),
                 true if worst.is_some() && !is_deepest_wanted => {}
-                true => worst = Gouge::worse(worst, self.gouge(&[from, to], &axis, u32::MAX)),
+                true => worst = Gouge::worse(worst, self.gouge(&chord, &axis, u32::MAX)),
                 false => {}
             }
-            self.remove(&[from, to], &axis);
+            self.remove(&chord, &axis);
         }
         if is_judged && worst.is_none() {
             worst = self.shank_contact(path);
@@ -393,7 +391,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the gouge of the current line, in the metal before it.
-    fn plunge_gouge(&self, line: &CuttingLine) -> Option<Gouge> {
+    pub(super) fn plunge_gouge(&self, line: &CuttingLine) -> Option<Gouge> {
         let Plunge { travel, axis, before } =
             self.plunge.filter(|_| line.cutting_state.tool == self.setup.tool)?;
         let is_allowed = self.metal.is_allowed(&travel, &axis, &self.flat_tool());

@@ -70,6 +70,16 @@ impl HoleExtractor<'_> {
         findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
     }
 
+    /// Returns where a feed beside the stated pockets cuts; `None` without pockets.
+    pub(super) fn pocket_note(&self, Gouge { at, part }: Gouge) -> Option<String> {
+        let distance = self.metal.distance_from_pocket(&at.point)?;
+        let what = if matches!(part, ToolRegion::Tip) { "the feed" } else { "the side of the tool" };
+        let (depth, point) = (at.depth, format_point(&at.point));
+        Some(format!(
+            "{what} cuts {distance:.3} mm outside the nearest pocket, {depth:.3} mm below the surface at {point}"
+        ))
+    }
+
     /// Returns true if a point is beside a nominal hole without a diameter, and no deeper than that.
     fn is_at_open_hole(&self, p: &Point3<f64>) -> bool {
         let mut is_open = false;

@@ -183,8 +183,11 @@ fn first_on_same_line(
     for (index, pass) in passes.iter().enumerate() {
         let limit = limit_of(index);
         let margin = Vector3::repeat(limit);
-        let low = pass.cut.start.inf(&pass.cut.bottom) - margin;
-        let high = pass.cut.start.sup(&pass.cut.bottom) + margin;
+        // What begins in a nominal hole joins what is cut above it there.
+        let entered = nominal_axes.entered([&pass.cut.start, &pass.cut.bottom], &pass.axis, limit);
+        let top = entered.unwrap_or(pass.cut.start);
+        let low = pass.cut.start.inf(&pass.cut.bottom).inf(&top) - margin;
+        let high = pass.cut.start.sup(&pass.cut.bottom).sup(&top) + margin;
         groups.join(index, &low, &high, &|other| {
             let limit = limit.min(limit_of(other));
             let other = &passes[other];

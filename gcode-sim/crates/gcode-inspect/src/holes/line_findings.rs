@@ -1,7 +1,7 @@
 //! Findings about a line that was cut: no retract, a sideways exit, a feed off the tool's axis.
 use nalgebra::{Point3, Vector3};
 
-use super::cutting::{CuttingState, PeckExtent};
+use super::cutting::{CuttingState, PeckExtent, RecordedCut};
 use super::line::{CuttingLine, ToolExit};
 use super::near_metal::FeedPart;
 use super::rapids::format_point;
@@ -195,12 +195,14 @@ impl HoleExtractor<'_> {
         if is_judged && is_followed && !self.has_gouged(line) {
             return;
         }
+        let note = self.plunge_gouge(line).filter(|_| is_judged).and_then(|gouge| self.pocket_note(gouge));
         self.gouge_count += u32::from(is_judged);
         let findings = if is_judged { &mut self.findings } else { &mut self.engagement.errors };
         findings.add(&FEED_WITHOUT_RETRACT, line.backtrace(), 0, |kind| {
             let message =
                 format!("the feed ends {depth:.3} mm inside the part and the tool does not retract along it");
-            Diagnostic::new(kind, message).help(match line.tool_axis {
+            let finding = note.into_iter().fold(Diagnostic::new(kind, message), Diagnostic::note);
+            finding.help(match line.tool_axis {
                 None => {
                     "if it mills, give [head] in the machine file: without the direction of the tool each feed into the \
                      part counts as a hole; else retract along the hole before anything else moves"
@@ -315,25 +317,21 @@ impl HoleExtractor<'_> {
         self.check_clamped(backtrace, line.clamp_state);
         if let Some(feeds) = line.cutting_feeds() {
             self.milling.record_cut(line.cutting_state.tool);
-            let origin = self.offset_origin.as_ref();
-            self.cut_conditions.add(
-                backtrace,
-                &line.cutting_state,
-                line.is_tapping,
-                feeds,
-                line.pecks(),
-                origin,
-            );
-            if let Some((state, feed)) = &line.other_sense {
-                let feeds = ([*feed; 2], [(*feed, state.speed); 2]);
-                self.cut_conditions.add(
+            let is_tapping = line.is_tapping;
+            let mut add = |state, feeds, pecks| {
+                let offset_origin = self.offset_origin.as_ref();
+                self.cut_conditions.add(RecordedCut {
                     backtrace,
                     state,
-                    line.is_tapping,
+                    is_tapping,
                     feeds,
-                    PeckExtent::default(),
-                    origin,
-                );
+                    pecks,
+                    offset_origin,
+                });
+            };
+            add(&line.cutting_state, feeds, line.pecks());
+            if let Some((state, feed)) = &line.other_sense {
+                add(state, ([*feed; 2], [(*feed, state.speed); 2]), PeckExtent::default());
             }
         }
         self.check_spindle(backtrace, line);

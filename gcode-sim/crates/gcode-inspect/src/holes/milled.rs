@@ -228,7 +228,7 @@ impl HoleExtractor<'_> {
     /// Ends the engagement: its circles are passes of holes, or its feeds make none.
     pub(super) fn end_engagement(&mut self) {
         self.engagement.end_run();
-        let holes = self.hole_circles();
+        let (holes, has_pocket) = self.hole_circles();
         for circles in &holes {
             self.push_circles(circles);
         }
@@ -237,7 +237,7 @@ impl HoleExtractor<'_> {
         let errors = std::mem::take(&mut self.engagement.errors);
         if holes.is_empty() {
             for (order, pass) in unretracted {
-                self.push_unretracted(order, pass);
+                self.push_unretracted(order, pass, has_pocket);
             }
             self.report_uncounted(uncounted);
             self.findings.append(errors);
@@ -247,10 +247,12 @@ impl HoleExtractor<'_> {
     }
 
     /// Adds a stroke at a nominal hole without a retract: it makes the hole if nothing else does.
-    fn push_unretracted(&mut self, order: u32, pass: DrillPass) {
+    /// In a pocket no wall of the hole ends the path.
+    fn push_unretracted(&mut self, order: u32, pass: DrillPass, is_in_pocket: bool) {
         let (out, bottom) = (pass.axis, pass.cut.bottom);
         let top = pass.cut.start.coords.dot(&out);
-        if let Some(excess) = self.engagement.excess(&bottom, &out, 0.0, top) {
+        let excess = self.engagement.excess(&bottom, &out, 0.0, top).filter(|_| !is_in_pocket);
+        if let Some(excess) = excess {
             self.report_wall_cut(&excess, &out, &pass.backtrace);
         }
         self.strokes.push_unretracted(order, pass);

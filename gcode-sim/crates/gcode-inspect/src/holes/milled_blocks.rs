@@ -13,7 +13,7 @@ use gcode_lang::source::Span;
 const MAX_RUNS: usize = 1000;
 
 /// Number of chords after which a feed counts as milling where it leads through a pocket, cut before or not.
-const MAX_SEARCHED: u32 = 20_000;
+const MAX_SEARCHED: u32 = 2_000;
 
 /// Runs of blocks that mill, in the order of the run. A tool change, and a block of another file, begin a new one.
 #[derive(Debug, Default)]

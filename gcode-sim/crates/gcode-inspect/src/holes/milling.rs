@@ -4,19 +4,24 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
-use super::cutting::{CuttingState, PeckExtent};
+use super::cutting::{CuttingState, PeckExtent, RecordedCut};
 use super::strokes::MIN_TOOL_COSINE;
 use crate::findings::{TOOL_CUTS_NOTHING, TOOL_KIND};
-use crate::machine::tool_name;
+use crate::machine::{TOUCH_DEPTH, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
+
+/// State of a cut, and the selected tool.
+type MillingKey = ([u64; 4], Option<u32>);
 
 /// Feeds of mills so far.
 #[derive(Debug, Default)]
 pub(super) struct Milling {
     /// Slowest and fastest rate at which tools have milled in each state of the cut with each selected tool. A rate is judged at
     /// its block unless it lies between them.
-    rates: BTreeMap<([u64; 4], Option<u32>), [f64; 2]>,
+    rates: BTreeMap<MillingKey, [f64; 2]>,
+    /// Path of the last feed across that was searched and met no metal, with its state.
+    clear: Option<(MillingKey, Vec<Point3<f64>>)>,
     /// First feed across of each tool that has met no metal so far; `None` once it has cut.
     idle: BTreeMap<Option<u32>, Option<Backtrace>>,
 }
@@ -25,6 +30,14 @@ impl Milling {
     /// Records that a tool cuts.
     pub(super) fn record_cut(&mut self, tool: Option<u32>) {
         self.idle.insert(tool, None);
+    }
+
+    /// Returns true if a path is beside one that met no metal by no more than a thickness that counts as none.
+    fn is_known_clear(&self, key: &MillingKey, path: &[Point3<f64>]) -> bool {
+        self.clear.as_ref().is_some_and(|(state, known)| {
+            let is_near = |(one, other): (&Point3<f64>, &Point3<f64>)| (one - other).norm() <= TOUCH_DEPTH;
+            state == key && known.len() == path.len() && known.iter().zip(path).all(is_near)
+        })
     }
 }
 
@@ -44,7 +57,11 @@ impl HoleExtractor<'_> {
         if is_done {
             return;
         }
+        if self.milling.is_known_clear(&key, path) {
+            return;
+        }
         if !path.windows(2).any(|chord| self.mills(&chord[0], &chord[1])) {
+            self.milling.clear = (2 < path.len()).then(|| (key, path.to_vec()));
             self.record_idle_feed(event, path, &state);
             return;
         }
@@ -65,9 +82,14 @@ impl HoleExtractor<'_> {
             let [least, most] = range.unwrap_or([rate.0; 2]);
             self.milling.rates.insert(key, [least.min(rate.0), most.max(rate.0)]);
             self.check_tool_changed(&backtrace, &state);
-            let feeds = ([rate, rate], [(rate, state.speed); 2]);
-            let origin = self.offset_origin.as_ref();
-            self.cut_conditions.add(&backtrace, &state, false, feeds, PeckExtent::default(), origin);
+            self.cut_conditions.add(RecordedCut {
+                backtrace: &backtrace,
+                state: &state,
+                is_tapping: false,
+                feeds: ([rate, rate], [(rate, state.speed); 2]),
+                pecks: PeckExtent::default(),
+                offset_origin: self.offset_origin.as_ref(),
+            });
         }
     }
 

@@ -184,10 +184,11 @@ impl HoleExtractor<'_> {
                 Diagnostic::new(kind, message).help(help)
             });
         } else {
+            let note = self.turning_gouge(travel).and_then(|gouge| self.pocket_note(gouge));
             self.engagement.errors.add(&FEED_NO_HOLE, &event.backtrace(), 0, |kind| {
                 let message = format!("a curved feed cuts {depth:.3} mm into the part: not a hole");
                 let help = "drill along a straight line, or mill full circles, with the table stationary";
-                Diagnostic::new(kind, message).help(help)
+                note.into_iter().fold(Diagnostic::new(kind, message), Diagnostic::note).help(help)
             });
         }
         true

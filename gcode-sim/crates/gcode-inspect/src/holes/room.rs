@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::metal::{KnownMetal, MAX_OFFSET, SIDE_SLACK};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
-use gcode_part::{Collar, Step, Surface, Taper};
+use gcode_part::{Collar, NOISE, Rod, Step, Surface, Taper};
 
 impl KnownMetal {
     /// Returns true if a part of the tool stays in one nominal hole, or in one pocket, while the tip moves between two points.
@@ -19,8 +19,12 @@ impl KnownMetal {
             .into_iter()
             .fold(0.0, f64::max);
         let is_in_box = self.pockets.iter().any(|pocket| {
-            let Surface::Block { min, max } = pocket else { return false };
             let radius = part.radius();
+            let (min, max) = match pocket {
+                Surface::Block { min, max } => (min, max),
+                Surface::Rod(rod) => return self.is_in_rod(rod, &base, axis.into_inner() * height, radius),
+                Surface::Ellipsoid { .. } | Surface::Cylinder { .. } => return false,
+            };
             let across = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt() - TOUCH_DEPTH);
             let up = axis.into_inner() * height;
             let (low, high) = (base[0].inf(&base[1]) - across, base[0].sup(&base[1]) + across);
@@ -30,6 +34,34 @@ impl KnownMetal {
             })
         });
         is_in_box || self.hole_around(&base, axis, part).is_some()
+    }
+
+    /// Returns true if a cylinder about the tool, as high as `up`, is in a round pocket wherever there is metal. The tool stands along the
+    /// pocket, or across a round body that the pocket holds between its ends.
+    fn is_in_rod(&self, pocket: &Rod, base: &[Point3<f64>; 2], up: Vector3<f64>, radius: f64) -> bool {
+        let out = pocket.axis.into_inner();
+        let from_axis = |p: &Point3<f64>| {
+            let from_base = p - pocket.base;
+            (from_base - out * from_base.dot(&out)).norm()
+        };
+        let rise = up.dot(&out);
+        let slope = rise / up.norm();
+        let across = radius * (1.0 - slope * slope).max(0.0).sqrt();
+        let is_along = up.cross(&out).norm() <= NOISE * up.norm();
+        let is_held = match self.body {
+            _ if is_along => base.iter().all(|p| from_axis(p) + radius - TOUCH_DEPTH <= pocket.radius),
+            Some(Surface::Rod(body)) => {
+                let is_parallel = body.axis.cross(&out).norm() <= NOISE;
+                is_parallel && from_axis(&body.base) + body.radius <= pocket.radius + NOISE
+            }
+            _ => false,
+        };
+        let height = |p: &Point3<f64>| (p - pocket.base).dot(&out);
+        is_held
+            && base.iter().all(|p| {
+                let (low, high) = (height(p) - across + rise.min(0.0), height(p) + across + rise.max(0.0));
+                -TOUCH_DEPTH <= low && high <= pocket.length + TOUCH_DEPTH
+            })
     }
 
     /// Returns the nominal hole on whose axis the tip makes a stroke.

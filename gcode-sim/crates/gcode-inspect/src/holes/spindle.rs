@@ -63,8 +63,8 @@ impl HoleExtractor<'_> {
             SpindleInHole::Stopped => (
                 "stops",
                 Severity::Warning,
-                "G76, G86 and G88 stop the spindle for a boring bar; a stopped drill rubs in its hole, or breaks when \
-                 it is moved sideways",
+                "G76, G86 and G88 stop the spindle for a boring bar; another tool that stops rubs in its hole, or breaks \
+                 when it is moved sideways",
             ),
             SpindleInHole::Restarted => (
                 "stops and starts again",
@@ -76,11 +76,25 @@ impl HoleExtractor<'_> {
             }
         };
         let tool = tool_name(number);
-        self.findings.add(&SPINDLE_IN_HOLE, backtrace, line.spindle as u32, |kind| {
-            Diagnostic::new(kind, format!("the spindle {verb} while {tool} is in the hole"))
+        self.findings.add(&SPINDLE_IN_HOLE, backtrace, line.spindle as u32, |finding| {
+            Diagnostic::new(finding, format!("the spindle {verb} while {tool} is in the hole"))
                 .with_severity(severity)
                 .note(note)
-                .help("drill with G81, G82, G83 or G73")
+                .help(cycles_of(kind))
         });
+    }
+}
+
+/// Returns the remedy for a spindle that changes while a tool of a kind is in the hole: the cycles in which it turns on.
+fn cycles_of(kind: Option<ToolKind>) -> &'static str {
+    match kind {
+        Some(ToolKind::Reamer) => "ream with G85 or G81",
+        Some(ToolKind::BoringBar) => "bore with G76, G85 or G86",
+        Some(ToolKind::Counterbore | ToolKind::Countersink | ToolKind::EndMill) => {
+            "sink with G82 or G81, or in single blocks"
+        }
+        Some(ToolKind::Drill | ToolKind::SpotDrill | ToolKind::Tap) | None => {
+            "drill with G81, G82, G83 or G73"
+        }
     }
 }

@@ -2,6 +2,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
+use super::feed_law::Gouge;
 use super::near_metal::Judged;
 use super::strip::Line;
 use crate::machine::{AxisMotion, Pose};
@@ -82,14 +83,26 @@ impl HoleExtractor<'_> {
         poses.windows(2).flat_map(|pair| [chord(pair), stand(&pair[1])]).collect()
     }
 
+    /// Returns the first gouge in what has to stay on a path while an axis rotates; `None` without pockets.
+    pub(super) fn turning_gouge(&self, travel: &AxisMotion<'_>) -> Option<Gouge> {
+        if self.metal.pockets.is_empty() {
+            return None;
+        }
+        let chords = self.turning_chords(travel, CHORD_TOLERANCE)?;
+        chords.iter().find_map(|(chord, axis)| self.gouge_on_chord(chord, axis))
+    }
+
+    fn gouge_on_chord(&self, chord: &Line, axis: &Unit<Vector3<f64>>) -> Option<Gouge> {
+        let is_touched = self.metal.is_touched(&chord[0], &chord[1], axis, self.body_radius());
+        if is_touched { self.gouge(chord, axis, u32::MAX) } else { None }
+    }
+
     /// Returns true if the tool removes nothing that has to stay on a chord.
     fn is_turning_allowed(&self, chord: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) -> bool {
-        let has_gouge = self.metal.is_touched(&chord[0], &chord[1], axis, self.body_radius())
-            && self.gouge(chord, axis, u32::MAX).is_some();
         let is_touching = || {
             let mut parts = self.tool_body.iter().filter(|part| !part.is_cutter);
             parts.any(|part| self.contact_in_feed(part, axis, chord, Judged::Uncut(None)).is_some())
         };
-        !has_gouge && !is_touching()
+        self.gouge_on_chord(chord, axis).is_none() && !is_touching()
     }
 }

@@ -93,6 +93,10 @@ impl<'a> Cut<'a> {
             None if kind == ToolKind::Drill && self.point == PointShape::Flat => {
                 kind.can_make(feature) || feature == FeatureKind::Counterbore
             }
+            // An end mill with a point is a chamfer mill.
+            None if kind == ToolKind::EndMill && matches!(self.point, PointShape::Pointed(_)) => {
+                kind.can_make(feature) || feature == FeatureKind::Countersink
+            }
             None => kind.can_make(feature),
         })
     }
@@ -114,6 +118,15 @@ impl<'a> Cut<'a> {
     pub(super) fn full_depth(&self, diameter: f64) -> Option<f64> {
         let own = self.pass.diameter.unwrap_or(diameter) - 2.0 * self.path_radius();
         Some(self.tip - self.point.length(own)?)
+    }
+
+    /// Returns what the point of a mill leaves at the wall of a circle of a diameter; `None` of a flat end.
+    pub(super) fn cone_note(&self, diameter: f64) -> Option<String> {
+        let length = self.point.length(diameter - 2.0 * self.path_radius()).filter(|length| 0.0 < *length)?;
+        Some(format!(
+            "its tip goes {:.3} mm deep; the full diameter begins {length:.3} mm above the tip, behind the point",
+            self.tip
+        ))
     }
 
     /// Returns the depth of the tip; of a cone that is milled round the axis, that of the point of the whole cone.

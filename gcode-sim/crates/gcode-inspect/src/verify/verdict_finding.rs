@@ -31,9 +31,23 @@ pub struct Finding {
     pub hole: Option<String>,
     /// The block of the finding.
     pub from: Option<Origin>,
+    /// Further blocks, such as the first cut with a wrong length offset.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub labels: Vec<BlockLabel>,
     /// For a finding on flutes: positions on the part, the worst first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sites: Vec<PartPoint>,
+}
+
+/// A further block of a finding.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct BlockLabel {
+    /// The program of the block.
+    pub program: String,
+    /// The block's line.
+    pub line: u32,
+    /// What the block does.
+    pub text: String,
 }
 
 /// A position on the part, mm.
@@ -58,6 +72,10 @@ pub(super) fn finding_of(
     from_motion: bool,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Finding {
+    let label = |(span, text): &(Span, String)| {
+        let (program, line) = locate(*span);
+        BlockLabel { program, line, text: text.clone() }
+    };
     Finding {
         kind: finding.kind,
         code: finding.code(),
@@ -68,6 +86,7 @@ pub(super) fn finding_of(
         from_motion,
         hole: hole.map(str::to_owned),
         from: finding.backtrace.as_ref().map(|backtrace| origin(backtrace.block, None, locate)),
+        labels: finding.labels.iter().map(label).collect(),
         sites: finding.sites.iter().map(Into::into).collect(),
     }
 }
@@ -98,4 +117,25 @@ pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<
 pub(super) fn origin(block: Span, tool: Option<u32>, locate: &dyn Fn(Span) -> (String, u32)) -> Origin {
     let (program, line) = locate(block);
     Origin { program, line, tool }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::findings::LENGTH_OFFSET;
+    use gcode_lang::source::SourceId;
+
+    /// A finding at line 3 with a second block at line 7.
+    #[test]
+    fn the_second_place_of_a_finding_is_data() {
+        let at = |start| Span { source: SourceId(0), start, end: start };
+        let locate = |span: Span| ("O1".to_owned(), span.start);
+        let finding =
+            Diagnostic::new(&LENGTH_OFFSET, "T1 cuts with H2").label(at(7), "the first cut with it");
+        let data = finding_of(&finding, None, true, &locate);
+        let labels: Vec<_> =
+            data.labels.iter().map(|l| (l.program.as_str(), l.line, l.text.as_str())).collect();
+        assert_eq!(labels, [("O1", 7, "the first cut with it")]);
+        assert!(finding_of(&Diagnostic::new(&LENGTH_OFFSET, ""), None, true, &locate).labels.is_empty());
+    }
 }

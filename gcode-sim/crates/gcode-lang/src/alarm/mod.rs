@@ -67,6 +67,11 @@ pub enum Alarm {
         /// Letter of the address.
         letter: char,
     },
+    /// A number has two signs.
+    TwoSigns {
+        /// Letter of the address.
+        letter: char,
+    },
     /// A system variable does not allow a negative value.
     NegativeVariable {
         /// Number of the variable.
@@ -490,11 +495,5 @@ impl Alarm {
     #[cold]
     pub fn located_at(self, span: Span) -> LocatedAlarm {
         Box::new(Spanned::new(self, span))
-    }
-}
-
-impl std::fmt::Display for Alarm {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.row().message)
     }
 }

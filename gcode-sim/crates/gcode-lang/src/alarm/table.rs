@@ -39,6 +39,7 @@ impl Alarm {
             Self::ImproperAddress { letter: letter @ ('D'..='T') } => (&PS0009, format!("address {letter} is not allowed in this block"), Some("remove it, or write the code that uses it")),
             Self::ImproperAddress { letter } => (&PS0009, format!("address {letter} is not allowed in this block"), Some("check the axes of the machine file")),
             Self::ImproperGCode { code, .. } => (&PS0010, format!("the control has no G{}", two_digits(code)), None),
+            Self::TwoSigns { letter } => (&PS0006, format!("address {letter} has two signs"), Some("write one sign")),
             Self::NegativeVariable { number } => (&PS0006, format!("#{number} takes no minus sign"), None),
             Self::FeedZero => (&PS0011, "cutting feed without a feed rate".into(), Some("command F before or in this block")),
             Self::NoSpeedForFeed => (&PS0011, "cutting feed per revolution (G95) while S is 0".into(), Some("command S before or in this block, or G94 for a feed per minute")),
@@ -168,5 +169,11 @@ fn not_found(what: String, read_error: &Option<String>) -> String {
     match read_error {
         Some(read_error) => format!("{what} is not found: {read_error}"),
         None => format!("{what} is not found"),
+    }
+}
+
+impl std::fmt::Display for Alarm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.row().message)
     }
 }

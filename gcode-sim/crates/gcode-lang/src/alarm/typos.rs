@@ -255,7 +255,7 @@ fn else_case(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
 
 /// Detects `Z--5`.
 fn two_signs(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
-    let Alarm::IllegalMinus { letter } = alarm else { return None };
+    let Alarm::TwoSigns { letter } = alarm else { return None };
     let value = alarm_line.rest.strip_prefix('-').filter(|_| alarm_line.before.trim_end().ends_with('-'))?;
     let value = leading(value, |c| matches!(c, '0'..='9' | '.'));
     Some(format!("write one sign: {letter}-{value}, or {letter}-[-{value}]"))
@@ -399,10 +399,7 @@ mod tests {
 
     #[test]
     fn impossible_numbers_have_a_remedy() {
-        assert_eq!(
-            help(Alarm::IllegalMinus { letter: 'Z' }, "G00 Z--5", "-5"),
-            "write one sign: Z-5, or Z-[-5]"
-        );
+        assert_eq!(help(Alarm::TwoSigns { letter: 'Z' }, "G00 Z--5", "-5"), "write one sign: Z-5, or Z-[-5]");
         assert_eq!(help(Alarm::DivideByZero, "#1=10/0", "10/0"), "correct the divisor: it is written as 0");
         assert!(help(Alarm::DivideByZero, "#1=10/#2", "10/#2").contains("vacant"));
         let small = |radius: f64| Alarm::RadiusTooSmall { radius, half_chord: 5.0 };

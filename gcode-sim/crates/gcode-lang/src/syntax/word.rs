@@ -82,7 +82,7 @@ fn word_value<'a>(
             let (rest, name) = program_name(unsigned)?;
             Ok((rest, WordValue::Name(name)))
         }
-        Some(b'-' | b'+') => fail(unsigned, Alarm::IllegalMinus { letter: char::from(letter) }),
+        Some(b'-' | b'+') => fail(unsigned, Alarm::TwoSigns { letter: char::from(letter) }),
         _ => missing_value(behind),
     }
 }

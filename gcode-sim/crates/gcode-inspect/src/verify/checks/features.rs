@@ -369,13 +369,13 @@ impl Judgement<'_> {
             let off = cut.pass.diameter.zip(diameter).map(|(own, nominal)| (own - nominal).abs());
             off.is_some_and(|off| !exceeds(off, tolerances.diameter))
         };
-        let (cut, missed) = if let Some(tap) = deepest(self.near.iter().filter(|cut| cut.is_thread())) {
+        let (cut, missed, note) = if let Some(tap) = deepest(self.near.iter().filter(|cut| cut.is_thread())) {
             if diameter.is_none() {
                 // The depth may be that of the drill, which has to go deeper than the tap.
                 self.gaps.push(ShapeGap::Thread(tap.pass.tool));
                 return;
             }
-            (tap, depth - tap.tip)
+            (tap, depth - tap.tip, None)
         } else if let Some(sized) = deepest(self.near.iter().filter(is_sized)) {
             let is_known = self.near.iter().all(|cut| cut.pass.diameter.is_some() || cut.tip <= sized.tip);
             if !is_known {
@@ -397,9 +397,9 @@ impl Judgement<'_> {
             {
                 self.gaps.push(ShapeGap::FullDepth(sized.pass.tool));
             }
-            (sized, missed)
+            (sized, missed, sized.is_circle().then(|| sized.cone_note(own)).flatten())
         } else if let Some(widest) = widest_circle(&self.near, tolerances).filter(|_| diameter.is_some()) {
-            (widest, depth - widest.tip)
+            (widest, depth - widest.tip, None)
         } else {
             return;
         };
@@ -407,8 +407,10 @@ impl Judgement<'_> {
             return;
         }
         let verb = if cut.is_thread() { "taps" } else { "finishes" };
-        let message = format!("hole {}: {} {verb} {:.3} mm of {depth} mm", self.id, cut.name(), cut.tip);
-        let finding = Diagnostic::new(&FEATURE_DEPTH, message)
+        let made = if note.is_some() { (depth - missed).max(0.0) } else { cut.tip };
+        let message = format!("hole {}: {} {verb} {made:.3} mm of {depth} mm", self.id, cut.name());
+        let finding = note.into_iter().fold(Diagnostic::new(&FEATURE_DEPTH, message), Diagnostic::note);
+        let finding = finding
             .note("the reference gives the hole one diameter all the way down")
             .help("correct the programmed depth, or give the hole's features in the reference")
             .with_backtrace(cut.pass.backtrace.clone());
