@@ -14,6 +14,8 @@ pub struct PassCut {
     pub bottom: Point3<f64>,
     /// Feed at the deepest point; `None` if unknown.
     pub feed: Option<MmPerMin>,
+    /// Feeds that cut least and most in a revolution down to there, with their speeds; `None` if unknown.
+    pub extremes: Option<[(MmPerMin, Rpm); 2]>,
     /// Speed of the spindle in the last feed that cuts.
     pub speed: Rpm,
     /// Direction of the spindle in the last feed that cuts.
@@ -80,6 +82,7 @@ impl PassCut {
             start,
             bottom,
             feed: None,
+            extremes: None,
             speed,
             direction,
             is_tapping: false,

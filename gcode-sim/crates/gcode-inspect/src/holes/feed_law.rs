@@ -15,10 +15,10 @@ use gcode_lang::motion::{Event, Position};
 use gcode_part::Collar;
 
 /// Largest deviation of an arc from the chords by which it removes metal, mm.
-const CHORD_TOLERANCE: f64 = 0.005;
+pub(super) const CHORD_TOLERANCE: f64 = 0.005;
 
 /// Deviation of the chords that show whether an arc is near the metal, mm.
-const COARSE_TOLERANCE: f64 = 5.0;
+pub(super) const COARSE_TOLERANCE: f64 = 5.0;
 
 /// Radius up to which a mill of unknown diameter may remove metal, mm.
 pub(super) const MAX_RADIUS: f64 = 25.0;
@@ -116,7 +116,16 @@ impl HoleExtractor<'_> {
         let radius = self.tool_radius().unwrap_or(0.0);
         let is_judged = is_known && self.metal.holes.is_some();
         if is_judged && (self.surface.is_none() || self.has_left_start) {
-            self.check_milling(event, path);
+            let along = <&Line>::try_from(path).ok();
+            let mills = |own: &Self| {
+                path.windows(2).any(|chord| {
+                    let chord = [chord[0], chord[1]];
+                    own.axis_in_motion(&chord[0], &chord[1]).is_some_and(|axis| own.mills(&chord, &axis))
+                })
+            };
+            if let Some(rate) = event.kind.rate() {
+                self.check_milling(event, rate, along, mills);
+            }
             let chords = path.windows(2).filter_map(|chord| {
                 let chord = [chord[0], chord[1]];
                 Some((chord, self.axis_in_motion(&chord[0], &chord[1])?))

@@ -313,35 +313,26 @@ impl HoleExtractor<'_> {
     /// Reports the clamp, the tool and its spindle in a feed along it, and records the cutting conditions.
     fn report_conditions(&mut self, line: &CuttingLine) {
         let backtrace = line.backtrace();
-        self.check_clamped(backtrace, line.clamp_state);
-        if let Some(feeds) = line.cutting_feeds() {
-            self.milling.record_cut(line.cutting_state.tool);
-            let origin = self.offset_origin.as_ref();
-            self.cut_conditions.add(
-                backtrace,
-                &line.cutting_state,
-                line.is_tapping,
-                feeds,
-                line.pecks(),
-                origin,
-            );
-            if let Some((state, feed)) = &line.other_sense {
-                let feeds = ([*feed; 2], [(*feed, state.speed); 2]);
-                self.cut_conditions.add(
-                    backtrace,
-                    state,
-                    line.is_tapping,
-                    feeds,
-                    PeckExtent::default(),
-                    origin,
-                );
+        if line.cuts.is_empty() {
+            self.check_clamped(backtrace, line.cutting_state.clamp);
+            self.check_tool_changed(backtrace, &line.cutting_state, "cuts");
+        }
+        for (cut, is_last) in line.cuts.iter() {
+            // The deepest feed shows the place of most.
+            let place = if is_last { backtrace } else { &cut.backtrace };
+            if let Some(extremes) = cut.extremes {
+                self.milling.record_cut(cut.state.tool);
+                let (feeds, origin) = ((cut.feed_range, extremes), cut.offset_origin.as_ref());
+                let pecks = if is_last { line.pecks() } else { PeckExtent::default() };
+                self.cut_conditions.add(place, &cut.state, line.is_tapping, feeds, pecks, origin);
+            }
+            self.check_clamped(place, cut.state.clamp);
+            self.check_tool_changed(place, &cut.state, "cuts");
+            if cut.is_stopped() {
+                self.report_spindle_stopped(place, &cut.state);
             }
         }
         self.check_spindle(backtrace, line);
-        self.check_tool_changed(backtrace, &line.cutting_state, "cuts");
-        if line.is_fed_stopped {
-            self.report_spindle_stopped(backtrace, &line.cutting_state);
-        }
     }
 
     /// Reports the conditions, the head and the direction of a feed.

@@ -10,6 +10,7 @@ mod clamping;
 mod clearance;
 mod core;
 mod covered_entries;
+mod cut_states;
 mod cutting;
 mod drill_pass;
 #[cfg(test)]
@@ -77,7 +78,6 @@ use nalgebra::Point3;
 use self::axis_box::SearchBudget;
 use self::bar_shift::BarShift;
 use self::below_part::LowPlaces;
-use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
 use self::feed_law::Plunge;
@@ -133,7 +133,6 @@ pub struct HoleExtractor<'m> {
     process_limits: ProcessLimits,
     /// Rapids are checked; they decide no hole.
     checks_rapids: bool,
-    clamp_state: ClampState,
     /// Frame of the part at `axis_position`.
     frame: Frame,
     /// Pose of the tool on the part.
@@ -214,7 +213,6 @@ impl<'m> HoleExtractor<'m> {
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
             checks_rapids: true,
-            clamp_state: ClampState::default(),
             frame,
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
             has_tool_turned: false,

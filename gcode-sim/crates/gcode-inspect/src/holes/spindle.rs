@@ -23,7 +23,7 @@ impl HoleExtractor<'_> {
     pub(super) fn update_spindle_in_hole(&mut self, before: SpindleDirection) {
         let now = self.cutting_state.spindle_direction;
         let Some(line) = self.current_line.as_mut().filter(|line| line.is_below_start()) else { return };
-        let begun = match line.cutting_feeds() {
+        let begun = match line.cuts.extremes() {
             Some(_) => line.cutting_state.spindle_direction,
             // Nothing is cut so far.
             None => SpindleDirection::Off,

@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 use super::position::Deviation;
 use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
-use crate::machine::{Machine, ToolKind, ToolPart};
+use crate::machine::{COS_30, Machine, ToolKind, ToolPart};
 use gcode_part::{
     FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds,
 };
@@ -25,7 +25,7 @@ const MAX_DEPTH_DIFFERENCE: f64 = 0.01;
 const NEARNESS: f64 = 1e-6;
 
 /// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
-const TILTED_HOLE_COSINE: f64 = 0.866_025_403_784_438_6;
+const TILTED_HOLE_COSINE: f64 = COS_30;
 
 /// Cosine of the largest angle between the axes of two holes that meet.
 const MIN_OPPOSITE_COSINE: f64 = 0.999_999;

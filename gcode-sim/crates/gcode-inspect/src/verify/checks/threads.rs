@@ -233,7 +233,11 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     if let Some(helix) = cut.thread {
         return milled_pitch(id, nominal, cut, &helix);
     }
-    let (feed, speed) = (cut.pass.cut.feed?.0, cut.pass.cut.speed.0);
+    // The feed that is farther off decides: each cuts a part of the thread.
+    let last = (cut.pass.cut.feed?, cut.pass.cut.speed);
+    let feeds = cut.pass.cut.extremes.unwrap_or([last; 2]).map(|(feed, speed)| (feed.0, speed.0));
+    let off = |(feed, speed): &(f64, f64)| (feed / speed - nominal).abs();
+    let (feed, speed) = feeds.into_iter().max_by(|one, other| off(one).total_cmp(&off(other)))?;
     let actual = feed / speed;
     if !exceeds((actual - nominal).abs(), PITCH_TOLERANCE * nominal) {
         return None;
