@@ -125,4 +125,15 @@ impl DrillPass {
         let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();
         !is_comparable || diameter(other).unwrap_or(path(other)) <= diameter(self).unwrap_or(path(self))
     }
+
+    /// Returns true if a stroke of a tap goes on with the one before as one: at its feed and speed, in its sense, from its start, and
+    /// the tap has come out as it went in.
+    pub(super) fn goes_on_tapping(&self, before: &Self, rounding: f64) -> bool {
+        let (own, other) = (&self.cut, &before.cut);
+        own.feed == other.feed
+            && own.speed == other.speed
+            && (own.direction, own.rigid_run) == (other.direction, other.rigid_run)
+            && other.uneven_retract.is_none()
+            && (own.start - other.start).norm() <= 2.0 * rounding
+    }
 }

@@ -190,6 +190,7 @@ impl HoleExtractor<'_> {
         });
         if is_near {
             let path = self.chords(travel, CHORD_TOLERANCE);
+            self.check_thread_wall(event, &path);
             self.remove_by_feed(event, &path, is_known);
         }
     }
@@ -403,6 +404,13 @@ impl HoleExtractor<'_> {
     /// Returns true if the current line makes a gouge.
     pub(super) fn has_gouged(&self, line: &CuttingLine) -> bool {
         self.plunge_gouge(line).is_some()
+    }
+
+    /// Reports a feed out along a tool that lifts the metal above its undercut. Back boring has its own finding.
+    pub(super) fn check_lift(&mut self, line: &CuttingLine) {
+        if !line.is_inward() && self.cuts_undercut() {
+            self.report_plunge(line);
+        }
     }
 
     /// Returns true if all metal in which a line feeds is in a pocket.

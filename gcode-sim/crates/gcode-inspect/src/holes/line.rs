@@ -81,6 +81,10 @@ pub(super) struct CuttingLine {
     stroke: Option<PeckStroke>,
     /// Pass that repeats the line, as far as it has come, and its depth.
     repeated: Option<(f64, DrillPass)>,
+    /// Last stroke of a tap, with those before it that are like it.
+    tapped: Option<DrillPass>,
+    /// Depth by which rapids have moved the tool along the line: a tap turns in feeds alone.
+    rapid_depth: f64,
     /// Current depth of the tool.
     depth: f64,
     /// Shift of a boring bar off the wall.
@@ -157,6 +161,8 @@ impl CuttingLine {
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
             repeated: None,
+            tapped: None,
+            rapid_depth: 0.0,
             depth,
             bar_shift: Vector3::zeros(),
             half_increment: rounding,
@@ -193,6 +199,9 @@ impl CuttingLine {
             self.uneven_retract.is_none_or(|known| self.depth_of(&known.from) < self.depth_of(from));
         if !is_even && is_deepest {
             self.uneven_retract = Some(TapRetract { from: *from, feed });
+        }
+        if let Some(tapped) = &mut self.tapped {
+            tapped.cut.uneven_retract = self.uneven_retract;
         }
     }
 
@@ -358,14 +367,13 @@ impl CuttingLine {
     /// Applies a rapid along the line, which deepens the hole if it `cuts`. Returns a repeated pass that ends with it.
     pub(super) fn rapid_to(&mut self, to: &Point3<f64>, cuts: bool) -> Option<DrillPass> {
         let depth = self.depth_of(to);
-        if depth <= self.depth {
-            return self.retract_to(depth);
-        }
-        let again = self.end_stroke();
-        if cuts {
+        let by = depth - self.depth;
+        let again = if by <= 0.0 { self.retract_to(depth) } else { self.end_stroke() };
+        if cuts && 0.0 < by {
             self.deepest.depth = self.deepest.depth.max(depth);
         }
         self.depth = depth;
+        self.rapid_depth += by;
         again
     }
 
@@ -376,17 +384,28 @@ impl CuttingLine {
     }
 
     /// Ends the current stroke; returns a repeated pass if the stroke begins a further one. A pass that repeats the line begins
-    /// with a stroke from its start that cuts no deeper, and goes on with strokes that are deeper than its last.
+    /// with a stroke from its start that cuts no deeper, and goes on with strokes that are deeper than its last. A stroke of a tap
+    /// is a pass of its own, unless it goes on with the one before.
     fn end_stroke(&mut self) -> Option<DrillPass> {
         let PeckStroke { from_depth, mut end } = self.stroke.take()?;
-        end.rise = (-from_depth).max(0.0);
+        end.rise = if self.is_tapping { -self.rapid_depth } else { (-from_depth).max(0.0) };
         end.rigid_run = self.cutting_state.rigid_run;
         let depth = end.depth;
-        if depth > self.deepest.depth + MIN_DEPTH_GAIN {
+        let is_deeper = depth > self.deepest.depth + MIN_DEPTH_GAIN;
+        if is_deeper {
             self.pecks = self.pecks_with_stroke(depth);
-            self.deepest = end;
+            self.deepest = end.clone();
+        }
+        if self.is_tapping {
+            let pass = self.drill_pass(&end);
+            let goes_on = |before: &DrillPass| is_deeper && pass.goes_on_tapping(before, self.half_increment);
+            let before = self.tapped.take().filter(|before| !goes_on(before));
+            self.tapped = Some(pass);
+            return before;
+        }
+        if is_deeper {
             self.repeated = None;
-            return None;
+            return self.tapped.take();
         }
         let pass = self.drill_pass(&end);
         match &mut self.repeated {
@@ -406,7 +425,8 @@ impl CuttingLine {
     pub(super) fn finish(mut self) -> (DrillPass, impl Iterator<Item = DrillPass>) {
         let before = self.end_stroke();
         let last = self.repeated.take().map(|(_, pass)| pass);
-        (self.drill_pass(&self.deepest), before.into_iter().chain(last))
+        let pass = self.tapped.take().unwrap_or_else(|| self.drill_pass(&self.deepest));
+        (pass, before.into_iter().chain(last))
     }
 
     fn drill_pass(&self, end: &StrokeEnd) -> DrillPass {

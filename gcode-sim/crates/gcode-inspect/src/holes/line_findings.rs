@@ -48,6 +48,7 @@ impl HoleExtractor<'_> {
         self.record_length_mismatch(&line);
         self.note_cycle_in_air(&line);
         let tilt = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
+        self.check_lift(&line);
         // Depth in the part, computed only where it decides.
         // A feed at an unknown position may be in the part.
         let is_known = without_assumed(line.unknown_axes, self.machine).is_none();
@@ -131,11 +132,11 @@ impl HoleExtractor<'_> {
     }
 
     /// Records a drilling cycle that cuts nothing of a known body.
-    fn note_cycle_in_air(&mut self, line: &CuttingLine) {
+    pub(super) fn note_cycle_in_air(&mut self, line: &CuttingLine) {
         let is_known = without_assumed(line.unknown_axes, self.machine).is_none();
         let (start, bottom) = (line.start, line.bottom());
         let is_in_body = |surface: Surface| surface.is_deeper(&bottom, TOUCH_DEPTH);
-        if !line.is_cycle || !is_known || !line.is_inward() || self.surface.is_none_or(is_in_body) {
+        if !line.is_cycle || !is_known || self.surface.is_none_or(is_in_body) {
             return;
         }
         let axis = line.tool_axis.unwrap_or(line.out);
@@ -282,19 +283,20 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a cut with a tool that the program has selected and not changed.
+    /// Reports a feed with a tool that the program has selected and not changed, and returns true if it does; `verb` is what the one in
+    /// the spindle does.
     ///
     /// A tool that is prepared for the next change has another offset than the one in effect.
-    pub(super) fn check_tool_changed(&mut self, backtrace: &Backtrace, state: &CuttingState) {
+    pub(super) fn check_tool_changed(&mut self, backtrace: &Backtrace, state: &CuttingState, verb: &str) -> bool {
         let CuttingState { tool, selected_tool, compensation, .. } = *state;
         if tool == Some(0) {
             self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, 0, 1, |kind| {
-                Diagnostic::new(kind, "T0 is in the spindle and cuts: no T comes before M06")
+                Diagnostic::new(kind, format!("T0 is in the spindle and {verb}: no T comes before M06"))
                     .help("command the tool with T before M06")
             });
         }
         let Some(selected) = selected_tool.filter(|number| *number != 0 && tool != Some(*number)) else {
-            return;
+            return false;
         };
         let is_meant = match compensation {
             LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0 => h == selected,
@@ -303,10 +305,11 @@ impl HoleExtractor<'_> {
         if is_meant {
             let spindle = tool.map_or("the tool of the last job".to_owned(), |number| format!("T{number}"));
             self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, selected, 1, |kind| {
-                let message = format!("T{selected} is selected, but {spindle} is in the spindle and cuts");
+                let message = format!("T{selected} is selected, but {spindle} is in the spindle and {verb}");
                 Diagnostic::new(kind, message).help(format!("command T{selected} M06 before the cut"))
             });
         }
+        is_meant
     }
 
     /// Reports the clamp, the tool and its spindle in a feed along it, and records the cutting conditions.
@@ -337,7 +340,7 @@ impl HoleExtractor<'_> {
             }
         }
         self.check_spindle(backtrace, line);
-        self.check_tool_changed(backtrace, &line.cutting_state);
+        self.check_tool_changed(backtrace, &line.cutting_state, "cuts");
         if line.is_fed_stopped {
             self.report_spindle_stopped(backtrace, &line.cutting_state);
         }

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
+use super::below_part::lowest;
 use super::cutting::{CuttingState, PeckExtent};
 use super::strokes::MIN_TOOL_COSINE;
 use crate::findings::{TOOL_CUTS_NOTHING, TOOL_KIND};
-use crate::machine::tool_name;
+use crate::machine::{TOUCH_DEPTH, ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
 
@@ -19,6 +20,8 @@ pub(super) struct Milling {
     rates: BTreeMap<([u64; 4], Option<u32>), [f64; 2]>,
     /// First feed across of each tool that has met no metal so far; `None` once it has cut.
     idle: BTreeMap<Option<u32>, Option<Backtrace>>,
+    /// First feed across of each tool that cuts with its end, beside the metal and below its top.
+    fed_aside: BTreeMap<Option<u32>, Backtrace>,
 }
 
 impl Milling {
@@ -64,7 +67,7 @@ impl HoleExtractor<'_> {
         if !is_known {
             let [least, most] = range.unwrap_or([rate.0; 2]);
             self.milling.rates.insert(key, [least.min(rate.0), most.max(rate.0)]);
-            self.check_tool_changed(&backtrace, &state);
+            self.check_tool_changed(&backtrace, &state, "cuts");
             let feeds = ([rate, rate], [(rate, state.speed); 2]);
             let origin = self.offset_origin.as_ref();
             self.cut_conditions.add(&backtrace, &state, false, feeds, PeckExtent::default(), origin);
@@ -74,17 +77,40 @@ impl HoleExtractor<'_> {
     /// Records a straight feed across a turning tool of known diameter that meets no metal of a known body.
     fn record_idle_feed(&mut self, event: &Event<'_>, path: &[Point3<f64>], state: &CuttingState) {
         let [from, to] = path else { return };
-        let is_across = self.pose.axis.is_some_and(|axis| is_across(&axis, &(to - from)));
-        let is_known = self.surface.is_some() && self.tool_radius().is_some();
-        if is_across && is_known && state.spindle_direction != SpindleDirection::Off {
-            self.milling.idle.entry(state.tool).or_insert_with(|| Some(event.backtrace()));
+        let Some(axis) = self.pose.axis.filter(|axis| is_across(axis, &(to - from))) else { return };
+        let Some(body) = self.surface.filter(|_| self.tool_radius().is_some()) else { return };
+        if state.spindle_direction == SpindleDirection::Off {
+            return;
         }
+        let is_other = state.selected_tool != state.tool;
+        if is_other && self.check_tool_changed(&event.backtrace(), state, "is fed across") {
+            return;
+        }
+        let kind = self.machine.kind_of(state.tool);
+        if kind.is_some_and(ToolKind::cuts_with_end)
+            && to.coords.dot(&axis) + TOUCH_DEPTH < -lowest(&body, &-axis)
+        {
+            self.milling.fed_aside.entry(state.tool).or_insert_with(|| event.backtrace());
+        }
+        self.milling.idle.entry(state.tool).or_insert_with(|| Some(event.backtrace()));
     }
 
-    /// Reports the tools whose feeds all miss the metal.
+    /// Reports the tools whose feeds all miss the metal, and those that follow a mill's path beside it.
     pub(super) fn report_idle_mills(&mut self) {
         let idle = std::mem::take(&mut self.milling.idle).into_iter();
-        for (tool, backtrace) in idle.filter_map(|(tool, first)| Some((tool, first?))) {
+        let idle: BTreeMap<_, _> = idle.filter_map(|(tool, first)| Some((tool, first?))).collect();
+        let mut fed_aside = std::mem::take(&mut self.milling.fed_aside);
+        fed_aside.retain(|tool, _| !idle.contains_key(tool));
+        for (tool, backtrace) in fed_aside {
+            self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool.unwrap_or(0), 1, |kind| {
+                let own = self.machine.kind_of(tool).map_or("tool", |kind| kind.name());
+                let name = tool_name(tool);
+                let message =
+                    format!("{name} is a {own} and is fed across beside the part, where it cuts nothing");
+                Diagnostic::new(kind, message).help("check T and M06 before it, its H and its kind")
+            });
+        }
+        for (tool, backtrace) in idle {
             self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool.unwrap_or(0), 1, |kind| {
                 let name = tool_name(tool);
                 Diagnostic::new(

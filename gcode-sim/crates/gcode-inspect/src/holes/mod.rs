@@ -2,6 +2,7 @@
 mod arc_run;
 mod axis_box;
 mod bar_shift;
+mod below_part;
 mod box_tree;
 mod chord_run;
 mod circles;
@@ -75,6 +76,7 @@ use nalgebra::Point3;
 
 use self::axis_box::SearchBudget;
 use self::bar_shift::BarShift;
+use self::below_part::LowPlaces;
 use self::clamping::ClampState;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
@@ -178,6 +180,7 @@ pub struct HoleExtractor<'m> {
     bar_shift: BarShift,
     change_retract: ChangeRetract,
     low_rapid: Option<LowRapid>,
+    low_places: LowPlaces,
 }
 
 /// Kind of a motion.
@@ -242,6 +245,7 @@ impl<'m> HoleExtractor<'m> {
             bar_shift: BarShift::default(),
             change_retract: ChangeRetract::default(),
             low_rapid: None,
+            low_places: LowPlaces::default(),
         }
     }
 
@@ -295,6 +299,7 @@ impl<'m> HoleExtractor<'m> {
         unsearched.into_iter().for_each(|block| self.unsearched_feeds.count(|| block));
         self.end_engagement();
         self.report_idle_mills();
+        self.report_low_places();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         self.find_cores(&mut holes);
@@ -379,6 +384,9 @@ impl<'m> HoleExtractor<'m> {
             }
             return;
         }
+        if kind != MotionKind::Probe {
+            self.follow_below_part(event);
+        }
         if is_rotating || arc.is_some() {
             self.end_line(Some(kind));
             match kind {
@@ -404,9 +412,8 @@ impl<'m> HoleExtractor<'m> {
         if (self.pose.tip - before.tip).norm() < 1e-9 {
             return;
         }
-        self.check_thread_wall(event, &before.tip);
-        if kind == MotionKind::Rapid {
-            self.check_rapid_into_thread(event, &before.tip);
+        if kind != MotionKind::Rapid || !self.check_rapid_into_thread(event, &before.tip) {
+            self.check_thread_wall(event, &[before.tip, self.pose.tip]);
         }
         self.follow_low_rapid(event, kind, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);

@@ -15,7 +15,7 @@ use gcode_part::{Feature, FeatureKind, Hand, NOISE, POINT_LENGTH};
 const LEAD_TOLERANCE: f64 = 1e-3;
 
 /// Largest distance along the axis between two passes of one thread, mm.
-const MAX_STEP: f64 = 0.05;
+pub(super) const MAX_STEP: f64 = 0.05;
 
 /// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
@@ -42,6 +42,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         }
     }
     findings.extend(out_of_step(id, &judged.near));
+    findings.extend(tap_motion::out_of_step(id, &judged.near));
     let made_by = assign(&nominal.features, &judged.near, judged.comparison.tolerances);
     for (feature, cut) in nominal.features.iter().zip(made_by).filter(|(one, _)| one.kind == FeatureKind::Tap)
     {
