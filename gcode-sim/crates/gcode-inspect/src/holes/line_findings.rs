@@ -283,10 +283,11 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a cut with a tool that the program has selected and not changed; `verb` is what the one in the spindle does.
+    /// Reports a feed with a tool that the program has selected and not changed, and returns true if it does; `verb` is what the one in
+    /// the spindle does.
     ///
     /// A tool that is prepared for the next change has another offset than the one in effect.
-    pub(super) fn check_tool_changed(&mut self, backtrace: &Backtrace, state: &CuttingState, verb: &str) {
+    pub(super) fn check_tool_changed(&mut self, backtrace: &Backtrace, state: &CuttingState, verb: &str) -> bool {
         let CuttingState { tool, selected_tool, compensation, .. } = *state;
         if tool == Some(0) {
             self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, 0, 1, |kind| {
@@ -295,7 +296,7 @@ impl HoleExtractor<'_> {
             });
         }
         let Some(selected) = selected_tool.filter(|number| *number != 0 && tool != Some(*number)) else {
-            return;
+            return false;
         };
         let is_meant = match compensation {
             LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0 => h == selected,
@@ -308,6 +309,7 @@ impl HoleExtractor<'_> {
                 Diagnostic::new(kind, message).help(format!("command T{selected} M06 before the cut"))
             });
         }
+        is_meant
     }
 
     /// Reports the clamp, the tool and its spindle in a feed along it, and records the cutting conditions.

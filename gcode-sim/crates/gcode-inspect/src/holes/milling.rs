@@ -93,8 +93,9 @@ impl HoleExtractor<'_> {
         if state.spindle_direction == SpindleDirection::Off {
             return;
         }
-        if state.selected_tool != state.tool {
-            self.check_tool_changed(&event.backtrace(), state, "is fed across");
+        let is_other = state.selected_tool != state.tool;
+        if is_other && self.check_tool_changed(&event.backtrace(), state, "is fed across") {
+            return;
         }
         let kind = self.machine.kind_of(state.tool);
         if kind.is_some_and(ToolKind::cuts_with_end)
