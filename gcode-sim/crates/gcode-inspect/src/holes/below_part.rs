@@ -36,7 +36,7 @@ impl LowPlace {
 }
 
 impl HoleExtractor<'_> {
-    /// Follows the end of a motion below the part: its full diameter has the room of a through hole there, below the part or below the
+    /// Follows the end of a motion below the part. The full diameter has the room of a through hole there, below the part or the
     /// floor that a pocket states.
     pub(super) fn follow_below_part(&mut self, event: &Event<'_>) {
         let body = self.surface.filter(|_| self.metal.holes.is_some() && self.has_left_start);

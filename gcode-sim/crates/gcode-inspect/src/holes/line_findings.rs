@@ -283,11 +283,16 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a feed with a tool that the program has selected and not changed, and returns true if it does; `verb` is what the one in
-    /// the spindle does.
+    /// Reports a feed while the tool that the program has selected is not changed; returns true if it does. `verb` is what the
+    /// tool in the spindle does.
     ///
     /// A tool that is prepared for the next change has another offset than the one in effect.
-    pub(super) fn check_tool_changed(&mut self, backtrace: &Backtrace, state: &CuttingState, verb: &str) -> bool {
+    pub(super) fn check_tool_changed(
+        &mut self,
+        backtrace: &Backtrace,
+        state: &CuttingState,
+        verb: &str,
+    ) -> bool {
         let CuttingState { tool, selected_tool, compensation, .. } = *state;
         if tool == Some(0) {
             self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, 0, 1, |kind| {

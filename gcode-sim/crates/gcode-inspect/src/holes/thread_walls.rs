@@ -30,8 +30,8 @@ const NOWHERE: [f64; 2] = [1.0, 0.0];
 const MIN_ACROSS: f64 = 1e-9;
 
 impl HoleExtractor<'_> {
-    /// Reports a motion beside the axis of a threaded hole, through points, whose edge goes farther along the axis than the thread does
-    /// on its way round, by more than a turn.
+    /// Reports a motion through points beside the axis of a threaded hole that furrows its flanks. It goes more than a turn farther
+    /// along the axis than the thread on the same way round.
     pub(super) fn check_thread_wall(&mut self, event: &Event<'_>, path: &[Point3<f64>]) {
         if !self.strokes.nominal_axes().has_threads() {
             return;

@@ -1,6 +1,6 @@
 //! Rule: G53 with axes while G91 is in force on every path: the axes do not move.
 use gcode_lang::motion::Backtrace;
-use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::g_codes::{Effect, OneShot};
 
 use crate::modes::{after_words, modes_before};
 use crate::prelude::*;
@@ -15,7 +15,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let before = modes_before(context, unit);
     let ignored = unit.reached_words().filter(|(block, words)| {
         let names_axis = || words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
-        let is_machine_move = context.has_effect(words, |effect| effect == Effect::MachineCoordinateSystem);
+        let is_machine_move = context
+            .has_effect(words, |effect| matches!(effect, Effect::OneShot(OneShot::MachineCoordinateSystem)));
         let modes = before[*block].map(|modes| after_words(context, words, &modes));
         // The words may be arguments of a code that calls a program.
         is_machine_move

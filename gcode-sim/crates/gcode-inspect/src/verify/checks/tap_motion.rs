@@ -46,7 +46,7 @@ pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cu
     Some(finding.help("feed out at the feed and the speed of the feed in, or tap with G84 or G74"))
 }
 
-/// Reports a stroke of a tap that begins between the threads of its stroke before: a warning unless rigid tapping is commanded, which
+/// Reports a stroke of a tap that begins between the threads of its stroke before. It is a warning without rigid tapping, which
 /// alone keeps the spindle's angle.
 pub(super) fn out_of_step(id: &str, cuts: &[Cut<'_>]) -> Option<Diagnostic> {
     let taps = || cuts.iter().filter(|cut| cut.is_thread() && cut.thread.is_none());
