@@ -180,7 +180,8 @@ impl CuttingLine {
         if !is_even && is_deepest {
             self.uneven_retract = Some(TapRetract { from: *from, feed });
         }
-        if let Some(tapped) = &mut self.tapped {
+        // A stroke that goes on is none of those before.
+        if let Some(tapped) = self.tapped.as_mut().filter(|_| self.stroke.is_none()) {
             tapped.cut.uneven_retract = self.uneven_retract;
         }
     }
