@@ -153,6 +153,11 @@ impl Planner<'_> {
                 plan.notes.push(Note::CycleLevelMissing(letter));
             }
         }
+        let shifts = plan.state.modal.cycle.is_some_and(|cycle| cycle.steps.contains(&CycleStep::Shift));
+        let by_q = [data.q.unwrap_or(0.0), 0.0];
+        if shifts && data.shift.unwrap_or(by_q) == [0.0; 2] {
+            plan.notes.push(Note::CycleShiftZero);
+        }
         if !self.data.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
             plan.notes.push(Note::DrillsAlongZ(plan.state.modal.plane.code()));
         }

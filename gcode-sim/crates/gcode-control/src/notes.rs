@@ -46,6 +46,7 @@ gcode_lang::finding_kinds! {
     RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41, G42 or G45 to G48 without D";
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
     UNCLOSED_COMMENT = "unclosed-comment", Note, "a comment without its closing bracket";
+    SHIFT_MISSING = "shift-missing", Warning, "a boring cycle that shifts by 0";
     STROKE_AREA = "stroke-area", Warning, "the area of G22 is not checked";
     WORD_IGNORED = "word-ignored", Warning, "a word without effect in a straight move";
     WORDS_PASSED_ON = "words-passed-on", Warning, "a word beside an M code of the machine builder";
@@ -118,6 +119,8 @@ pub enum Note {
     DigitsLost,
     /// A canned cycle drills before this level, its R or its depth, is commanded.
     CycleLevelMissing(char),
+    /// G76 or G87 with a shift of 0: the bar stays at the wall.
+    CycleShiftZero,
     /// G43 or G44, × 10, with H0, which is no offset.
     LengthOffsetZero(u32),
     /// G41, G42 or G45 to G48, × 10, with offset 0, which is no radius.
@@ -204,6 +207,7 @@ impl Note {
             Self::AxisLeftOut => (&AXIS_LEFT_OUT, "an omitted axis keeps its position here; after a change of G51.1, G51 or G68 a control may move it".into(), "name every axis in the first move after the change"),
             Self::DigitsLost => (&DIGITS_LOST, "DPRNT prints only the lower digits: the format has too few places".into(), "give the format more places, or --control PRINT-EXPANDS=1 for a control that prints all digits"),
             Self::CycleLevelMissing(letter) => (&LEVEL_MISSING, format!("the cycle drills with {letter} at 0: no value was commanded"), "write R and the depth in the block that begins the cycle"),
+            Self::CycleShiftZero => (&SHIFT_MISSING, "the cycle shifts the boring bar by 0: it is drawn along the wall of the hole".into(), "write the shift in Q; G86 bores without one"),
             Self::LengthOffsetZero(code) => (&LENGTH_OF_NOTHING, format!("G{} with H0 applies no tool length compensation", spelled(code)), "write H with the number of the tool's offset"),
             Self::CutterRadiusZero(code @ 450..=480) => (&RADIUS_OF_NOTHING, format!("G{} with offset 0 moves to the end as written", spelled(code)), "write D with the number of the tool's offset; G43 H compensates a tool length"),
             Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),

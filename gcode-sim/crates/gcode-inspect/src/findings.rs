@@ -7,6 +7,7 @@ gcode_lang::finding_kinds! {
     AXIS_SIGNS = "axis-signs", Warning, "the machine file and the job give an axis opposite signs";
     BACK_BORED = "back-bored", Warning, "a bore from the back is not among the holes";
     BALL_INTO_PART = "ball-into-part", Error, "an edge finder's ball is fed into the part";
+    BELOW_PART = "below-part", Error, "a tool goes far below the part";
     BURR_OFFSET = "burr-offset", Error, "the job and the machine file give the burr different positions";
     CYCLE_IN_AIR = "cycle-in-air", Warning, "a drilling cycle cuts nothing";
     DRILL_FEED = "drill-feed", Error, "a tool cuts at a wrong feed";

@@ -54,11 +54,16 @@ fn modes_after(
     if op.skip().is_some() { after.join(*before) } else { after }
 }
 
-fn after_words(context: &CheckContext<'_>, words: &Words, before: &PossibleModes) -> PossibleModes {
+/// Returns the modes after the words of a block.
+pub(crate) fn after_words(
+    context: &CheckContext<'_>,
+    words: &Words,
+    before: &PossibleModes,
+) -> PossibleModes {
     let mut after = *before;
     for word in &words.list {
         if is_computed_g_code(word) {
-            after = after.with_unknown_motion();
+            after = after.with_unknown_motion().with_unknown_distance();
         } else if let Some(row) = context.g_code_row(word) {
             after = after.after_effect(row.effect);
         }
@@ -94,6 +99,9 @@ fn after_call(
                 let sets_motion = words.list.iter().any(is_computed_g_code)
                     || context.has_effect(words, |e| matches!(e, Effect::Motion(_) | Effect::Cycle(_)));
                 after = if sets_motion { after.with_unknown_motion() } else { after };
+                let sets_distance = words.list.iter().any(is_computed_g_code)
+                    || context.has_effect(words, |effect| matches!(effect, Effect::Distance(_)));
+                after = if sets_distance { after.with_unknown_distance() } else { after };
                 after.has_feed |= has_feed_word(words);
             }
             OpKind::If { .. } => return PossibleModes::ANYTHING,

@@ -1,8 +1,8 @@
-//! The feed, the motion mode and the canned cycle that are possible before a block.
+//! The feed, the motion mode, the canned cycle, and G90 or G91 that are possible before a block.
 use gcode_control::static_plan::ModesInForce;
 use gcode_lang::program::cycles::{Cycle, DRILLING as DRILLING_CYCLE};
 use gcode_lang::program::g_codes::Effect;
-use gcode_lang::program::modes::Motion;
+use gcode_lang::program::modes::{Distance, Motion};
 
 /// A cycle that needs no word of its own.
 static DRILLING: Cycle = DRILLING_CYCLE;
@@ -10,6 +10,10 @@ static DRILLING: Cycle = DRILLING_CYCLE;
 /// Possible modes before a block: each is true if it holds on some path to the block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PossibleModes {
+    /// G90 is in force.
+    pub is_absolute: bool,
+    /// G91 is in force.
+    pub is_incremental: bool,
     /// F is commanded.
     pub has_feed: bool,
     /// The motion mode is G00.
@@ -29,8 +33,10 @@ pub(crate) struct PossibleModes {
 }
 
 impl PossibleModes {
-    /// Modes at power-on; a setting of the control decides between G00 and G01.
+    /// Modes at power-on; settings of the control decide between G00 and G01, and between G90 and G91.
     pub(super) const POWER_ON: Self = Self {
+        is_absolute: true,
+        is_incremental: true,
         has_feed: false,
         is_rapid: true,
         is_straight: true,
@@ -45,6 +51,8 @@ impl PossibleModes {
 
     pub(super) fn join(self, other: Self) -> Self {
         Self {
+            is_absolute: self.is_absolute | other.is_absolute,
+            is_incremental: self.is_incremental | other.is_incremental,
             has_feed: self.has_feed | other.has_feed,
             is_rapid: self.is_rapid | other.is_rapid,
             is_straight: self.is_straight | other.is_straight,
@@ -72,6 +80,10 @@ impl PossibleModes {
         }
     }
 
+    pub(super) fn with_unknown_distance(self) -> Self {
+        Self { is_absolute: true, is_incremental: true, ..self }
+    }
+
     /// Returns the modes after a G code; a code of group 01 ends a cycle.
     pub(super) fn after_effect(self, effect: Effect) -> Self {
         match effect {
@@ -89,6 +101,11 @@ impl PossibleModes {
                 is_in_cycle: cycle.is_some(),
                 cycle,
                 has_pecks: cycle.is_some() && self.has_pecks,
+                ..self
+            },
+            Effect::Distance(distance) => Self {
+                is_absolute: distance == Distance::Absolute,
+                is_incremental: distance == Distance::Incremental,
                 ..self
             },
             _ => self,

@@ -15,6 +15,12 @@ const MARKER: SourceId = SourceId(u32::MAX);
 /// Cosine of the largest angle between two moves along one line.
 const MIN_COSINE: f64 = 1.0 - 1e-9;
 
+/// Cosine of the least angle between a stroke and the shift of a boring bar.
+const MAX_SQUARE_COSINE: f64 = 0.01;
+
+/// Largest shift of a boring bar, mm.
+const MAX_BAR_SHIFT: f64 = 5.0;
+
 /// Sink that marks each event with the stroke it belongs to, and records the outside values on which a stroke depends.
 ///
 /// A stroke is a series of feeds, with the rapids along the line of the move before. The mark is an innermost call that no
@@ -58,6 +64,17 @@ impl<S: EventSink> EventSink for MarkedEvents<S> {
             };
             let continues =
                 self.last.is_some_and(|(last, was_rapid)| !is_rapid && !was_rapid || is_along(&last));
+            let is_square = |last: &Position| {
+                let cosine: f64 = (0..MAX_AXES).map(|axis| last[axis] * direction[axis]).sum();
+                cosine.abs() <= MAX_SQUARE_COSINE
+            };
+            // Where the spindle stands a boring bar is shifted off its wall: that decides how the stroke ends.
+            let may_shift = is_rapid
+                && length <= MAX_BAR_SHIFT
+                && self.last.is_some_and(|(last, was_rapid)| !was_rapid && is_square(&last));
+            if let Some(stroke) = self.strokes.last_mut().filter(|_| may_shift) {
+                *stroke |= self.motion.get();
+            }
             if !continues {
                 self.strokes.push(Marks::NONE);
                 self.has_fed = false;

@@ -226,7 +226,10 @@ impl Slice {
             let Some(code) = raw.ok().flatten().and_then(|raw| count(raw, b'M').ok()) else { continue };
             match m_codes::find(code, settings.codes) {
                 Some(
-                    MCodeEffect::SpindleForward | MCodeEffect::SpindleReverse | MCodeEffect::SpindleStop,
+                    MCodeEffect::SpindleForward
+                    | MCodeEffect::SpindleReverse
+                    | MCodeEffect::SpindleStop
+                    | MCodeEffect::Orient,
                 ) => {
                     self.machine.spindle = control | marked.marks;
                 }

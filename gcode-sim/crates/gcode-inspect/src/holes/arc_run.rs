@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
+use super::cut_states::CutStates;
 use super::drill_pass::Helix;
 use super::slug::Turn;
 use crate::machine::{AxisMotion, HeadKind};
@@ -195,6 +196,8 @@ pub(super) struct Ring {
     pub uneven_turn: Option<Backtrace>,
     /// Diameter of the slug of a through hole that the circle cuts loose; `None` without any.
     pub slug: Option<f64>,
+    /// Modal states in which it is cut.
+    pub cuts: CutStates,
     /// Block of the last arc.
     pub backtrace: Backtrace,
     pub axis_position: Position,
@@ -348,7 +351,20 @@ impl ArcRun {
         let FullTurn { level, backtrace, axis_position } = self.turn.or(self.helix_turn)?;
         let centre = centre + out.into_inner() * (level - centre.coords.dot(&out));
         let (top, slug, uneven_turn) = (self.top, self.slug, uneven_turn.flatten());
-        Some(Ring { centre, out, radius, roundness, top, helix, uneven_turn, slug, backtrace, axis_position })
+        let cuts = CutStates::default();
+        Some(Ring {
+            centre,
+            out,
+            radius,
+            roundness,
+            top,
+            helix,
+            uneven_turn,
+            slug,
+            cuts,
+            backtrace,
+            axis_position,
+        })
     }
 
     /// Returns the helix, without its phase, of a run that rises in all, or falls, with the block of the first arc whose lead is

@@ -27,9 +27,11 @@ impl Engagement {
         let mut kept: Vec<Ring> = Vec::new();
         for ring in order {
             match kept.iter_mut().find(|deeper| ring.radius - 0.01 <= deeper.radius) {
-                // What has come loose inside a narrower circle is no metal any more.
-                Some(deeper) if deeper.slug < ring.slug => deeper.slug = ring.slug,
-                Some(_) => {}
+                Some(deeper) => {
+                    // What has come loose inside a narrower circle is no metal any more.
+                    deeper.slug = if deeper.slug < ring.slug { ring.slug } else { deeper.slug };
+                    deeper.cuts.append(&ring.cuts);
+                }
                 None => kept.push(ring.clone()),
             }
         }

@@ -20,8 +20,8 @@ impl HoleExtractor<'_> {
     pub(super) fn apply_clamp_code(&mut self, code: u32) -> bool {
         let Some(clamp) = self.process_limits.clamp else { return false };
         match code {
-            code if code == clamp.on => self.clamp_state = ClampState::Clamped,
-            code if code == clamp.off => self.clamp_state = ClampState::Released,
+            code if code == clamp.on => self.cutting_state.clamp = ClampState::Clamped,
+            code if code == clamp.off => self.cutting_state.clamp = ClampState::Released,
             _ => return false,
         }
         true
@@ -32,21 +32,21 @@ impl HoleExtractor<'_> {
         let Some(Clamp { on, off }) = self.process_limits.clamp else { return };
         let Some(axis) = self.clamped_axis().filter(|axis| from[*axis] != to[*axis]) else { return };
         let letter = self.machine.axes.letter(axis);
-        let message = match self.clamp_state {
+        let message = match self.cutting_state.clamp {
             ClampState::Released => return,
             ClampState::Clamped => format!("{letter} rotates while clamped by M{on:02}"),
             ClampState::Unknown => format!("{letter} rotates before any M{off:02} releases it"),
         };
         let note = "the control raises an alarm, or the drive works against the clamp";
         let help = format!("command M{off:02} before {letter} rotates");
-        self.report_clamp(&TURNS_CLAMPED, &event.backtrace(), self.clamp_state, message, note, help);
-        if self.clamp_state == ClampState::Unknown {
+        self.report_clamp(&TURNS_CLAMPED, &event.backtrace(), self.cutting_state.clamp, message, note, help);
+        if self.cutting_state.clamp == ClampState::Unknown {
             // The rotation shows that the axis was released.
-            self.clamp_state = ClampState::Released;
+            self.cutting_state.clamp = ClampState::Released;
         }
     }
 
-    /// Reports a feed into the part that began in this state, unless the clamp held the table.
+    /// Reports a feed into the part in this state, unless the clamp held the table.
     pub(super) fn check_clamped(&mut self, backtrace: &Backtrace, state: ClampState) {
         let Some(Clamp { on, .. }) = self.process_limits.clamp else { return };
         let Some(axis) = self.clamped_axis() else { return };

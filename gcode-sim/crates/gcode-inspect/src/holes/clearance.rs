@@ -18,7 +18,7 @@ pub(crate) const ROUNDING_ALLOWANCE: f64 = 0.01;
 const STEEP_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Largest deviation of a curved path from its first chords, mm.
-const CHORD_TOLERANCE: f64 = 5.0;
+const FIRST_CHORD_TOLERANCE: f64 = 5.0;
 
 /// Resolution of the least distance of a curved path, mm.
 const DISTANCE_RESOLUTION: f64 = 1e-3;
@@ -172,13 +172,13 @@ impl HoleExtractor<'_> {
         // A rotation about the surface's own axis keeps the distance.
         let steps = match self.is_turn_about_part_axis(travel) {
             true => 0,
-            false => self.machine.chord_count(travel, &self.setup, CHORD_TOLERANCE),
+            false => self.machine.chord_count(travel, &self.setup, FIRST_CHORD_TOLERANCE),
         };
         let ends: Vec<CurvePoint> =
             (0..=steps).map(|step| point(f64::from(step) / f64::from(steps.max(1)))).collect();
         let mut best = ends.iter().copied().reduce(CurvePoint::nearer_of)?;
         let mut pending_chords: Vec<(CurvePoint, CurvePoint, f64)> =
-            ends.windows(2).map(|pair| (pair[0], pair[1], CHORD_TOLERANCE)).collect();
+            ends.windows(2).map(|pair| (pair[0], pair[1], FIRST_CHORD_TOLERANCE)).collect();
         while let Some((from, to, deviation)) = pending_chords.pop() {
             let bound = from.chord_distance_bound(&to) - deviation;
             let middle = (from.t + to.t) / 2.0;

@@ -1,4 +1,5 @@
 //! Cutting conditions: what is in force while a tool cuts, by block, for comparison with the reference.
+use super::clamping::ClampState;
 use super::offset_origin::OffsetOrigin;
 use super::per_block::PerBlock;
 use gcode_lang::motion::{Backtrace, LengthCompensation, SpindleDirection};
@@ -65,6 +66,8 @@ pub(super) struct CuttingState {
     pub rigid_run: u32,
     /// Last M code of the machine builder since M03, M04 or M05: it may have started the spindle.
     pub builder_code: Option<u32>,
+    /// Clamp of the rotary table.
+    pub clamp: ClampState,
 }
 
 impl CuttingState {
@@ -72,6 +75,12 @@ impl CuttingState {
     pub(super) fn apply_rigid(&mut self, is_rigid: bool) {
         self.free_turns += u32::from(!is_rigid);
         self.rigid_run = if is_rigid { self.free_turns + 1 } else { 0 };
+    }
+
+    /// Returns true if two feeds in these states have the same findings.
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        let rest = |state: &Self| (state.selected_tool, state.builder_code, state.clamp);
+        self.key() == other.key() && rest(self) == rest(other)
     }
 
     /// Returns tool, length offset, direction and speed as a key.

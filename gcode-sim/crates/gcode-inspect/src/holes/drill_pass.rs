@@ -14,6 +14,8 @@ pub struct PassCut {
     pub bottom: Point3<f64>,
     /// Feed at the deepest point; `None` if unknown.
     pub feed: Option<MmPerMin>,
+    /// Feeds that cut least and most in a revolution down to there, with their speeds; `None` if unknown.
+    pub extremes: Option<[(MmPerMin, Rpm); 2]>,
     /// Speed of the spindle in the last feed that cuts.
     pub speed: Rpm,
     /// Direction of the spindle in the last feed that cuts.
@@ -80,6 +82,7 @@ impl PassCut {
             start,
             bottom,
             feed: None,
+            extremes: None,
             speed,
             direction,
             is_tapping: false,
@@ -124,5 +127,16 @@ impl DrillPass {
         let diameter = |pass: &Self| pass.diameter(machine);
         let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();
         !is_comparable || diameter(other).unwrap_or(path(other)) <= diameter(self).unwrap_or(path(self))
+    }
+
+    /// Returns true if a stroke of a tap goes on with the one before as one: at its feed and speed, in its sense, from its start, and
+    /// the tap has come out as it went in.
+    pub(super) fn goes_on_tapping(&self, before: &Self, rounding: f64) -> bool {
+        let (own, other) = (&self.cut, &before.cut);
+        own.feed == other.feed
+            && own.speed == other.speed
+            && (own.direction, own.rigid_run) == (other.direction, other.rigid_run)
+            && other.uneven_retract.is_none()
+            && (own.start - other.start).norm() <= 2.0 * rounding
     }
 }

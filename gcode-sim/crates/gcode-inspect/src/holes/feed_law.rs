@@ -15,10 +15,10 @@ use gcode_lang::motion::{Event, Position};
 use gcode_part::Collar;
 
 /// Largest deviation of an arc from the chords by which it removes metal, mm.
-const CHORD_TOLERANCE: f64 = 0.005;
+pub(super) const CHORD_TOLERANCE: f64 = 0.005;
 
 /// Deviation of the chords that show whether an arc is near the metal, mm.
-const COARSE_TOLERANCE: f64 = 5.0;
+pub(super) const COARSE_TOLERANCE: f64 = 5.0;
 
 /// Radius up to which a mill of unknown diameter may remove metal, mm.
 pub(super) const MAX_RADIUS: f64 = 25.0;
@@ -120,7 +120,10 @@ impl HoleExtractor<'_> {
             .filter_map(|pair| Some(([pair[0], pair[1]], self.axis_in_motion(&pair[0], &pair[1])?)))
             .collect();
         if is_judged && (self.surface.is_none() || self.has_left_start) {
-            self.check_milling(event, path);
+            let mills = |own: &Self| chords.iter().any(|(chord, axis)| own.mills(chord, axis));
+            if let Some(rate) = event.kind.rate() {
+                self.check_milling(event, rate, path, mills);
+            }
             self.note_milled_block(event, &chords);
         }
         let is_judged = is_judged && self.gouge_count < MAX_GOUGES;
@@ -188,6 +191,7 @@ impl HoleExtractor<'_> {
         });
         if is_near {
             let path = self.chords(travel, CHORD_TOLERANCE);
+            self.check_thread_wall(event, &path);
             self.remove_by_feed(event, &path, is_known);
         }
     }
@@ -401,6 +405,13 @@ impl HoleExtractor<'_> {
     /// Returns true if the current line makes a gouge.
     pub(super) fn has_gouged(&self, line: &CuttingLine) -> bool {
         self.plunge_gouge(line).is_some()
+    }
+
+    /// Reports a feed out along a tool that lifts the metal above its undercut. Back boring has its own finding.
+    pub(super) fn check_lift(&mut self, line: &CuttingLine) {
+        if !line.is_inward() && self.cuts_undercut() {
+            self.report_plunge(line);
+        }
     }
 
     /// Returns true if all metal in which a line feeds is in a pocket.

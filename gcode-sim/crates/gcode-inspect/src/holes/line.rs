@@ -1,11 +1,11 @@
 //! Line of a cutting feed on the part while the tool stays on it: strokes, pecks and the retract.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::clamping::ClampState;
-use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent, widen};
+use super::cut_states::{CutStates, StateCut};
+use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent};
 use super::drill_pass::{DrillPass, PITCH_TOLERANCE, PassCut, TapRetract};
 use super::{HoleExtractor, MotionKind};
-use crate::machine::TOUCH_DEPTH;
+use crate::machine::{TOUCH_DEPTH, ToolKind};
 use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
@@ -49,26 +49,16 @@ pub(super) struct CuttingLine {
     pub is_reached_by_feed: bool,
     /// Modal state of the last feed that cuts, else that at the start.
     pub cutting_state: CuttingState,
-    /// State and rate of a feed that cuts, before another sense of the spindle.
-    pub other_sense: Option<(CuttingState, MmPerMin)>,
-    /// Clamp at the start of the feed.
-    pub clamp_state: ClampState,
+    /// Feeds that cut, by their modal states.
+    pub cuts: CutStates,
     /// Axes of unknown position on the part.
     pub unknown_axes: UnknownAxes,
     /// Distance of the tip beyond the programmed point; `None` if they agree.
     pub length_excess: Option<f64>,
-    /// Slowest and fastest feed that cuts.
-    feed_range: Option<[MmPerMin; 2]>,
-    /// Feeds that cut least and most in a revolution, with their speeds.
-    extremes: Option<[FeedAtSpeed; 2]>,
-    /// Last feed that cuts.
-    last_feed: Option<MmPerMin>,
     /// Depth at which the part begins; `None` if its surface is unknown.
     pub surface_depth: Option<f64>,
     /// Finished strokes.
     pecks: PeckExtent,
-    /// True if a feed that cuts finds the spindle stopped.
-    pub is_fed_stopped: bool,
     /// True if the spindle has reversed after the last feed that cuts.
     pub is_tapping: bool,
     /// Deepest motion out of the hole, after the reversal, at another feed a revolution than that of the last feed that cuts.
@@ -81,6 +71,10 @@ pub(super) struct CuttingLine {
     stroke: Option<PeckStroke>,
     /// Pass that repeats the line, as far as it has come, and its depth.
     repeated: Option<(f64, DrillPass)>,
+    /// Last stroke of a tap, with those before it that are like it.
+    tapped: Option<DrillPass>,
+    /// Depth by which rapids have moved the tool along the line: a tap turns in feeds alone.
+    rapid_depth: f64,
     /// Current depth of the tool.
     depth: f64,
     /// Shift of a boring bar off the wall.
@@ -141,22 +135,19 @@ impl CuttingLine {
             is_cycle: false,
             is_reached_by_feed: false,
             cutting_state: CuttingState::default(),
-            other_sense: None,
-            clamp_state: ClampState::default(),
+            cuts: CutStates::default(),
             unknown_axes: UnknownAxes::default(),
             length_excess: None,
-            feed_range: None,
-            extremes: None,
-            last_feed: None,
             surface_depth: None,
             pecks: PeckExtent::default(),
-            is_fed_stopped: false,
             is_tapping: false,
             uneven_retract: None,
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
             repeated: None,
+            tapped: None,
+            rapid_depth: 0.0,
             depth,
             bar_shift: Vector3::zeros(),
             half_increment: rounding,
@@ -165,27 +156,22 @@ impl CuttingLine {
 
     /// Records rate and modal state of a feed inwards that cuts, or enters a hole that is cut. A reversal before it taps no
     /// thread.
-    pub(super) fn record_feed(&mut self, feed: MmPerMin, state: CuttingState, cuts: bool) {
-        self.is_fed_stopped |= state.spindle_direction == SpindleDirection::Off;
-        let is_other =
-            self.extremes.is_some() && self.cutting_state.spindle_direction != state.spindle_direction;
-        let before = self.last_feed.filter(|_| is_other).map(|feed| (self.cutting_state, feed));
-        self.other_sense = self.other_sense.or(before);
+    fn record_feed(
+        &mut self,
+        feed: MmPerMin,
+        state: CuttingState,
+        cuts: bool,
+        first: impl FnOnce() -> StateCut,
+    ) {
+        self.cuts.record(&state, feed, cuts, first);
         self.cutting_state = state;
         self.is_tapping = false;
         self.uneven_retract = None;
-        let [min, max] = self.feed_range.unwrap_or([feed, feed]);
-        self.last_feed = Some(feed);
-        let own = [(feed, state.speed); 2];
-        if cuts {
-            self.extremes = Some(self.extremes.map_or(own, |all| widen(all, own)));
-        }
-        self.feed_range = Some([if feed < min { feed } else { min }, if max < feed { feed } else { max }]);
     }
 
     /// Records a motion out of the hole of a tap, by its feed and speed; a rapid has none.
     pub(super) fn record_retract(&mut self, from: &Point3<f64>, feed: Option<FeedAtSpeed>) {
-        let Some(into) = self.last_feed.filter(|_| self.is_tapping) else { return };
+        let Some(into) = self.cuts.last_feed().filter(|_| self.is_tapping) else { return };
         let (into, speed) =
             (into.0 / self.cutting_state.speed.0, |(feed, speed): FeedAtSpeed| feed.0 / speed.0);
         let is_even = feed.map(speed).is_some_and(|out| (out - into).abs() <= PITCH_TOLERANCE * into);
@@ -194,11 +180,10 @@ impl CuttingLine {
         if !is_even && is_deepest {
             self.uneven_retract = Some(TapRetract { from: *from, feed });
         }
-    }
-
-    /// Returns the slowest and the fastest feed that cuts, and those that cut least and most in a revolution with their speeds.
-    pub(super) fn cutting_feeds(&self) -> Option<([MmPerMin; 2], [FeedAtSpeed; 2])> {
-        self.feed_range.zip(self.extremes)
+        // A stroke that goes on is none of those before.
+        if let Some(tapped) = self.tapped.as_mut().filter(|_| self.stroke.is_none()) {
+            tapped.cut.uneven_retract = self.uneven_retract;
+        }
     }
 
     /// Returns the extent of all strokes, the current one included.
@@ -358,14 +343,13 @@ impl CuttingLine {
     /// Applies a rapid along the line, which deepens the hole if it `cuts`. Returns a repeated pass that ends with it.
     pub(super) fn rapid_to(&mut self, to: &Point3<f64>, cuts: bool) -> Option<DrillPass> {
         let depth = self.depth_of(to);
-        if depth <= self.depth {
-            return self.retract_to(depth);
-        }
-        let again = self.end_stroke();
-        if cuts {
+        let by = depth - self.depth;
+        let again = if by <= 0.0 { self.retract_to(depth) } else { self.end_stroke() };
+        if cuts && 0.0 < by {
             self.deepest.depth = self.deepest.depth.max(depth);
         }
         self.depth = depth;
+        self.rapid_depth += by;
         again
     }
 
@@ -376,17 +360,28 @@ impl CuttingLine {
     }
 
     /// Ends the current stroke; returns a repeated pass if the stroke begins a further one. A pass that repeats the line begins
-    /// with a stroke from its start that cuts no deeper, and goes on with strokes that are deeper than its last.
+    /// with a stroke from its start that cuts no deeper, and goes on with strokes that are deeper than its last. A stroke of a tap
+    /// is a pass of its own, unless it goes on with the one before.
     fn end_stroke(&mut self) -> Option<DrillPass> {
         let PeckStroke { from_depth, mut end } = self.stroke.take()?;
-        end.rise = (-from_depth).max(0.0);
+        end.rise = if self.is_tapping { -self.rapid_depth } else { (-from_depth).max(0.0) };
         end.rigid_run = self.cutting_state.rigid_run;
         let depth = end.depth;
-        if depth > self.deepest.depth + MIN_DEPTH_GAIN {
+        let is_deeper = depth > self.deepest.depth + MIN_DEPTH_GAIN;
+        if is_deeper {
             self.pecks = self.pecks_with_stroke(depth);
-            self.deepest = end;
+            self.deepest = end.clone();
+        }
+        if self.is_tapping {
+            let pass = self.drill_pass(&end);
+            let goes_on = |before: &DrillPass| is_deeper && pass.goes_on_tapping(before, self.half_increment);
+            let before = self.tapped.take().filter(|before| !goes_on(before));
+            self.tapped = Some(pass);
+            return before;
+        }
+        if is_deeper {
             self.repeated = None;
-            return None;
+            return self.tapped.take();
         }
         let pass = self.drill_pass(&end);
         match &mut self.repeated {
@@ -406,7 +401,8 @@ impl CuttingLine {
     pub(super) fn finish(mut self) -> (DrillPass, impl Iterator<Item = DrillPass>) {
         let before = self.end_stroke();
         let last = self.repeated.take().map(|(_, pass)| pass);
-        (self.drill_pass(&self.deepest), before.into_iter().chain(last))
+        let pass = self.tapped.take().unwrap_or_else(|| self.drill_pass(&self.deepest));
+        (pass, before.into_iter().chain(last))
     }
 
     fn drill_pass(&self, end: &StrokeEnd) -> DrillPass {
@@ -414,7 +410,8 @@ impl CuttingLine {
             cut: PassCut {
                 start: self.start + self.out.into_inner() * end.rise,
                 bottom: self.start - self.out.into_inner() * end.depth,
-                feed: self.last_feed,
+                feed: self.cuts.last_feed(),
+                extremes: self.cuts.extremes(),
                 speed: self.cutting_state.speed,
                 direction: self.cutting_state.spindle_direction,
                 is_tapping: self.is_tapping,
@@ -454,7 +451,6 @@ impl HoleExtractor<'_> {
             line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
             line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
             line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-            line.clamp_state = self.clamp_state;
             line.unknown_axes = self.positions.unknown_axes();
             line.length_excess = self.length_excess();
             line.surface_depth =
@@ -493,8 +489,19 @@ impl HoleExtractor<'_> {
         if is_in_air || may_turn_idle && cuts_nothing() {
             return;
         }
-        let is_entry = is_steep() && cuts_nothing();
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-        line.record_feed(*rate, state, !is_entry);
+        let is_entry = (is_steep() || self.is_entry_told(&state)) && cuts_nothing();
+        let origin = self.offset_origin.as_ref();
+        let first = || StateCut::new(state, *rate, !is_entry, event.backtrace(), origin);
+        line.record_feed(*rate, state, !is_entry, first);
+    }
+
+    /// Returns true if the feed of a tool that cuts nothing yet is judged otherwise than one that cuts: its pitch, or a speed that the
+    /// job specifies.
+    fn is_entry_told(&self, state: &CuttingState) -> bool {
+        let is_sized_tap = self.machine.kind_of(state.tool) == Some(ToolKind::Tap)
+            && self.machine.diameter_of(state.tool).is_some();
+        let specified = self.process_limits.tool_process(state.tool).and_then(|tool| tool.speed);
+        is_sized_tap || specified.is_some_and(|speed| speed != state.speed.0)
     }
 }

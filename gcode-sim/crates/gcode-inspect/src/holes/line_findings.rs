@@ -48,6 +48,7 @@ impl HoleExtractor<'_> {
         self.record_length_mismatch(&line);
         self.note_cycle_in_air(&line);
         let tilt = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
+        self.check_lift(&line);
         // Depth in the part, computed only where it decides.
         // A feed at an unknown position may be in the part.
         let is_known = without_assumed(line.unknown_axes, self.machine).is_none();
@@ -131,11 +132,11 @@ impl HoleExtractor<'_> {
     }
 
     /// Records a drilling cycle that cuts nothing of a known body.
-    fn note_cycle_in_air(&mut self, line: &CuttingLine) {
+    pub(super) fn note_cycle_in_air(&mut self, line: &CuttingLine) {
         let is_known = without_assumed(line.unknown_axes, self.machine).is_none();
         let (start, bottom) = (line.start, line.bottom());
         let is_in_body = |surface: Surface| surface.is_deeper(&bottom, TOUCH_DEPTH);
-        if !line.is_cycle || !is_known || !line.is_inward() || self.surface.is_none_or(is_in_body) {
+        if !line.is_cycle || !is_known || self.surface.is_none_or(is_in_body) {
             return;
         }
         let axis = line.tool_axis.unwrap_or(line.out);
@@ -284,19 +285,25 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a cut with a tool that the program has selected and not changed.
+    /// Reports a feed while the tool that the program has selected is not changed; returns true if it does. `verb` is what the
+    /// tool in the spindle does.
     ///
     /// A tool that is prepared for the next change has another offset than the one in effect.
-    pub(super) fn check_tool_changed(&mut self, backtrace: &Backtrace, state: &CuttingState) {
+    pub(super) fn check_tool_changed(
+        &mut self,
+        backtrace: &Backtrace,
+        state: &CuttingState,
+        verb: &str,
+    ) -> bool {
         let CuttingState { tool, selected_tool, compensation, .. } = *state;
         if tool == Some(0) {
             self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, 0, 1, |kind| {
-                Diagnostic::new(kind, "T0 is in the spindle and cuts: no T comes before M06")
+                Diagnostic::new(kind, format!("T0 is in the spindle and {verb}: no T comes before M06"))
                     .help("command the tool with T before M06")
             });
         }
         let Some(selected) = selected_tool.filter(|number| *number != 0 && tool != Some(*number)) else {
-            return;
+            return false;
         };
         let is_meant = match compensation {
             LengthCompensation::Plus(h) | LengthCompensation::Minus(h) if h != 0 => h == selected,
@@ -305,40 +312,41 @@ impl HoleExtractor<'_> {
         if is_meant {
             let spindle = tool.map_or("the tool of the last job".to_owned(), |number| format!("T{number}"));
             self.findings.add_in_program(&TOOL_NOT_CHANGED, backtrace, selected, 1, |kind| {
-                let message = format!("T{selected} is selected, but {spindle} is in the spindle and cuts");
+                let message = format!("T{selected} is selected, but {spindle} is in the spindle and {verb}");
                 Diagnostic::new(kind, message).help(format!("command T{selected} M06 before the cut"))
             });
         }
+        is_meant
     }
 
     /// Reports the clamp, the tool and its spindle in a feed along it, and records the cutting conditions.
     fn report_conditions(&mut self, line: &CuttingLine) {
         let backtrace = line.backtrace();
-        self.check_clamped(backtrace, line.clamp_state);
-        if let Some(feeds) = line.cutting_feeds() {
-            self.milling.record_cut(line.cutting_state.tool);
-            let is_tapping = line.is_tapping;
-            let mut add = |state, feeds, pecks| {
-                let offset_origin = self.offset_origin.as_ref();
+        if line.cuts.is_empty() {
+            self.check_clamped(backtrace, line.cutting_state.clamp);
+            self.check_tool_changed(backtrace, &line.cutting_state, "cuts");
+        }
+        for (cut, is_last) in line.cuts.iter() {
+            // The deepest feed shows the place of most.
+            let place = if is_last { backtrace } else { &cut.backtrace };
+            if let Some(extremes) = cut.extremes {
+                self.milling.record_cut(cut.state.tool);
                 self.cut_conditions.add(RecordedCut {
-                    backtrace,
-                    state,
-                    is_tapping,
-                    feeds,
-                    pecks,
-                    offset_origin,
+                    backtrace: place,
+                    state: &cut.state,
+                    is_tapping: line.is_tapping,
+                    feeds: (cut.feed_range, extremes),
+                    pecks: if is_last { line.pecks() } else { PeckExtent::default() },
+                    offset_origin: cut.offset_origin.as_ref(),
                 });
-            };
-            add(&line.cutting_state, feeds, line.pecks());
-            if let Some((state, feed)) = &line.other_sense {
-                add(state, ([*feed; 2], [(*feed, state.speed); 2]), PeckExtent::default());
+            }
+            self.check_clamped(place, cut.state.clamp);
+            self.check_tool_changed(place, &cut.state, "cuts");
+            if cut.is_stopped() {
+                self.report_spindle_stopped(place, &cut.state);
             }
         }
         self.check_spindle(backtrace, line);
-        self.check_tool_changed(backtrace, &line.cutting_state);
-        if line.is_fed_stopped {
-            self.report_spindle_stopped(backtrace, &line.cutting_state);
-        }
     }
 
     /// Reports the conditions, the head and the direction of a feed.

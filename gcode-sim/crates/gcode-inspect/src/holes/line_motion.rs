@@ -1,4 +1,6 @@
 //! Straight motions along the current line: it continues, or ends.
+use std::mem::replace;
+
 use nalgebra::Point3;
 
 use super::line::ToolExit;
@@ -20,6 +22,8 @@ impl HoleExtractor<'_> {
             if line.is_bar_shifted() {
                 self.report_back_boring(&line);
             } else {
+                self.check_lift(&line);
+                self.note_cycle_in_air(&line);
                 self.report_overrun(event, &line, &tip);
             }
             return Some(from);
@@ -65,7 +69,9 @@ impl HoleExtractor<'_> {
                     }
                 };
                 if let Some(pass) = again.filter(|_| !self.is_milled(&line)) {
-                    let order = self.strokes.begin_pass();
+                    let next = self.strokes.begin_pass();
+                    // An earlier stroke of a tap comes before the last one, a repeated pass after the line.
+                    let order = if pass.cut.is_tapping { replace(&mut line.order, next) } else { next };
                     self.strokes.push(order, pass, self.cut_kind(&line, false));
                 }
                 self.current_line = Some(line);

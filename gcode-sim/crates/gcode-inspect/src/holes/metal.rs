@@ -170,6 +170,18 @@ impl KnownMetal {
         beyond.filter(|_| !is_in_other)
     }
 
+    /// Returns true for a point in the column of a nominal hole.
+    pub(super) fn is_below_hole(&self, p: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> bool {
+        let Some(holes) = self.holes.as_deref() else { return false };
+        let up = p + axis.into_inner() * self.removed.height_of_metal(p, axis);
+        let mut is_below = false;
+        holes.around(&up.inf(p), &up.sup(p), &mut |hole| {
+            let collar = holes.collar(hole);
+            is_below |= collar.is_parallel(axis) && collar.from_axis(p) <= collar.hole_radius + TOUCH_DEPTH;
+        });
+        is_below
+    }
+
     /// Returns true for a part of unknown length: it reaches as high as the metal.
     pub(super) fn is_endless(&self, part: &ToolPart) -> bool {
         part.is_cutter && part.to <= part.from
@@ -217,9 +229,15 @@ impl KnownMetal {
         })
     }
 
+    /// Returns the pockets that a point is in, or on whose wall.
+    pub(super) fn pockets_at(&self, p: &Point3<f64>) -> impl Iterator<Item = &Surface> {
+        let p = *p;
+        self.pockets_near(&[p, p]).filter(move |pocket| -TOUCH_DEPTH < pocket.depth(&p))
+    }
+
     /// Returns true if a point is in a pocket, or on its wall.
     pub(super) fn is_point_in_pocket(&self, p: &Point3<f64>) -> bool {
-        self.pockets_near(&[*p, *p]).any(|pocket| -TOUCH_DEPTH < pocket.depth(p))
+        self.pockets_at(p).next().is_some()
     }
 
     /// Returns true if all metal on a line is in one pocket.

@@ -4,13 +4,14 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
 use super::chord_run::ChordRun;
+use super::cut_states::{CutStates, StateCut};
 use super::cutting::CuttingState;
 use super::drill_pass::{DrillPass, MilledCut, PassCut};
 use super::hole_circles::HoleCircles;
 use super::per_block::Findings;
 use super::slug::Turn;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
-use gcode_lang::motion::{Backtrace, Event, SpindleDirection, UnknownAxes};
+use gcode_lang::motion::{Backtrace, Event, UnknownAxes};
 
 /// Largest number of points of an engagement; with more the tool mills something larger than a hole.
 const MAX_POINTS: usize = 50_000;
@@ -38,6 +39,8 @@ pub(super) struct Engagement {
     pub arcs: Vec<PartArc>,
     run: Option<ArcRun>,
     chords: Option<ChordRun>,
+    /// Modal states of the current run's feeds.
+    run_cuts: CutStates,
     pub rings: Vec<Ring>,
     /// Strokes at nominal holes along which the tool doesn't retract.
     pub unretracted: Vec<(u32, DrillPass)>,
@@ -45,8 +48,6 @@ pub(super) struct Engagement {
     spoilt_before: u32,
     /// Axes of unknown position on the part during an arc.
     unknown_axes: UnknownAxes,
-    /// Modal state of the last feed across the tool.
-    cutting_state: CuttingState,
     /// Feeds that make no hole, unless the engagement does.
     pub uncounted: Uncounted,
     /// Errors about them, where the surface is known.
@@ -113,9 +114,12 @@ impl Engagement {
         }
     }
 
+    /// Ends the current run, of arcs or of chords.
     fn end_run(&mut self) {
-        self.rings.extend(self.run.take().and_then(ArcRun::finish));
-        self.rings.extend(self.chords.take().and_then(ChordRun::finish));
+        let cuts = std::mem::take(&mut self.run_cuts);
+        let arcs = self.run.take().and_then(ArcRun::finish);
+        let ring = arcs.or(self.chords.take().and_then(ChordRun::finish));
+        self.rings.extend(ring.map(|ring| Ring { cuts, ..ring }));
     }
 }
 
@@ -153,7 +157,6 @@ impl HoleExtractor<'_> {
         }
         let engagement = &mut self.engagement;
         if is_across {
-            engagement.cutting_state = self.cutting_state;
             let highest = begin.max(end);
             engagement.highest_side =
                 if engagement.points.is_empty() { highest } else { engagement.highest_side.max(highest) };
@@ -167,14 +170,18 @@ impl HoleExtractor<'_> {
         let place = || (event.backtrace(), self.axis_position);
         match arc {
             None if is_across => {
-                engagement.rings.extend(engagement.run.take().and_then(ArcRun::finish));
+                if engagement.run.is_some() {
+                    engagement.end_run();
+                }
                 if !engagement.chords.as_mut().is_some_and(|chords| chords.extend(to, &out, place)) {
                     engagement.end_run();
                     engagement.chords = Some(ChordRun::new(*from, to, out));
                 }
             }
             Some(arc) => {
-                engagement.rings.extend(engagement.chords.take().and_then(ChordRun::finish));
+                if engagement.chords.is_some() {
+                    engagement.end_run();
+                }
                 for t in [0.25, 0.5, 0.75] {
                     engagement.push_point(arc.point(t));
                 }
@@ -194,6 +201,7 @@ impl HoleExtractor<'_> {
         }
         if is_across {
             engagement.push_point(to);
+            self.note_run_cut(event);
         }
         self.note_slug();
         let engagement = &mut self.engagement;
@@ -205,6 +213,15 @@ impl HoleExtractor<'_> {
         if is_out || is_retract && !engagement.is_below(&to, &out) {
             self.end_engagement();
         }
+    }
+
+    /// Records the modal state of a feed of the current run.
+    fn note_run_cut(&mut self, event: &Event<'_>) {
+        let Some(rate) = event.kind.rate() else { return };
+        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+        let origin = self.offset_origin.as_ref();
+        let first = || StateCut::new(state, rate, true, event.backtrace(), origin);
+        self.engagement.run_cuts.record(&state, rate, true, first);
     }
 
     /// Follows a rapid: it ends the engagement if it ends above all feeds across.
@@ -261,7 +278,7 @@ impl HoleExtractor<'_> {
     /// Adds the passes of a hole.
     fn push_circles(&mut self, circles: &HoleCircles) {
         let start = self.engagement.start.unwrap_or(self.pose.tip);
-        let Engagement { approach_level, unknown_axes, cutting_state, .. } = self.engagement;
+        let Engagement { approach_level, unknown_axes, .. } = self.engagement;
         let tool = self.setup.tool;
         if let Some(excess) = &circles.excess {
             let Ring { out, backtrace, .. } = &circles.widest;
@@ -286,9 +303,13 @@ impl HoleExtractor<'_> {
                 axis_position: ring.axis_position,
                 unknown_axes,
             };
-            self.check_clamped(&pass.backtrace, self.clamp_state);
-            if cutting_state.spindle_direction == SpindleDirection::Off {
-                self.report_spindle_stopped(&pass.backtrace, &cutting_state);
+            let is_even = ring.cuts.iter().len() == 1;
+            for (cut, _) in ring.cuts.iter() {
+                let place = if is_even { &pass.backtrace } else { &cut.backtrace };
+                self.check_clamped(place, cut.state.clamp);
+                if cut.is_stopped() {
+                    self.report_spindle_stopped(place, &cut.state);
+                }
             }
             let order = self.strokes.begin_pass();
             self.strokes.push(order, pass, CutKind::Drilled);

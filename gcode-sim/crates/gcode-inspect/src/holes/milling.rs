@@ -4,12 +4,16 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
+use super::below_part::lowest;
 use super::cutting::{CuttingState, PeckExtent, RecordedCut};
+use super::feed_law::is_along;
+use super::strip::Line;
 use super::strokes::MIN_TOOL_COSINE;
 use crate::findings::{TOOL_CUTS_NOTHING, TOOL_KIND};
-use crate::machine::{TOUCH_DEPTH, tool_name};
+use crate::machine::{TOUCH_DEPTH, ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
+use gcode_lang::units::MmPerMin;
 
 /// State of a cut, and the selected tool.
 type MillingKey = ([u64; 4], Option<u32>);
@@ -23,13 +27,22 @@ pub(super) struct Milling {
     /// Path of the last feed across that was searched and met no metal, with its state.
     clear: Option<(MillingKey, Vec<Point3<f64>>)>,
     /// First feed across of each tool that has met no metal so far; `None` once it has cut.
-    idle: BTreeMap<Option<u32>, Option<Backtrace>>,
+    idle: BTreeMap<u32, Option<Backtrace>>,
+    /// First feed across of each tool that cuts with its end, beside the metal and below its top.
+    fed_aside: BTreeMap<u32, Backtrace>,
 }
 
 impl Milling {
     /// Records that a tool cuts.
     pub(super) fn record_cut(&mut self, tool: Option<u32>) {
-        self.idle.insert(tool, None);
+        self.idle.extend(tool.map(|tool| (tool, None)));
+    }
+
+    /// Records that a feed of a tool meets no metal.
+    pub(super) fn record_idle(&mut self, event: &Event<'_>, tool: Option<u32>) {
+        if let Some(tool) = tool {
+            self.idle.entry(tool).or_insert_with(|| Some(event.backtrace()));
+        }
     }
 
     /// Returns true if a path is beside one that met no metal by no more than a thickness that counts as none.
@@ -42,17 +55,24 @@ impl Milling {
 }
 
 impl HoleExtractor<'_> {
-    /// Checks the tool, its spindle and its rate in a feed that cuts metal across the tool.
-    pub(super) fn check_milling(&mut self, event: &Event<'_>, path: &[Point3<f64>]) {
-        let Some(rate) = event.kind.rate().filter(|_| self.metal.holes.is_some()) else { return };
+    /// Checks the tool, its spindle and its rate in a feed that cuts metal across the tool. `path` are its points, none while an
+    /// axis rotates; `mills` tells whether it cuts metal.
+    pub(super) fn check_milling(
+        &mut self,
+        event: &Event<'_>,
+        rate: MmPerMin,
+        path: &[Point3<f64>],
+        mills: impl FnOnce(&Self) -> bool,
+    ) {
+        if self.metal.holes.is_none() {
+            return;
+        }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
         let is_stopped = state.spindle_direction == SpindleDirection::Off;
         let key = (state.key(), state.selected_tool);
         let range = self.milling.rates.get(&key).copied();
         let is_known = range.is_some_and(|[least, most]| least <= rate.0 && rate.0 <= most);
-        let is_straight = path.len() == 2;
-        let kind = self.machine.kind_of(state.tool);
-        let wrong_kind = kind.filter(|kind| is_straight && kind.cuts_with_end());
+        let wrong_kind = self.machine.kind_of(state.tool).filter(|kind| kind.cuts_with_end());
         let is_done = is_known && !is_stopped && wrong_kind.is_none();
         if is_done {
             return;
@@ -60,15 +80,16 @@ impl HoleExtractor<'_> {
         if self.milling.is_known_clear(&key, path) {
             return;
         }
-        if !path.windows(2).any(|chord| self.mills(&chord[0], &chord[1])) {
+        if !mills(self) {
             self.milling.clear = (2 < path.len()).then(|| (key, path.to_vec()));
-            self.record_idle_feed(event, path, &state);
+            if let Ok(line) = <&Line>::try_from(path) {
+                self.record_idle_feed(event, line, &state);
+            }
             return;
         }
         self.milling.record_cut(state.tool);
         let backtrace = event.backtrace();
-        // A full circle has its own finding.
-        if is_stopped && is_straight {
+        if is_stopped {
             self.report_spindle_stopped(&backtrace, &state);
         }
         if let Some(kind) = wrong_kind {
@@ -81,7 +102,7 @@ impl HoleExtractor<'_> {
         if !is_known {
             let [least, most] = range.unwrap_or([rate.0; 2]);
             self.milling.rates.insert(key, [least.min(rate.0), most.max(rate.0)]);
-            self.check_tool_changed(&backtrace, &state);
+            self.check_tool_changed(&backtrace, &state, "cuts");
             self.cut_conditions.add(RecordedCut {
                 backtrace: &backtrace,
                 state: &state,
@@ -94,21 +115,44 @@ impl HoleExtractor<'_> {
     }
 
     /// Records a straight feed across a turning tool of known diameter that meets no metal of a known body.
-    fn record_idle_feed(&mut self, event: &Event<'_>, path: &[Point3<f64>], state: &CuttingState) {
-        let [from, to] = path else { return };
-        let is_across = self.pose.axis.is_some_and(|axis| is_across(&axis, &(to - from)));
-        let is_known = self.surface.is_some() && self.tool_radius().is_some();
-        if is_across && is_known && state.spindle_direction != SpindleDirection::Off {
-            self.milling.idle.entry(state.tool).or_insert_with(|| Some(event.backtrace()));
+    fn record_idle_feed(&mut self, event: &Event<'_>, [from, to]: &Line, state: &CuttingState) {
+        let Some(tool) = state.tool else { return };
+        let Some(axis) = self.pose.axis.filter(|axis| is_across(axis, &(to - from))) else { return };
+        let Some(body) = self.surface.filter(|_| self.tool_radius().is_some()) else { return };
+        if state.spindle_direction == SpindleDirection::Off {
+            return;
         }
+        let is_other = state.selected_tool != state.tool;
+        if is_other && self.check_tool_changed(&event.backtrace(), state, "is fed across") {
+            return;
+        }
+        let kind = self.machine.kind_of(state.tool);
+        if kind.is_some_and(ToolKind::cuts_with_end)
+            && to.coords.dot(&axis) + TOUCH_DEPTH < -lowest(&body, &-axis)
+        {
+            self.milling.fed_aside.entry(tool).or_insert_with(|| event.backtrace());
+        }
+        self.milling.record_idle(event, Some(tool));
     }
 
-    /// Reports the tools whose feeds all miss the metal.
+    /// Reports the tools whose feeds all miss the metal, and those that follow a mill's path beside it.
     pub(super) fn report_idle_mills(&mut self) {
         let idle = std::mem::take(&mut self.milling.idle).into_iter();
-        for (tool, backtrace) in idle.filter_map(|(tool, first)| Some((tool, first?))) {
-            self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool.unwrap_or(0), 1, |kind| {
-                let name = tool_name(tool);
+        let idle: BTreeMap<_, _> = idle.filter_map(|(tool, first)| Some((tool, first?))).collect();
+        let mut fed_aside = std::mem::take(&mut self.milling.fed_aside);
+        fed_aside.retain(|tool, _| !idle.contains_key(tool));
+        for (tool, backtrace) in fed_aside {
+            self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool, 1, |kind| {
+                let own = self.machine.kind_of(Some(tool)).map_or("tool", |kind| kind.name());
+                let name = tool_name(Some(tool));
+                let message =
+                    format!("{name} is a {own} and is fed across beside the part, where it cuts nothing");
+                Diagnostic::new(kind, message).help("check T and M06 before it, its H and its kind")
+            });
+        }
+        for (tool, backtrace) in idle {
+            self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool, 1, |kind| {
+                let name = tool_name(Some(tool));
                 Diagnostic::new(
                     kind,
                     format!("{name} cuts nothing: all its feeds miss the metal of the part"),
@@ -118,11 +162,13 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Returns true if a feed across the tool cuts metal that is known.
-    fn mills(&self, from: &Point3<f64>, to: &Point3<f64>) -> bool {
-        let Some(axis) = self.axis_in_motion(from, to) else { return false };
-        is_across(&axis, &(to - from))
-            && self.metal.is_touched(from, to, &axis, self.tool_radius().unwrap_or(0.0))
+    /// Returns true if a feed across the tool, or one that rises beside it, cuts metal that is known. One that falls beside it is a
+    /// stroke.
+    pub(super) fn mills(&self, [from, to]: &Line, axis: &Unit<Vector3<f64>>) -> bool {
+        let along = to - from;
+        let rises_aside = 0.0 < axis.dot(&along) && !is_along(axis, &along);
+        (rises_aside || is_across(axis, &along))
+            && self.metal.is_touched(from, to, axis, self.tool_radius().unwrap_or(0.0))
             && self.cuts_known_metal(from, to) == Some(true)
     }
 }

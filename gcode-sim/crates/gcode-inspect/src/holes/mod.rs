@@ -2,6 +2,7 @@
 mod arc_run;
 mod axis_box;
 mod bar_shift;
+mod below_part;
 mod box_tree;
 mod chord_run;
 mod circles;
@@ -9,6 +10,7 @@ mod clamping;
 mod clearance;
 mod core;
 mod covered_entries;
+mod cut_states;
 mod cutting;
 mod drill_pass;
 #[cfg(test)]
@@ -75,7 +77,7 @@ use nalgebra::Point3;
 
 use self::axis_box::SearchBudget;
 use self::bar_shift::BarShift;
-use self::clamping::ClampState;
+use self::below_part::LowPlaces;
 use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
 use self::feed_law::Plunge;
@@ -131,7 +133,6 @@ pub struct HoleExtractor<'m> {
     process_limits: ProcessLimits,
     /// Rapids are checked; they decide no hole.
     checks_rapids: bool,
-    clamp_state: ClampState,
     /// Frame of the part at `axis_position`.
     frame: Frame,
     /// Pose of the tool on the part.
@@ -180,6 +181,7 @@ pub struct HoleExtractor<'m> {
     bar_shift: BarShift,
     change_retract: ChangeRetract,
     low_rapid: Option<LowRapid>,
+    low_places: LowPlaces,
 }
 
 /// Kind of a motion.
@@ -213,7 +215,6 @@ impl<'m> HoleExtractor<'m> {
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
             checks_rapids: true,
-            clamp_state: ClampState::default(),
             frame,
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
             has_tool_turned: false,
@@ -245,6 +246,7 @@ impl<'m> HoleExtractor<'m> {
             bar_shift: BarShift::default(),
             change_retract: ChangeRetract::default(),
             low_rapid: None,
+            low_places: LowPlaces::default(),
         }
     }
 
@@ -298,6 +300,7 @@ impl<'m> HoleExtractor<'m> {
         unsearched.into_iter().for_each(|block| self.unsearched_feeds.count(|| block));
         self.end_engagement();
         self.report_idle_mills();
+        self.report_low_places();
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         self.find_cores(&mut holes);
@@ -397,6 +400,9 @@ impl<'m> HoleExtractor<'m> {
             }
             return;
         }
+        if kind != MotionKind::Probe {
+            self.follow_below_part(event);
+        }
         if is_rotating || arc.is_some() {
             self.end_line(Some(kind));
             match kind {
@@ -422,9 +428,8 @@ impl<'m> HoleExtractor<'m> {
         if (self.pose.tip - before.tip).norm() < 1e-9 {
             return;
         }
-        self.check_thread_wall(event, &before.tip);
-        if kind == MotionKind::Rapid {
-            self.check_rapid_into_thread(event, &before.tip);
+        if kind != MotionKind::Rapid || !self.check_rapid_into_thread(event, &before.tip) {
+            self.check_thread_wall(event, &[before.tip, self.pose.tip]);
         }
         self.follow_low_rapid(event, kind, &before.tip);
         let free_from = self.update_line(event, kind, before.tip);

@@ -204,7 +204,7 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns true for a tool whose edges are wider than a part above them: a side cutter, or a cutter for T slots.
-    fn cuts_undercut(&self) -> bool {
+    pub(super) fn cuts_undercut(&self) -> bool {
         let edges = || self.tool_body.iter().filter(|part| part.is_cutter);
         self.tool_body.iter().any(|above| {
             edges().any(|edge| edge.to <= above.from && above.radius() + TOUCH_DEPTH < edge.radius())

@@ -23,7 +23,7 @@ impl HoleExtractor<'_> {
     pub(super) fn update_spindle_in_hole(&mut self, before: SpindleDirection) {
         let now = self.cutting_state.spindle_direction;
         let Some(line) = self.current_line.as_mut().filter(|line| line.is_below_start()) else { return };
-        let begun = match line.cutting_feeds() {
+        let begun = match line.cuts.extremes() {
             Some(_) => line.cutting_state.spindle_direction,
             // Nothing is cut so far.
             None => SpindleDirection::Off,
@@ -93,7 +93,7 @@ fn cycles_of(kind: Option<ToolKind>) -> &'static str {
         Some(ToolKind::Counterbore | ToolKind::Countersink | ToolKind::EndMill) => {
             "sink with G82 or G81, or in single blocks"
         }
-        Some(ToolKind::Drill | ToolKind::SpotDrill | ToolKind::Tap) | None => {
+        Some(ToolKind::Drill | ToolKind::SpotDrill | ToolKind::Tap | ToolKind::Probe) | None => {
             "drill with G81, G82, G83 or G73"
         }
     }

@@ -12,7 +12,7 @@ use super::line::CuttingLine;
 use super::per_block::with_count_note;
 use super::start_holes::StartHoles;
 use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
-use crate::machine::{Machine, ToolKind};
+use crate::machine::{COS_30, Machine, ToolKind};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, Position};
 use gcode_part::{NominalAxes, NominalAxis, PARALLEL_COSINE};
@@ -27,7 +27,7 @@ const MAX_SQUARE_SINE: f64 = 0.01;
 const MIN_UPRIGHT_COSINE: f64 = 0.999;
 
 /// Cosine of the largest angle between a stroke and a known tool axis: 30°. A larger one is milling.
-pub(super) const MIN_TOOL_COSINE: f64 = 0.866_025_403_784_438_6;
+pub(super) const MIN_TOOL_COSINE: f64 = COS_30;
 
 /// Largest distance of a stroke of a mill from the nominal axis on which it drills, mm.
 const MAX_AXIS_DISTANCE: f64 = 1.0;

@@ -1,5 +1,5 @@
 //! Threads of nominal holes that a tool cuts away: only a tap, and a mill along its helix, may enter them, and no rapid.
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use super::HoleExtractor;
 use super::rapids::format_point;
@@ -7,7 +7,8 @@ use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
 use crate::machine::{ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Event;
-use gcode_part::exceeds;
+use gcode_lang::units::Deg;
+use gcode_part::{NOISE, NominalAxis, NominalThread, exceeds};
 
 /// Largest depth of a cut in the flanks of a thread, mm.
 const MAX_FLANK_CUT: f64 = 0.05;
@@ -18,42 +19,51 @@ const MIN_ASIDE: f64 = 0.1;
 /// Largest sine of the angle between the tool and a motion along it.
 const MAX_AXIAL_SINE: f64 = 0.1;
 
+/// Angle from which on an arc makes a whole turn, in turns.
+const WHOLE_TURN: f64 = 0.99;
+
+/// Shares of a way that is in a shape from end to end, and of one that is nowhere in it.
+const EVERYWHERE: [f64; 2] = [0.0, 1.0];
+const NOWHERE: [f64; 2] = [1.0, 0.0];
+
+/// Least way across an axis that counts, mm and mm².
+const MIN_ACROSS: f64 = 1e-9;
+
 impl HoleExtractor<'_> {
-    /// Reports a straight motion along the tool, at the side of a threaded hole, that cuts more than a turn of the thread.
-    pub(super) fn check_thread_wall(&mut self, event: &Event<'_>, from: &Point3<f64>) {
+    /// Reports a motion through points beside the axis of a threaded hole that furrows its flanks. It goes more than a turn farther
+    /// along the axis than the thread on the same way round.
+    pub(super) fn check_thread_wall(&mut self, event: &Event<'_>, path: &[Point3<f64>]) {
         if !self.strokes.nominal_axes().has_threads() {
             return;
         }
-        let to = self.pose.tip;
+        let [Some(from), Some(to)] = [path.first(), path.last()] else { return };
         let (Some(axis), Some(diameter)) = (self.pose.axis, self.machine.diameter_of(self.setup.tool)) else {
             return;
         };
         let travel = to - from;
-        let is_along = axis.cross(&travel).norm() <= MAX_AXIAL_SINE * travel.norm();
         let is_tap = self.machine.kind_of(self.setup.tool) == Some(ToolKind::Tap);
-        if !is_along || is_tap || self.cutting_state.rigid_run != 0 {
+        let is_level = travel.dot(&axis).abs() <= MAX_FLANK_CUT;
+        if is_level || is_tap || self.cutting_state.rigid_run != 0 {
             return;
         }
-        let ends = if travel.dot(&axis) < 0.0 { [from, &to] } else { [&to, from] };
-        let Some((hole, thread, aside)) = self.strokes.nominal_axes().threaded(ends, &axis) else { return };
-        let depths = ends.map(|end| (hole.entry - end).dot(&hole.out));
-        let bottom = depths[1].min(thread.span[1]);
-        let length = bottom - depths[0].max(thread.span[0]);
-        let reach = aside + diameter / 2.0;
-        if aside < MIN_ASIDE
-            || !exceeds(reach - thread.core, MAX_FLANK_CUT)
-            || exceeds(reach - thread.major, MAX_FLANK_CUT)
-            || length <= thread.pitch.max(MAX_FLANK_CUT)
-        {
+        let is_along = path.len() == 2 && axis.cross(&travel).norm() <= MAX_AXIAL_SINE * travel.norm();
+        let (upper, lower) = if travel.dot(&axis) < 0.0 { (from, to) } else { (to, from) };
+        // The end of a slant that is nearer to the axis shows the hole.
+        let ends = if is_along { vec![[upper, lower]] } else { vec![[to, to], [from, from]] };
+        let axes = self.strokes.nominal_axes();
+        let Some((hole, thread, _)) = ends.into_iter().find_map(|ends| axes.threaded(ends, &axis)) else {
             return;
-        }
-        let (place, core) = (hole.entry - hole.out * bottom, 2.0 * thread.core);
-        let tool = tool_name(self.setup.tool);
+        };
+        let radius = diameter / 2.0;
+        let Some(furrow) = Furrow::longest(path, hole, thread, radius) else { return };
+        let (place, core) = (hole.entry - hole.out * furrow.bottom, 2.0 * thread.core);
+        let (tool, aside, length) = (tool_name(self.setup.tool), furrow.aside, furrow.length);
+        let verb = if is_along { "goes along the axis" } else { "goes down or up along the axis up to" };
         self.findings.add(&FEED_BESIDE_HOLE, &event.backtrace(), 2, |finding| {
             let message = format!(
-                "{tool} goes along the axis {aside:.3} mm beside it and cuts {:.3} mm deep into the thread, {length:.3} mm \
-                 long, down to {}: the hole before the thread is Φ{core:.3}",
-                reach - core / 2.0,
+                "{tool} {verb} {aside:.3} mm beside it and cuts {:.3} mm deep into the thread, {length:.3} mm long, down \
+                 to {}: the hole before the thread is Φ{core:.3}",
+                aside + radius - core / 2.0,
                 format_point(&place),
             );
             Diagnostic::new(finding, message)
@@ -61,17 +71,17 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a rapid away from the axis of a threaded hole whose edge enters the flanks.
-    pub(super) fn check_rapid_into_thread(&mut self, event: &Event<'_>, from: &Point3<f64>) {
+    /// Reports a rapid away from the axis of a threaded hole whose edge enters the flanks; returns true if it does.
+    pub(super) fn check_rapid_into_thread(&mut self, event: &Event<'_>, from: &Point3<f64>) -> bool {
         if !self.strokes.nominal_axes().has_threads() {
-            return;
+            return false;
         }
         let to = self.pose.tip;
         let (Some(axis), Some(diameter)) = (self.pose.axis, self.machine.diameter_of(self.setup.tool)) else {
-            return;
+            return false;
         };
         let Some((hole, thread, aside)) = self.strokes.nominal_axes().threaded([&to, &to], &axis) else {
-            return;
+            return false;
         };
         let spoke = from - hole.entry;
         let before = (spoke - hole.out * spoke.dot(&hole.out)).norm();
@@ -82,7 +92,7 @@ impl HoleExtractor<'_> {
             || exceeds(reach - thread.major, MAX_FLANK_CUT)
             || !exceeds(depth - thread.span[0], MAX_FLANK_CUT)
         {
-            return;
+            return false;
         }
         let (tool, core) = (tool_name(self.setup.tool), 2.0 * thread.core);
         self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |finding| {
@@ -93,5 +103,119 @@ impl HoleExtractor<'_> {
             );
             Diagnostic::new(finding, message).help("only a feed along the helix may enter the thread")
         });
+        true
     }
+}
+
+/// Stretch of a path on which the edge of a tool is in the flanks of a thread, mm.
+#[derive(Clone, Copy, Debug, Default)]
+struct Furrow {
+    /// Height along the axis, positive downwards while the path is followed.
+    height: f64,
+    /// Angle about the axis, in turns.
+    turns: f64,
+    /// Largest distance of the tool from the axis.
+    aside: f64,
+    /// Largest depth.
+    bottom: f64,
+    /// Height besides that of the thread.
+    length: f64,
+}
+
+impl Furrow {
+    /// Returns the longest furrow of a path that is longer than a turn of the thread; `None` without one. A whole turn is judged by
+    /// its lead.
+    fn longest(
+        path: &[Point3<f64>],
+        hole: &NominalAxis,
+        thread: &NominalThread,
+        radius: f64,
+    ) -> Option<Self> {
+        let turn = thread.pitch.max(MAX_FLANK_CUT);
+        let mut longest: Option<Self> = None;
+        let mut current = Self::default();
+        let mut end_furrow = |furrow: Self| {
+            let length = furrow.height.abs() - thread.pitch * furrow.turns.abs();
+            let is_long = turn < length && furrow.turns.abs() < WHOLE_TURN;
+            if is_long && longest.is_none_or(|longest| longest.length < length) {
+                longest = Some(Self { length, ..furrow });
+            }
+        };
+        for chord in path.windows(2) {
+            let mut last = 0.0;
+            for [begin, end] in in_flanks([&chord[0], &chord[1]], hole, thread, radius) {
+                if last < begin {
+                    end_furrow(std::mem::take(&mut current));
+                }
+                current.add([begin, end].map(|share| chord[0] + (chord[1] - chord[0]) * share), hole);
+                last = end;
+            }
+            if last < 1.0 {
+                end_furrow(std::mem::take(&mut current));
+            }
+        }
+        end_furrow(current);
+        longest
+    }
+
+    /// Adds a straight stretch.
+    fn add(&mut self, ends: [Point3<f64>; 2], hole: &NominalAxis) {
+        let [(one, from), (other, to)] = ends.map(|end| split(&end, hole));
+        let angle = Deg::atan2(hole.out.dot(&one.cross(&other)), one.dot(&other));
+        *self = Self {
+            height: self.height + (to - from),
+            turns: self.turns + angle.0 / 360.0,
+            aside: self.aside.max(one.norm()).max(other.norm()),
+            bottom: self.bottom.max(from).max(to),
+            length: 0.0,
+        };
+    }
+}
+
+/// Returns where a point is beside the axis of a hole, and its depth.
+fn split(p: &Point3<f64>, hole: &NominalAxis) -> (Vector3<f64>, f64) {
+    let spoke = p - hole.entry;
+    let height = spoke.dot(&hole.out);
+    (spoke - hole.out * height, -height)
+}
+
+/// Returns the shares of a straight way on which the edge of a tool is in the flanks of a thread, in their order: at most two.
+fn in_flanks(
+    [from, to]: [&Point3<f64>; 2],
+    hole: &NominalAxis,
+    thread: &NominalThread,
+    radius: f64,
+) -> impl Iterator<Item = [f64; 2]> {
+    let ((start, top), (end, bottom)) = (split(from, hole), split(to, hole));
+    let across = end - start;
+    // The way is inside a circle between the roots of a² t² + 2 b t + c.
+    let within = |radius: f64| {
+        let (a, b, c) = (across.norm_squared(), start.dot(&across), start.norm_squared() - radius * radius);
+        let square = b * b - a * c;
+        if radius < 0.0 || square < 0.0 || a <= MIN_ACROSS && 0.0 < c {
+            return NOWHERE;
+        }
+        if a <= MIN_ACROSS {
+            EVERYWHERE
+        } else {
+            [-libm::sqrt(square), libm::sqrt(square)].map(|root| (root - b) / a)
+        }
+    };
+    let by = bottom - top;
+    let [mut low, mut high] = match by.abs() <= MIN_ACROSS {
+        true if thread.span[0] <= top && top <= thread.span[1] => EVERYWHERE,
+        true => NOWHERE,
+        false => {
+            let shares = thread.span.map(|depth| (depth - top) / by);
+            [shares[0].min(shares[1]), shares[0].max(shares[1])]
+        }
+    };
+    let outer = within(thread.major - radius + MAX_FLANK_CUT + NOISE);
+    let inner = within((thread.core - radius + MAX_FLANK_CUT + NOISE).max(MIN_ASIDE));
+    (low, high) = (low.max(outer[0]).max(0.0), high.min(outer[1]).min(1.0));
+    let pieces = match inner[0] < inner[1] {
+        true => [[low, high.min(inner[0])], [low.max(inner[1]), high]],
+        false => [[low, high], NOWHERE],
+    };
+    pieces.into_iter().filter(|[begin, end]| begin < end)
 }

@@ -2,17 +2,12 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
-use super::feed_law::Gouge;
+use super::feed_law::{CHORD_TOLERANCE, COARSE_TOLERANCE, Gouge};
 use super::near_metal::Judged;
 use super::strip::Line;
 use crate::machine::{AxisMotion, Pose};
 use gcode_lang::motion::Event;
-
-/// Largest deviation of a curved path from its chords, mm.
-const CHORD_TOLERANCE: f64 = 0.005;
-
-/// Deviation of the chords that show whether a path is near the metal, mm.
-const COARSE_TOLERANCE: f64 = 5.0;
+use gcode_lang::units::MmPerMin;
 
 /// Largest number of chords of a feed that is followed.
 const MAX_CHORDS: usize = 5000;
@@ -41,9 +36,12 @@ impl HoleExtractor<'_> {
             self.metal.is_touched(&from, &to, axis, reach)
         };
         if !coarse.iter().any(is_near) {
+            self.milling.record_idle(event, self.setup.tool);
             return true;
         }
         let Some(chords) = self.turning_chords(travel, CHORD_TOLERANCE) else { return false };
+        let mills = |own: &Self| chords.iter().any(|(chord, axis)| own.mills(chord, axis));
+        self.check_milling(event, rate_on_part(event, &chords), &[], mills);
         if !chords.iter().all(|(chord, axis)| self.is_turning_allowed(chord, axis)) {
             self.is_feed_unsearched.take();
             return false;
@@ -105,4 +103,10 @@ impl HoleExtractor<'_> {
         };
         self.gouge_on_chord(chord, axis).is_none() && !is_touching()
     }
+}
+
+/// Returns the rate of the tool on the part: F counts the degrees of a rotary axis as millimetres.
+fn rate_on_part(event: &Event<'_>, chords: &[(Line, Unit<Vector3<f64>>)]) -> MmPerMin {
+    let length: f64 = chords.iter().map(|([from, to], _)| (to - from).norm()).sum();
+    MmPerMin(length / event.seconds.0 * 60.0)
 }

@@ -30,9 +30,10 @@ pub use random::RandomStream;
 pub use rapid::RapidPath;
 pub(crate) use rapid::arrivals;
 pub use sources::{ErrorSource, Quantity};
-pub(crate) use tool_body::{TOUCH_DEPTH, ToolPart};
+pub(crate) use tool_body::{COS_30, TOUCH_DEPTH, ToolPart};
 pub use tool_shape::ToolKind;
 pub(crate) use tool_shape::{PointShape, tool_name};
+pub(crate) use touch::BALL_CHORD_TOLERANCE;
 pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};

@@ -4,6 +4,9 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::{Machine, PointShape, Setup, Tool, ToolKind};
 use gcode_part::{Frustum, Surface, Taper};
 
+/// Cosine of 30°, beyond which a direction is another one.
+pub(crate) const COS_30: f64 = 0.866_025_403_784_438_6;
+
 /// Largest depth below the surface that is not reported, mm.
 pub(crate) const TOUCH_DEPTH: f64 = 0.01;
 

@@ -8,7 +8,7 @@ use gcode_lang::motion::{SkipMove, SkipSignal};
 use gcode_part::{Surface, bisect};
 
 /// Largest deviation of the ball's path from its chords, mm.
-const CHORD_TOLERANCE: f64 = 1e-5;
+pub(crate) const BALL_CHORD_TOLERANCE: f64 = 1e-5;
 
 impl Machine {
     /// Returns the result of G31 with this probe; `touches` is the number of earlier touches of the run, each
@@ -63,7 +63,7 @@ impl Machine {
         if surface.nearest(&from).distance - radius < -self.increment.size() {
             return Some(0.0);
         }
-        let steps = self.chord_count(travel, setup, CHORD_TOLERANCE);
+        let steps = self.chord_count(travel, setup, BALL_CHORD_TOLERANCE);
         for step in 0..steps {
             let to = tip(f64::from(step + 1) / f64::from(steps));
             if let Some(along) = contact_on_chord(surface, radius, &from, &to) {

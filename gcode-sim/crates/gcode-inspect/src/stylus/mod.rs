@@ -16,7 +16,7 @@ use self::unknown::UnknownPositions;
 use self::unread::{UnreadFeed, UnreadFeeds, UnreadReason};
 use crate::holes::unclear_head;
 use crate::holes::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Machine, Placement};
+use crate::machine::{AxisMotion, BALL_CHORD_TOLERANCE, Machine, Placement};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, UnknownAxes};
@@ -27,9 +27,6 @@ pub use self::unread::Gap;
 
 /// Largest distance of the ball from the surface with a reading, mm: more than the error of a coarse alignment.
 const MAX_READING_DISTANCE: f64 = 5.0;
-
-/// Largest deviation of the path from its chords where it is read, mm.
-const CHORD_TOLERANCE: f64 = 1e-5;
 
 /// Largest deviation of the path from its chords where only its length and depth count, mm.
 const COARSE_CHORD_TOLERANCE: f64 = 0.01;
@@ -278,7 +275,7 @@ impl<'m> Stylus<'m> {
     /// Returns the fractions of a motion at which the ball is read, beyond 0 up to 1.
     fn stations(&self, travel: &AxisMotion<'_>) -> Vec<f64> {
         let mut stations = Vec::new();
-        for chord in self.ball.chords(self.machine, travel, CHORD_TOLERANCE) {
+        for chord in self.ball.chords(self.machine, travel, BALL_CHORD_TOLERANCE) {
             let [start, end] = [0.0, 1.0].map(|t| self.tip(travel, chord(t)));
             let nearest = self.surface.nearest_between(&start, &end);
             let even = (1..=READINGS_PER_CHORD).map(|n| f64::from(n) / f64::from(READINGS_PER_CHORD));

@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 use super::position::Deviation;
 use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
-use crate::machine::{Machine, ToolKind, ToolPart};
+use crate::machine::{COS_30, Machine, ToolKind, ToolPart};
 use gcode_part::{
     FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds,
 };
@@ -25,7 +25,7 @@ const MAX_DEPTH_DIFFERENCE: f64 = 0.01;
 const NEARNESS: f64 = 1e-6;
 
 /// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
-const TILTED_HOLE_COSINE: f64 = 0.866_025_403_784_438_6;
+const TILTED_HOLE_COSINE: f64 = COS_30;
 
 /// Cosine of the largest angle between the axes of two holes that meet.
 const MIN_OPPOSITE_COSINE: f64 = 0.999_999;
@@ -337,13 +337,22 @@ fn is_spring_pass(
 /// Returns true if a tap follows the thread of its earlier pass: rigid tapping goes on with the same pitch, from a height whole
 /// pitches away.
 fn is_in_step(one: &PassCut, again: &PassCut, axis: &Vector3<f64>) -> bool {
+    let off = step_off(one, again, axis);
+    is_one_run(one, again) && off.is_some_and(|off| off <= MAX_DEPTH_DIFFERENCE)
+}
+
+/// Returns true if the spindle keeps its angle at each height between two strokes of a tap.
+pub(super) fn is_one_run(one: &PassCut, again: &PassCut) -> bool {
+    again.is_tapping && 0 < again.rigid_run && again.rigid_run == one.rigid_run
+}
+
+/// Returns how far the start of a tap's stroke is from whole pitches above that of an earlier one, mm; `None` if their pitches
+/// differ.
+pub(super) fn step_off(one: &PassCut, again: &PassCut, axis: &Vector3<f64>) -> Option<f64> {
     let pitch = |cut: &PassCut| cut.feed.map(|feed| feed.0 / cut.speed.0);
-    let (Some(own), Some(other)) = (pitch(again), pitch(one)) else { return false };
+    let (own, other) = pitch(again).zip(pitch(one))?;
     let turns = (again.start - one.start).dot(axis) / own;
-    let is_one_run = again.is_tapping && 0 < again.rigid_run && again.rigid_run == one.rigid_run;
-    is_one_run
-        && !exceeds((own - other).abs(), 1e-6)
-        && (turns - turns.round()).abs() * own <= MAX_DEPTH_DIFFERENCE
+    (!exceeds((own - other).abs(), 1e-6)).then_some((turns - turns.round()).abs() * own)
 }
 
 /// Returns true if a pass cuts nothing of the body; `nominal` is the diameter of a tool that the tool table lacks. A circle that

@@ -3,6 +3,7 @@ mod constant_alarm;
 mod doubled_n;
 mod doubled_program;
 mod endless_loop;
+mod ignored_g53;
 mod jump_into_loop;
 mod live_position;
 mod loop_pairs;
@@ -62,6 +63,7 @@ pub static ALL: &[&Rule] = &[
     &missing_point::RULE,
     &rounded_pi::RULE,
     &live_position::RULE,
+    &ignored_g53::RULE,
     &endless_loop::RULE,
     &unreachable_alarm::RULE,
     &unreachable::RULE,

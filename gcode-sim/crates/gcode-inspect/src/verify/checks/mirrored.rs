@@ -1,6 +1,7 @@
 //! Mirror image of the pattern: the table rotates in the opposite direction, or a mirror image is left in force.
 use super::*;
 use crate::findings::{MIRROR_IMAGE, ROTARY_SIGN};
+use crate::machine::COS_30;
 
 /// Least share of the nominal holes that the mirrored ones must match.
 const MIN_AGREEING_SHARE: f64 = 0.8;
@@ -9,7 +10,7 @@ const MIN_AGREEING_SHARE: f64 = 0.8;
 const MIN_EXPLAINED: usize = 2;
 
 /// Cosine of the largest angle between the negated axis and holes that the image turns over: 30°.
-const MIN_TURNED_COSINE: f64 = 0.866_025_403_784_438_6;
+const MIN_TURNED_COSINE: f64 = COS_30;
 
 /// A mirror image of the pattern in place of the pattern.
 pub(in crate::verify) struct MirrorImage {

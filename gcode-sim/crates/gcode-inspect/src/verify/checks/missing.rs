@@ -1,10 +1,11 @@
 //! Nominal holes that are not drilled, each with the nearest extra hole.
 use super::*;
 use crate::findings::HOLE_MISSING;
+use crate::machine::COS_30;
 use crate::verify::bottom;
 
 /// Cosine of the largest angle between holes of one side of the part: 30°.
-const MIN_SIDE_COSINE: f64 = 0.866_025_403_784_438_6;
+const MIN_SIDE_COSINE: f64 = COS_30;
 
 /// Steps of a component of a direction.
 const DIRECTION_STEPS: f64 = 100.0;

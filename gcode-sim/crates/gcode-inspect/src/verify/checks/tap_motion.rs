@@ -1,8 +1,10 @@
 //! Taps: they leave their thread as they came, at its pitch, and the hole before them is wide enough.
 use super::features::Judgement;
+use super::threads::MAX_STEP;
 use super::*;
 use crate::findings::{TAP_DRILL, TAP_PITCH};
 use crate::verify::hole_cuts::Cut;
+use crate::verify::matching::{is_one_run, step_off};
 use gcode_part::{Feature, NOISE};
 
 /// Depth of an internal thread by its pitch, in diameter (ISO 724).
@@ -42,6 +44,29 @@ pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cu
     );
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help("feed out at the feed and the speed of the feed in, or tap with G84 or G74"))
+}
+
+/// Reports a stroke of a tap that begins between the threads of its stroke before. It is a warning without rigid tapping, which
+/// alone keeps the spindle's angle.
+pub(super) fn out_of_step(id: &str, cuts: &[Cut<'_>]) -> Option<Diagnostic> {
+    let taps = || cuts.iter().filter(|cut| cut.is_thread() && cut.thread.is_none());
+    taps().zip(taps().skip(1)).find_map(|(one, again)| {
+        let (before, after) = (&one.pass.cut, &again.pass.cut);
+        let is_alike = one.pass.tool == again.pass.tool && before.direction == after.direction;
+        let off = step_off(before, after, &again.pass.axis).filter(|off| is_alike && exceeds(*off, MAX_STEP))?;
+        let message = format!(
+            "hole {id}: {} begins {off:.3} mm out of step with its stroke before, limit {MAX_STEP}: it crosses the thread",
+            again.name()
+        );
+        let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(again.pass.backtrace.clone());
+        let finding = match is_one_run(before, after) {
+            true => finding,
+            false => finding
+                .with_severity(Severity::Warning)
+                .note("without rigid tapping in one run nothing says at which angle the spindle is"),
+        };
+        Some(finding.help("begin each stroke at the same R, or whole pitches from it"))
+    })
 }
 
 /// Returns `1.5000 mm a revolution (750 mm/min at S500)`.

@@ -15,7 +15,7 @@ use gcode_part::{Feature, FeatureKind, Hand, NOISE, POINT_LENGTH};
 const LEAD_TOLERANCE: f64 = 1e-3;
 
 /// Largest distance along the axis between two passes of one thread, mm.
-const MAX_STEP: f64 = 0.05;
+pub(super) const MAX_STEP: f64 = 0.05;
 
 /// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
@@ -44,6 +44,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         }
     }
     findings.extend(out_of_step(id, &judged.near));
+    findings.extend(tap_motion::out_of_step(id, &judged.near));
     let made_by = assign(&nominal.features, &judged.near, judged.comparison.tolerances);
     for (feature, cut) in nominal.features.iter().zip(made_by).filter(|(one, _)| one.kind == FeatureKind::Tap)
     {
@@ -243,7 +244,11 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     if let Some(helix) = cut.thread {
         return milled_pitch(id, nominal, cut, &helix);
     }
-    let (feed, speed) = (cut.pass.cut.feed?.0, cut.pass.cut.speed.0);
+    // The feed that is farther off decides: each cuts a part of the thread.
+    let last = (cut.pass.cut.feed?, cut.pass.cut.speed);
+    let feeds = cut.pass.cut.extremes.unwrap_or([last; 2]).map(|(feed, speed)| (feed.0, speed.0));
+    let off = |(feed, speed): &(f64, f64)| (feed / speed - nominal).abs();
+    let (feed, speed) = feeds.into_iter().max_by(|one, other| off(one).total_cmp(&off(other)))?;
     let actual = feed / speed;
     if !exceeds((actual - nominal).abs(), PITCH_TOLERANCE * nominal) {
         return None;
