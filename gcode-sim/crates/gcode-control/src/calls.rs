@@ -1,6 +1,7 @@
 //! Calls and returns that a block commands: by G65, G66 and M98, and by codes and addresses that parameters define.
 use super::flow::CallOrigins;
 use super::functions::{ExecResult, locate};
+use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan, CallKind, CallPlan, ProgramRef, TableWrite};
 use super::planner::Planner;
 use super::variables::{VACANT, Value};
@@ -37,8 +38,14 @@ impl Planner<'_> {
     /// Plans G67.
     fn plan_cancel(&self, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
         plan.flow = BlockFlow::CancelModal;
-        if self.flow.modal_calls.is_empty() && self.data.settings.undocumented.g67_alarms {
-            return Err(Alarm::CancelWithoutModalCall.located_at(call.span));
+        if self.flow.modal_calls.is_empty() {
+            let resets_modes = self.words.g_codes().next().is_some();
+            if self.data.settings.g67_alarms.unwrap_or(!resets_modes) {
+                return Err(Alarm::CancelWithoutModalCall.located_at(call.span));
+            }
+            if self.data.settings.g67_alarms.is_none() {
+                plan.notes.push(Note::NothingToCancel);
+            }
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ gcode_lang::finding_kinds! {
     BUILDER_CODE = "builder-code", Warning, "a code of some machine builders is taken as an accuracy mode";
     CENTRE_HERE = "centre-here", Note, "a centre at the current point";
     CORNER_IGNORED = "corner-ignored", Warning, ",R or ,C without effect";
+    CANCEL_OF_NOTHING = "cancel-of-nothing", Note, "G67 in a block that resets modes, without G66";
     CYCLE_DATA_LOST = "cycle-data-lost", Warning, "P or Q in a block that does not drill";
     DIGITS_LOST = "digits-lost", Warning, "DPRNT without the upper digits";
     DOUBLED_NUMBER = "doubled-number", Warning, "a jump to one of several N";
@@ -42,6 +43,7 @@ gcode_lang::finding_kinds! {
     PARAMETER_VALUE = "parameter-value", Warning, "a parameter that nothing states";
     POCKET_CLEARING = "pocket-clearing", Warning, "the passes that clear a pocket are unknown";
     PROGRAM_ZERO = "program-zero", Note, "a program with the number 0";
+    SECOND_BLOCK = "second-block", Warning, "a block behind a semicolon in its line";
     RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41, G42 or G45 to G48 without D";
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
     UNCLOSED_COMMENT = "unclosed-comment", Note, "a comment without its closing bracket";
@@ -57,6 +59,10 @@ pub enum Note {
     MachineMoveIgnored,
     /// A block has another M code after this one, and only the last counts.
     MCodeLost(u32),
+    /// G67 stands beside other G codes in a block that resets modes, and no modal call is in force.
+    NothingToCancel,
+    /// A block follows another one and `;` in its line.
+    SecondBlock,
     /// P or Q in cycle mode, in a block that names no axis and no R: it drills nothing and stores nothing.
     CycleDataLost,
     /// M96 lets a signal call a macro, and no signal comes in a run.
@@ -174,6 +180,8 @@ impl Note {
         match self {
             Self::MachineMoveIgnored => (&G53_IGNORED, "G53 in G91 is ignored: the axes of the block do not move".into(), "command G90 with G53"),
             Self::MCodeLost(code) => (&M_CODE_LOST, format!("M{code:02} is lost: of several M codes in a block only the last counts"), "write each M code in a block of its own, or give --control M3B=1 for a control that accepts three"),
+            Self::NothingToCancel => (&CANCEL_OF_NOTHING, "G67 without G66 is ignored in a block that resets modes: a control with 6000#0 = 0 raises PS1100".into(), "remove G67, or give --control G67-ALARM=1 for a control that raises the alarm, G67-ALARM=0 for one that does not"),
+            Self::SecondBlock => (&SECOND_BLOCK, "the text behind ; is a block of its own, and it is executed".into(), "write the block on a line of its own, a comment in round brackets"),
             Self::CycleDataLost => (&CYCLE_DATA_LOST, "P or Q is not stored: the block drills nothing".into(), "write P and Q in the block of a hole"),
             Self::InterruptNotSimulated => (&NO_INTERRUPT, "the macro of M96 is never called: a run has no UINT signal".into(), "call the macro with G65 to simulate it"),
             Self::NoSkipSignal => (&NO_SIGNAL, "no skip signal is simulated: G31 moves to its end point".into(), "give the part with --part, or --control SKIP=0.5 for a signal after half of the path"),

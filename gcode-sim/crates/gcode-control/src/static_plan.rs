@@ -2,7 +2,8 @@
 use super::executor::Executor;
 use super::plan::BlockPlan;
 use super::state::CycleState;
-use super::words::{BlockWords, WordNumber, count};
+use super::block::IN_THIS_BLOCK;
+use super::words::{BlockWords, DIRECT_DRAWING, WordNumber, count};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Settings;
 use gcode_lang::program::cycles::Cycle;
@@ -123,7 +124,10 @@ impl StaticPlanner {
 
 /// Returns true for an alarm that no value, offset, position or other mode of the control decides.
 fn depends_on_words_alone(alarm: &Alarm) -> bool {
-    matches!(
+    let is_unused_word =
+        matches!(alarm, Alarm::NotSimulated { what } if what.ends_with(IN_THIS_BLOCK) || what == DIRECT_DRAWING);
+    is_unused_word
+        || matches!(
         alarm,
         Alarm::IllegalPoint { .. }
             | Alarm::IllegalMinus { .. }

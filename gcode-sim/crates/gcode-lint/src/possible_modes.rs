@@ -2,7 +2,7 @@
 use gcode_control::static_plan::ModesInForce;
 use gcode_lang::program::cycles::{Cycle, DRILLING as DRILLING_CYCLE};
 use gcode_lang::program::g_codes::Effect;
-use gcode_lang::program::modes::Motion;
+use gcode_lang::program::modes::{Distance, FeedMode, Motion};
 
 /// A cycle that needs no word of its own.
 static DRILLING: Cycle = DRILLING_CYCLE;
@@ -24,6 +24,12 @@ pub(crate) struct PossibleModes {
     pub cycle: Option<&'static Cycle>,
     /// The depth of a peck is commanded.
     pub has_pecks: bool,
+    /// The feed mode is G93.
+    pub is_inverse_time: bool,
+    /// The feed mode is another one.
+    pub is_other_feed_mode: bool,
+    /// The mode is G90.
+    pub is_absolute: bool,
     /// No earlier block lacks F. The first that does stops the control, and its F serves the blocks after it.
     pub is_unreported: bool,
 }
@@ -38,10 +44,13 @@ impl PossibleModes {
         is_in_cycle: false,
         cycle: None,
         has_pecks: false,
+        is_inverse_time: false,
+        is_other_feed_mode: true,
+        is_absolute: true,
         is_unreported: true,
     };
     pub(super) const ANYTHING: Self =
-        Self { has_feed: true, is_in_cycle: true, has_pecks: true, ..Self::POWER_ON };
+        Self { has_feed: true, is_in_cycle: true, has_pecks: true, is_inverse_time: true, ..Self::POWER_ON };
 
     pub(super) fn join(self, other: Self) -> Self {
         Self {
@@ -56,6 +65,9 @@ impl PossibleModes {
                 (false, _) => other.cycle,
             },
             has_pecks: self.has_pecks | other.has_pecks,
+            is_inverse_time: self.is_inverse_time | other.is_inverse_time,
+            is_other_feed_mode: self.is_other_feed_mode | other.is_other_feed_mode,
+            is_absolute: self.is_absolute | other.is_absolute,
             is_unreported: self.is_unreported | other.is_unreported,
         }
     }
@@ -68,6 +80,9 @@ impl PossibleModes {
             is_in_cycle: true,
             cycle: None,
             has_pecks: true,
+            // A computed G code may be any.
+            is_other_feed_mode: true,
+            is_absolute: true,
             ..self
         }
     }
@@ -91,6 +106,12 @@ impl PossibleModes {
                 has_pecks: cycle.is_some() && self.has_pecks,
                 ..self
             },
+            Effect::FeedMode(mode) => Self {
+                is_inverse_time: mode == FeedMode::InverseTime,
+                is_other_feed_mode: mode != FeedMode::InverseTime,
+                ..self
+            },
+            Effect::Distance(distance) => Self { is_absolute: distance == Distance::Absolute, ..self },
             _ => self,
         }
     }

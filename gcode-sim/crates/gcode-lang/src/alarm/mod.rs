@@ -25,7 +25,7 @@ pub enum Alarm {
     LowerCase,
     /// A keyword is abbreviated (`WH`, `GO`), which the control refuses.
     ShortWord,
-    /// The text after a `;` may be a block or a comment.
+    /// A block follows a `;` in its line.
     TwoBlocksInOneLine,
     /// An address has no number.
     NoDataAfterAddress {

@@ -19,6 +19,10 @@ pub enum DialectSyntax {
     RelationSigns,
     /// Several assignments in a block: `#1=1 #2=2`.
     SeveralAssignments,
+    /// GOTO behind an assignment in a block: `#1=1 GOTO 5`.
+    GotoAfterAssignment,
+    /// A block behind another one and `;` in its line.
+    BlockAfterSemicolon,
     /// `IF[…]` before words or an assignment, without THEN.
     PlainIf,
     /// `IF[…]THEN` before words.
@@ -56,6 +60,8 @@ impl DialectSyntax {
             Self::ShortWord => undocumented.allows_short_words,
             Self::RelationSigns => undocumented.allows_relation_signs,
             Self::SeveralAssignments => undocumented.allows_several_assignments,
+            Self::GotoAfterAssignment => undocumented.allows_goto_after_assignment,
+            Self::BlockAfterSemicolon => undocumented.semicolon_ends_block,
             Self::PlainIf => settings.allows_plain_if,
             Self::ThenWords => settings.then_takes_words,
             Self::ThenGoto => undocumented.then_takes_goto,
@@ -79,6 +85,10 @@ impl DialectSyntax {
             Self::ShortWord => Alarm::ShortWord,
             Self::RelationSigns => Alarm::RelationSymbol,
             Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },
+            Self::GotoAfterAssignment => {
+                Alarm::MacroFormat { what: "GOTO behind an assignment in one block".into() }
+            }
+            Self::BlockAfterSemicolon => Alarm::TwoBlocksInOneLine,
             Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,
             Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
             Self::NewWord(word) => Alarm::NotAWord { text: word.into() },

@@ -38,6 +38,9 @@ impl Lowering {
         if let Some(span) = block.short_word {
             self.record_syntax(DialectSyntax::ShortWord, span);
         }
+        if let Some(span) = block.behind_semicolon {
+            self.record_syntax(DialectSyntax::BlockAfterSemicolon, span);
+        }
         let unclosed = |comment: &&ast::Comment| comment.mark == ast::CommentMark::Unclosed;
         if let Some(comment) = block.comments.iter().find(unclosed) {
             self.record_syntax(DialectSyntax::UnclosedComment, comment.span);
@@ -133,17 +136,31 @@ impl Lowering {
         }
     }
 
-    /// Lowers a block of two or more assignments and nothing else; `None` for any other block.
+    /// Lowers a block of two or more assignments, of which the last may be a GOTO, and nothing else; `None` for any other block.
     fn lower_assignments(&mut self, block: &ast::Block) -> LoweringResult<Option<Statement>> {
         let [_, second, ..] = &block.items[..] else { return Ok(None) };
         let ast::Item::Statement(second) = second else { return Ok(None) };
         let mut several = Vec::new();
+        let mut jump = None;
         for item in &block.items {
             let ast::Item::Statement(found) = item else { return Ok(None) };
-            let ast::Statement::Assign { target, value } = &found.node else { return Ok(None) };
-            several.push(self.lower_assignment(target, value, found.span, block)?);
+            match &found.node {
+                ast::Statement::Assign { target, value } if jump.is_none() => {
+                    several.push(self.lower_assignment(target, value, found.span, block)?);
+                }
+                ast::Statement::Goto(to) if jump.is_none() && !several.is_empty() => {
+                    jump = Some((Statement::Goto(self.lower_jump_target(to)?), found.span));
+                }
+                _ => return Ok(None),
+            }
         }
-        self.record_syntax(DialectSyntax::SeveralAssignments, second.span);
+        if several.len() > 1 {
+            self.record_syntax(DialectSyntax::SeveralAssignments, second.span);
+        }
+        if let Some((goto, span)) = jump {
+            self.record_syntax(DialectSyntax::GotoAfterAssignment, span);
+            several.push(goto);
+        }
         Ok(Some(Statement::Assignments(several)))
     }
 
