@@ -23,10 +23,18 @@ impl Control {
         let program = match &call.target {
             ProgramRef::Number(number) => {
                 let (number, found) = (*number, self.memory.fetch(*number, library));
-                found.ok_or_else(|| match (call.is_external, library.read_error()) {
+                let found = found.ok_or_else(|| match (call.is_external, library.read_error()) {
                     (true, read_error) => Alarm::DeviceFileNotFound { number, read_error },
                     (false, read_error) => Alarm::ProgramNotFound { number, read_error },
-                })?
+                });
+                match (found, call.digits_of_p) {
+                    (Err(Alarm::ProgramNotFound { .. }), Some(digits))
+                        if self.memory.fetch(digits, library).is_some() =>
+                    {
+                        return Err(Alarm::RepeatsInProgramNumber { number, digits });
+                    }
+                    (found, _) => found?,
+                }
             }
             ProgramRef::Name(name) => {
                 let found = self.memory.fetch_name(name, library);

@@ -1,5 +1,6 @@
 //! Notes: things that a control does without an alarm and a programmer rarely means; one finding per kind, at its first
 //! block.
+use gcode_lang::control::assumed_machine_value;
 use gcode_lang::diag::FindingKind;
 use gcode_lang::program::g_codes::{name, spelled};
 
@@ -213,7 +214,7 @@ impl Note {
             Self::CutterRadiusZero(code @ 450..=480) => (&RADIUS_OF_NOTHING, format!("G{} with offset 0 moves to the end as written", spelled(code)), "write D with the number of the tool's offset; G43 H compensates a tool length"),
             Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
-            Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as 0: nothing states its value on the machine"), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
+            Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as {}: nothing states its value on the machine", assumed_machine_value(number, item.into())), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
             Self::Engraving { characters, height } => (&ENGRAVED_TEXT, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),
             Self::PocketClearing => (&POCKET_CLEARING, "not checked: pocket clearing: the run makes one cut along the outline of G150, at its full depth, and none of the passes before it".into(), "check the clearing passes on the control"),
             Self::ProgramZero => (&PROGRAM_ZERO, "O0 is no program number: a control refuses it (PS0074) unless the operator gives another one when it is read".into(), "write O1 to O99999999"),

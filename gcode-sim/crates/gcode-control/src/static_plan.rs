@@ -1,8 +1,8 @@
 //! Plan of a single block without a run, for the alarms that its words raise whatever the program has done before.
+use super::block::IN_THIS_BLOCK;
 use super::executor::Executor;
 use super::plan::BlockPlan;
 use super::state::CycleState;
-use super::block::IN_THIS_BLOCK;
 use super::words::{BlockWords, DIRECT_DRAWING, WordNumber, count};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Settings;
@@ -124,30 +124,29 @@ impl StaticPlanner {
 
 /// Returns true for an alarm that no value, offset, position or other mode of the control decides.
 fn depends_on_words_alone(alarm: &Alarm) -> bool {
-    let is_unused_word =
-        matches!(alarm, Alarm::NotSimulated { what } if what.ends_with(IN_THIS_BLOCK) || what == DIRECT_DRAWING);
+    let is_unused_word = matches!(alarm, Alarm::NotSimulated { what } if what.ends_with(IN_THIS_BLOCK) || what == DIRECT_DRAWING);
     is_unused_word
         || matches!(
-        alarm,
-        Alarm::IllegalPoint { .. }
-            | Alarm::IllegalMinus { .. }
-            | Alarm::TooManyDigits
-            | Alarm::ImproperAddress { .. }
-            | Alarm::MissingWord { .. }
-            | Alarm::NoPeckDepth
-            | Alarm::NoRadiusOrCentre
-            | Alarm::ReferenceReturnInCycle
-            | Alarm::ReferenceReturnP { .. }
-            | Alarm::CornerInThread
-            | Alarm::CornerWords
-            | Alarm::ScaleRate { .. }
-            | Alarm::G10Format { .. }
-            | Alarm::TooManyArgumentSets
-            | Alarm::LookAheadFormat
-            | Alarm::TNotAllowed
-            | Alarm::TwoMacroCalls
-            | Alarm::TwoSubprogramCalls
-            | Alarm::SkipSignals { .. }
-            | Alarm::SkipTorque
-    )
+            alarm,
+            Alarm::IllegalPoint { .. }
+                | Alarm::IllegalMinus { .. }
+                | Alarm::TooManyDigits
+                | Alarm::ImproperAddress { .. }
+                | Alarm::MissingWord { .. }
+                | Alarm::NoPeckDepth
+                | Alarm::NoRadiusOrCentre
+                | Alarm::ReferenceReturnInCycle
+                | Alarm::ReferenceReturnP { .. }
+                | Alarm::CornerInThread
+                | Alarm::CornerWords
+                | Alarm::ScaleRate { .. }
+                | Alarm::G10Format { .. }
+                | Alarm::TooManyArgumentSets
+                | Alarm::LookAheadFormat
+                | Alarm::TNotAllowed
+                | Alarm::TwoMacroCalls
+                | Alarm::TwoSubprogramCalls
+                | Alarm::SkipSignals { .. }
+                | Alarm::SkipTorque
+        )
 }

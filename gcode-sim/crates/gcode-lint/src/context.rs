@@ -122,8 +122,7 @@ impl<'a> CheckContext<'a> {
         let unit_indices = programs.iter().enumerate().map(|(unit, program)| (program.id, unit)).collect();
         let units = programs.into_iter().map(|program| ProgramUnit::new(memory, program)).collect();
         let calculator_files = OnceLock::new();
-        let mut context =
-            Self { memory, settings, knowledge, units, rules, unit_indices, calculator_files };
+        let mut context = Self { memory, settings, knowledge, units, rules, unit_indices, calculator_files };
         context.link_calls();
         context
     }

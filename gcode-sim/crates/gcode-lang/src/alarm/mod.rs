@@ -9,7 +9,7 @@ mod typos;
 use crate::source::{Span, Spanned};
 
 pub use code::AlarmCode;
-pub use typos::{missing_macro_help, remedy};
+pub use typos::{missing_macro_help, remedy, repeats_in_p_help};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
@@ -245,6 +245,13 @@ pub enum Alarm {
         number: u32,
         /// Failure to read a file during the search.
         read_error: Option<String>,
+    },
+    /// The program of M98 P with repeats in P is not found, but one with all its digits is.
+    RepeatsInProgramNumber {
+        /// O number.
+        number: u32,
+        /// All digits of P.
+        digits: u32,
     },
     /// The file of M198 is not found.
     DeviceFileNotFound {

@@ -16,7 +16,7 @@ pub use code_calls::{
 };
 pub use declared_codes::{DeclaredCodes, DeclaredEffect};
 pub use kinematics::{Kinematics, RotaryAxis};
-pub use machine_values::{MachineValue, MachineValues, has_items};
+pub use machine_values::{MachineValue, MachineValues, assumed_machine_value, has_items};
 pub use parameters::{ParameterError, ParameterId, changes_motion, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
 

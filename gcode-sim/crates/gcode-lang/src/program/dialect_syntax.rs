@@ -1,6 +1,6 @@
 //! Syntax that only some controls accept, recorded at lowering and checked against the settings at run time.
 use crate::alarm::Alarm;
-use crate::control::Settings;
+use crate::control::{Dialect, Settings};
 
 use super::g_codes;
 
@@ -46,6 +46,8 @@ pub enum DialectSyntax {
     },
     /// Modal codes before G65, G66 or G66.1.
     CodesBeforeCall,
+    /// Call of a file by its path, `M98 (Memory/O00002.nc)`.
+    PathOfCall,
     /// Program number 0.
     ProgramZero,
 }
@@ -72,6 +74,7 @@ impl DialectSyntax {
             Self::FractionalNumber => !settings.has_variable_bits,
             Self::ValueCondition { .. } => settings.allows_value_conditions,
             Self::CodesBeforeCall => undocumented.allows_codes_before_call,
+            Self::PathOfCall => settings.codes == Dialect::HaasNgc,
             Self::ProgramZero => undocumented.reads_program_zero,
         }
     }
@@ -97,6 +100,7 @@ impl DialectSyntax {
             Self::ValueCondition { of_loop: false } => Alarm::IfFormat,
             Self::ValueCondition { of_loop: true } => Alarm::WhileFormat,
             Self::ProgramZero => Alarm::ProgramNumber,
+            Self::PathOfCall => Alarm::ProgramNotNamed,
             Self::CodesBeforeCall => Alarm::MacroFormat { what: "words before the macro call".into() },
         }
     }

@@ -46,8 +46,10 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     }
     let others = found.len().saturating_sub(1);
     let as_whole = found.into_iter().next().map(|first| {
-        let message =
-            format!("{}, and so with {others} more: hardly a number of the program has a point", first.message);
+        let message = format!(
+            "{}, and so with {others} more: hardly a number of the program has a point",
+            first.message
+        );
         let help = "write the points, or give --control DPI=1 for a control with calculator-type input";
         context.unless_optional(Diagnostic { message, ..first }.help(help))
     });
