@@ -190,7 +190,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("SCS", "S calls O9029 with its number in #147", code_calls.s_calls_program),
     switch!("BCS", "B, unless it is an axis, calls O9028 with its number in #146", code_calls.b_calls_program),
     switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has no effect", converts_arguments),
-    switch!("G67-ALARM", "6000#0: G67 without G66 raises PS1100; without this setting only a G67 without other G codes in its block does", |s, on| s.g67_alarms = Some(on)),
+    switch!("G67-ALARM", "G67 without G66 raises PS1100, as with 0 in 6000#0; without this setting only a G67 without other G codes in its block does", |s, on| s.g67_alarms = Some(on)),
     switch!("FXY", "5101#0: canned cycles drill along the normal of the plane, not always Z", drills_by_plane),
     switch!("D15", "6004#5: #2401 to #2800 are the offsets of D, and #2500 to #2806 no work offsets", has_diameter_variables),
     switch!("V15", "6000#3: geometry and wear are exchanged in tool offset variables", series_15_offsets),
