@@ -7,7 +7,7 @@ use super::notes::Note;
 use super::outcome::RunEnd;
 use super::plan::{CallKind, CallPlan, ProgramRef};
 use super::variables::{Locals, Value};
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::{Alarm, repeats_in_p_help};
 use gcode_lang::program::{CallCode, Library, OpIndex, Words};
 
 impl Control {
@@ -31,7 +31,8 @@ impl Control {
                     (Err(Alarm::ProgramNotFound { .. }), Some(digits))
                         if self.memory.fetch(digits, library).is_some() =>
                     {
-                        return Err(Alarm::RepeatsInProgramNumber { number, digits });
+                        let read_error = Some(repeats_in_p_help(digits));
+                        return Err(Alarm::ProgramNotFound { number, read_error });
                     }
                     (found, _) => found?,
                 }

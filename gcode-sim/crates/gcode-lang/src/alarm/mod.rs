@@ -243,15 +243,8 @@ pub enum Alarm {
     ProgramNotFound {
         /// O number.
         number: u32,
-        /// Failure to read a file during the search.
+        /// Failure to read a file during the search, or what else was found.
         read_error: Option<String>,
-    },
-    /// The program of M98 P with repeats in P is not found, but one with all its digits is.
-    RepeatsInProgramNumber {
-        /// O number.
-        number: u32,
-        /// All digits of P.
-        digits: u32,
     },
     /// The file of M198 is not found.
     DeviceFileNotFound {

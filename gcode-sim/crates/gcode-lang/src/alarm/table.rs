@@ -68,7 +68,6 @@ impl Alarm {
             Self::ProgramNumber => (&PS0074, "the program number is out of range".into(), Some("write 1 to 99999999")),
             Self::ProgramNotNamed => (&PS0076, "a call without a program number".into(), Some("write the program number after P")),
             Self::NoNameInCall => (&PS0311, "a call without a program number or name".into(), Some("write the program number after P")),
-            Self::RepeatsInProgramNumber { number, .. } => (&PS0076, not_found(format!("program O{number:04}"), &None), None),
             Self::ProgramNotFound { number, read_error } => (&PS0076, not_found(format!("program O{number:04}"), read_error), Some("give the folder that holds it with --lib")),
             Self::TooManyCalls { limit } => (&PS0077, format!("more than {limit} nested calls"), Some("check for a program that calls itself")),
             Self::SequenceNumberNotFound { number } => (&PS0078, format!("sequence number N{number} is not found"), None),

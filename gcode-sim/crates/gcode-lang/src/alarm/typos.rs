@@ -29,7 +29,6 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         dwell_with_two_times,
         work_offset_range,
         protected_program,
-        repeats_in_p,
         other_control,
         vacant_target,
     ];
@@ -42,15 +41,9 @@ fn protected_program(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
     missing_macro_help(*number)
 }
 
-/// Detects `M98 P23001` for a program O23001: its first digits are repeats.
-fn repeats_in_p(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
-    let Alarm::RepeatsInProgramNumber { number, digits } = alarm else { return None };
-    Some(repeats_in_p_help(*number, *digits))
-}
-
 /// Returns what to do about M98 P whose digits are repeats and a missing program, and a program that is there.
-pub fn repeats_in_p_help(number: u32, digits: u32) -> String {
-    let repeats = digits / 10_000;
+pub fn repeats_in_p_help(digits: u32) -> String {
+    let (repeats, number) = (digits / 10_000, digits % 10_000);
     format!(
         "P{digits} calls O{number:04} {repeats} times; to call O{digits}, write L behind it, M98 P{digits} L1, or give --control REPEATS-IN-P=0"
     )

@@ -38,7 +38,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
                     severity = Severity::Warning;
                 }
                 let in_p = call.digits_of_p.filter(|digits| is_in_memory(context, *digits));
-                let help = in_p.map(|digits| repeats_in_p_help(number, digits)).or(of_macro);
+                let help = in_p.map(repeats_in_p_help).or(of_macro);
                 let help = help.unwrap_or_else(|| "give the folder that holds it with --lib".to_owned());
                 (format!("{PS0076}: program {label} is not found{}", count_text(unit, &call.target)), help)
             }
