@@ -85,12 +85,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let criteria = reference.as_ref().map(Criteria::of);
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
-    let old = progress::of_run(&mut old_request, |request| {
-        Revision::observed(request, &mut old_folders, criteria, &mut old_trace)
-    })?;
-    let new = progress::of_run(&mut new_request, |request| {
-        Revision::observed(request, &mut new_folders, criteria, &mut new_trace)
-    })?;
+    let [old, new] = progress::of_two_runs(
+        [&mut old_request, &mut new_request],
+        |request| Revision::observed(request, &mut old_folders, criteria, &mut old_trace),
+        |request| Revision::observed(request, &mut new_folders, criteria, &mut new_trace),
+    );
+    let (old, new) = (old?, new?);
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let unexecuted = unexecuted(&old, &new);
     let report = ChangesReport::new(

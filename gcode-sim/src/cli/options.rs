@@ -60,6 +60,12 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
         taken.map_err(|error| UsageError::new(format!("{flag}: {error}")))?;
     }
     for text in &arguments.set {
+        // An item of a parameter, #30057.25, is a value of the machine.
+        if let Some((key, value)) = text.split_once('=').filter(|(key, _)| key.contains('.')) {
+            let taken = request.settings.set(key.trim(), value);
+            taken.map_err(|error| UsageError::new(format!("--set: {error}")))?;
+            continue;
+        }
         request.variables.push(assignment(text)?);
     }
     for text in &arguments.start {

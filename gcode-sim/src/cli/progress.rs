@@ -46,6 +46,36 @@ pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T)
     showing(count, || work(request))
 }
 
+/// Runs two programs at once and shows the number of executed blocks. The first Ctrl-C ends both runs, the second the
+/// process.
+pub(super) fn of_two_runs<T: Send>(
+    requests: [&mut Request; 2],
+    run_one: impl FnOnce(&Request) -> T + Send,
+    run_other: impl FnOnce(&Request) -> T + Send,
+) -> [T; 2] {
+    let runs: [Arc<Progress>; 2] = Default::default();
+    let [one, other] = requests;
+    (one.progress, other.progress) = (Some(Arc::clone(&runs[0])), Some(Arc::clone(&runs[1])));
+    let watched = runs.clone();
+    // If no handler can be set, Ctrl-C ends the process as usual.
+    _ = ctrlc::set_handler(move || {
+        if watched.iter().any(|run| run.cancel.swap(true, Ordering::Relaxed)) {
+            std::process::exit(130);
+        }
+    });
+    let count = || {
+        let blocks: u64 = runs.iter().map(|run| run.blocks.load(Ordering::Relaxed)).sum();
+        format!("{blocks} blocks; Ctrl-C ends the runs")
+    };
+    showing(count, || {
+        std::thread::scope(|scope| {
+            let first = scope.spawn(|| run_one(one));
+            let second = run_other(other);
+            [first.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), second]
+        })
+    })
+}
+
 /// Proves claims and shows how many boxes and runs there have been.
 pub(super) fn of_proof<T>(watch: &Watch<'_>, work: impl FnOnce() -> T) -> T {
     let line = || format!("{} boxes, {} runs, {} s", watch.boxes(), watch.runs(), watch.elapsed().as_secs());

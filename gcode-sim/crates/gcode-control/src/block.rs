@@ -30,6 +30,9 @@ use gcode_lang::program::{
 };
 use gcode_lang::source::Span;
 
+/// Words behind the letter of a word that nothing reads.
+pub(super) const IN_THIS_BLOCK: &str = " in this block";
+
 impl Control {
     /// Executes the next block, and after a statement the blocks that follow it until the run [pauses]: a statement never
     /// leads into another program.
@@ -261,7 +264,7 @@ impl Planner<'_> {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });
                 Ok(())
             }
-            _ => Err(Alarm::NotSimulated { what: format!("{letter} in this block") }.located_at(span)),
+            _ => Err(Alarm::NotSimulated { what: format!("{letter}{IN_THIS_BLOCK}") }.located_at(span)),
         }
     }
 
@@ -337,6 +340,7 @@ impl Executor {
                 DialectSyntax::UnclosedComment => Note::UnclosedComment,
                 DialectSyntax::NestedComment => Note::NestedComment,
                 DialectSyntax::ProgramZero => Note::ProgramZero,
+                DialectSyntax::BlockAfterSemicolon => Note::SecondBlock,
                 _ => continue,
             };
             self.log.note(note, self.flow.block);

@@ -7,7 +7,7 @@ use super::notes::Note;
 use super::outcome::RunEnd;
 use super::plan::{CallKind, CallPlan, ProgramRef};
 use super::variables::{Locals, Value};
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::{Alarm, repeats_in_p_help};
 use gcode_lang::program::{CallCode, Library, OpIndex, Words};
 
 impl Control {
@@ -23,10 +23,19 @@ impl Control {
         let program = match &call.target {
             ProgramRef::Number(number) => {
                 let (number, found) = (*number, self.memory.fetch(*number, library));
-                found.ok_or_else(|| match (call.is_external, library.read_error()) {
+                let found = found.ok_or_else(|| match (call.is_external, library.read_error()) {
                     (true, read_error) => Alarm::DeviceFileNotFound { number, read_error },
                     (false, read_error) => Alarm::ProgramNotFound { number, read_error },
-                })?
+                });
+                match (found, call.digits_of_p) {
+                    (Err(Alarm::ProgramNotFound { .. }), Some(digits))
+                        if self.memory.fetch(digits, library).is_some() =>
+                    {
+                        let read_error = Some(repeats_in_p_help(digits));
+                        return Err(Alarm::ProgramNotFound { number, read_error });
+                    }
+                    (found, _) => found?,
+                }
             }
             ProgramRef::Name(name) => {
                 let found = self.memory.fetch_name(name, library);

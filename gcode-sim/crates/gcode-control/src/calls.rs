@@ -1,6 +1,7 @@
 //! Calls and returns that a block commands: by G65, G66 and M98, and by codes and addresses that parameters define.
 use super::flow::CallOrigins;
 use super::functions::{ExecResult, locate};
+use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan, CallKind, CallPlan, ProgramRef, TableWrite};
 use super::planner::Planner;
 use super::variables::{VACANT, Value};
@@ -37,8 +38,14 @@ impl Planner<'_> {
     /// Plans G67.
     fn plan_cancel(&self, call: &CallOp, plan: &mut BlockPlan) -> ExecResult<()> {
         plan.flow = BlockFlow::CancelModal;
-        if self.flow.modal_calls.is_empty() && self.data.settings.undocumented.g67_alarms {
-            return Err(Alarm::CancelWithoutModalCall.located_at(call.span));
+        if self.flow.modal_calls.is_empty() {
+            let resets_modes = self.words.g_codes().next().is_some();
+            if self.data.settings.g67_alarms.unwrap_or(!resets_modes) {
+                return Err(Alarm::CancelWithoutModalCall.located_at(call.span));
+            }
+            if self.data.settings.g67_alarms.is_none() {
+                plan.notes.push(Note::NothingToCancel);
+            }
         }
         Ok(())
     }
@@ -48,7 +55,7 @@ impl Planner<'_> {
         let kind = self.call_kind(call)?;
         let start = self.count_of(call.start.as_ref())?;
         let repeats = self.count_of(call.repeats.as_ref())?;
-        let (target, repeats) = self.call_target(call, kind, start, repeats)?;
+        let (target, repeats, digits_of_p) = self.call_target(call, kind, start, repeats)?;
         let is_every_block = kind == CallKind::EveryBlock;
         let locals =
             self.registers.evaluate_arguments(self.lowered_words, &call.arguments, is_every_block)?;
@@ -58,6 +65,7 @@ impl Planner<'_> {
             kind,
             target,
             repeats,
+            digits_of_p,
             start,
             locals,
             is_immediate: !is_every_block || has_own_arguments,
@@ -96,14 +104,14 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns the called program and the number of its passes.
+    /// Returns the called program, the number of its passes, and all digits of P if the first ones are that number.
     fn call_target(
         &self,
         call: &CallOp,
         kind: CallKind,
         start: Option<u32>,
         repeats: Option<u32>,
-    ) -> ExecResult<(ProgramRef, u32)> {
+    ) -> ExecResult<(ProgramRef, u32, Option<u32>)> {
         let missing = match kind {
             CallKind::Subprogram if self.data.settings.undocumented.missing_p_is_311 => Alarm::NoNameInCall,
             CallKind::Subprogram | CallKind::Macro | CallKind::Modal | CallKind::EveryBlock => {
@@ -124,12 +132,12 @@ impl Planner<'_> {
                     && repeats.is_none()
                     && number > 9999;
                 if has_repeats_in_p {
-                    return Ok((ProgramRef::Number(number % 10_000), number / 10_000));
+                    return Ok((ProgramRef::Number(number % 10_000), number / 10_000, Some(number)));
                 }
                 ProgramRef::Number(number)
             }
         };
-        Ok((target, repeats.unwrap_or(1)))
+        Ok((target, repeats.unwrap_or(1), None))
     }
 
     /// Raises the alarm of a block that triggers a modal call by a move and does something else with the program flow.
@@ -201,6 +209,7 @@ impl Planner<'_> {
             },
             target: ProgramRef::Number(program),
             repeats: self.registers.count_of_word(self.lowered_words, repeats)?.unwrap_or(1),
+            digits_of_p: None,
             start: None,
             locals: self.registers.evaluate_arguments(self.lowered_words, arguments, is_every_block)?,
             is_immediate: !is_every_block || has_own_arguments,
@@ -254,6 +263,7 @@ impl Planner<'_> {
             kind: CallKind::Subprogram,
             target: ProgramRef::Number(calling.program),
             repeats: self.registers.count_of_word(self.lowered_words, repeats)?.unwrap_or(1),
+            digits_of_p: None,
             start: None,
             locals: VACANT,
             is_immediate: true,

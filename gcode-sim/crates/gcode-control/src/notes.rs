@@ -1,5 +1,6 @@
 //! Notes: things that a control does without an alarm and a programmer rarely means; one finding per kind, at its first
 //! block.
+use gcode_lang::control::assumed_machine_value;
 use gcode_lang::diag::FindingKind;
 use gcode_lang::program::g_codes::{name, spelled};
 
@@ -11,6 +12,7 @@ gcode_lang::finding_kinds! {
     BUILDER_CODE = "builder-code", Warning, "a code of some machine builders is taken as an accuracy mode";
     CENTRE_HERE = "centre-here", Note, "a centre at the current point";
     CORNER_IGNORED = "corner-ignored", Warning, ",R or ,C without effect";
+    CANCEL_OF_NOTHING = "cancel-of-nothing", Note, "G67 in a block that resets modes, without G66";
     CYCLE_DATA_LOST = "cycle-data-lost", Warning, "P or Q in a block that does not drill";
     DIGITS_LOST = "digits-lost", Warning, "DPRNT without the upper digits";
     DOUBLED_NUMBER = "doubled-number", Warning, "a jump to one of several N";
@@ -43,6 +45,7 @@ gcode_lang::finding_kinds! {
     PARAMETER_VALUE = "parameter-value", Warning, "a parameter that nothing states";
     POCKET_CLEARING = "pocket-clearing", Warning, "the passes that clear a pocket are unknown";
     PROGRAM_ZERO = "program-zero", Note, "a program with the number 0";
+    SECOND_BLOCK = "second-block", Warning, "a block behind a semicolon in its line";
     RADIUS_OF_NOTHING = "radius-of-nothing", Warning, "G41, G42 or G45 to G48 without D";
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
     UNCLOSED_COMMENT = "unclosed-comment", Note, "a comment without its closing bracket";
@@ -59,6 +62,10 @@ pub enum Note {
     MachineMoveIgnored,
     /// A block has another M code after this one, and only the last counts.
     MCodeLost(u32),
+    /// G67 stands beside other G codes in a block that resets modes, and no modal call is in force.
+    NothingToCancel,
+    /// A block follows another one and `;` in its line.
+    SecondBlock,
     /// P or Q in cycle mode, in a block that names no axis and no R: it drills nothing and stores nothing.
     CycleDataLost,
     /// M96 lets a signal call a macro, and no signal comes in a run.
@@ -180,6 +187,8 @@ impl Note {
         match self {
             Self::MachineMoveIgnored => (&G53_IGNORED, "G53 in G91 is ignored: the axes of the block do not move".into(), "command G90 with G53"),
             Self::MCodeLost(code) => (&M_CODE_LOST, format!("M{code:02} is lost: of several M codes in a block only the last counts"), "write each M code in a block of its own, or give --control M3B=1 for a control that accepts three"),
+            Self::NothingToCancel => (&CANCEL_OF_NOTHING, "G67 without G66 is ignored in a block that resets modes: a control with 6000#0 = 0 raises PS1100".into(), "remove G67, or give --control G67-ALARM=1 for a control that raises the alarm, G67-ALARM=0 for one that does not"),
+            Self::SecondBlock => (&SECOND_BLOCK, "the text behind ; is a block of its own, and it is executed".into(), "write the block on a line of its own, a comment in round brackets"),
             Self::CycleDataLost => (&CYCLE_DATA_LOST, "P or Q is not stored: the block drills nothing".into(), "write P and Q in the block of a hole"),
             Self::InterruptNotSimulated => (&NO_INTERRUPT, "the macro of M96 is never called: a run has no UINT signal".into(), "call the macro with G65 to simulate it"),
             Self::NoSkipSignal => (&NO_SIGNAL, "no skip signal is simulated: G31 moves to its end point".into(), "give the part with --part, or --control SKIP=0.5 for a signal after half of the path"),
@@ -212,7 +221,7 @@ impl Note {
             Self::CutterRadiusZero(code @ 450..=480) => (&RADIUS_OF_NOTHING, format!("G{} with offset 0 moves to the end as written", spelled(code)), "write D with the number of the tool's offset; G43 H compensates a tool length"),
             Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
-            Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as 0: nothing states its value on the machine"), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
+            Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as {}: nothing states its value on the machine", assumed_machine_value(number, item.into())), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
             Self::Engraving { characters, height } => (&ENGRAVED_TEXT, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),
             Self::PocketClearing => (&POCKET_CLEARING, "not checked: pocket clearing: the run makes one cut along the outline of G150, at its full depth, and none of the passes before it".into(), "check the clearing passes on the control"),
             Self::ProgramZero => (&PROGRAM_ZERO, "O0 is no program number: a control refuses it (PS0074) unless the operator gives another one when it is read".into(), "write O1 to O99999999"),

@@ -161,6 +161,8 @@ pub(super) struct CallPlan {
     pub(super) kind: CallKind,
     pub(super) target: ProgramRef,
     pub(super) repeats: u32,
+    /// All digits of P, if the first ones are the repeats.
+    pub(super) digits_of_p: Option<u32>,
     /// Sequence number to start at: Q of M98.
     pub(super) start: Option<u32>,
     pub(super) locals: Locals,

@@ -49,6 +49,7 @@ impl Planner<'_> {
             kind: CallKind::Subprogram,
             target: ProgramRef::Number(program),
             repeats: 1,
+            digits_of_p: None,
             start: None,
             locals: VACANT,
             is_immediate: true,

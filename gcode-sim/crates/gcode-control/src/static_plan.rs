@@ -1,8 +1,9 @@
 //! Plan of a single block without a run, for the alarms that its words raise whatever the program has done before.
+use super::block::IN_THIS_BLOCK;
 use super::executor::Executor;
 use super::plan::BlockPlan;
 use super::state::CycleState;
-use super::words::{BlockWords, WordNumber, count};
+use super::words::{BlockWords, DIRECT_DRAWING, WordNumber, count};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Settings;
 use gcode_lang::program::cycles::Cycle;
@@ -123,28 +124,30 @@ impl StaticPlanner {
 
 /// Returns true for an alarm that no value, offset, position or other mode of the control decides.
 fn depends_on_words_alone(alarm: &Alarm) -> bool {
-    matches!(
-        alarm,
-        Alarm::IllegalPoint { .. }
-            | Alarm::IllegalMinus { .. }
-            | Alarm::TwoSigns { .. }
-            | Alarm::TooManyDigits
-            | Alarm::ImproperAddress { .. }
-            | Alarm::MissingWord { .. }
-            | Alarm::NoPeckDepth
-            | Alarm::NoRadiusOrCentre
-            | Alarm::ReferenceReturnInCycle
-            | Alarm::ReferenceReturnP { .. }
-            | Alarm::CornerInThread
-            | Alarm::CornerWords
-            | Alarm::ScaleRate { .. }
-            | Alarm::G10Format { .. }
-            | Alarm::TooManyArgumentSets
-            | Alarm::LookAheadFormat
-            | Alarm::TNotAllowed
-            | Alarm::TwoMacroCalls
-            | Alarm::TwoSubprogramCalls
-            | Alarm::SkipSignals { .. }
-            | Alarm::SkipTorque
-    )
+    let is_unused_word = matches!(alarm, Alarm::NotSimulated { what } if what.ends_with(IN_THIS_BLOCK) || what == DIRECT_DRAWING);
+    is_unused_word
+        || matches!(
+            alarm,
+            Alarm::IllegalPoint { .. }
+                | Alarm::IllegalMinus { .. }
+                | Alarm::TwoSigns { .. }
+                | Alarm::TooManyDigits
+                | Alarm::ImproperAddress { .. }
+                | Alarm::MissingWord { .. }
+                | Alarm::NoPeckDepth
+                | Alarm::NoRadiusOrCentre
+                | Alarm::ReferenceReturnInCycle
+                | Alarm::ReferenceReturnP { .. }
+                | Alarm::CornerInThread
+                | Alarm::CornerWords
+                | Alarm::ScaleRate { .. }
+                | Alarm::G10Format { .. }
+                | Alarm::TooManyArgumentSets
+                | Alarm::LookAheadFormat
+                | Alarm::TNotAllowed
+                | Alarm::TwoMacroCalls
+                | Alarm::TwoSubprogramCalls
+                | Alarm::SkipSignals { .. }
+                | Alarm::SkipTorque
+        )
 }

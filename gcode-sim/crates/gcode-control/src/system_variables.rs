@@ -5,7 +5,9 @@ use super::notes::Note;
 use super::registers::{Registers, check_signal_word};
 use super::variables::Value;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::control::{Dialect, MachineValue, OffsetMemory, OffsetVariables, Settings, has_items};
+use gcode_lang::control::{
+    Dialect, MachineValue, OffsetMemory, OffsetVariables, Settings, assumed_machine_value, has_items,
+};
 use gcode_lang::motion::{AxisIndex, Position, SpindleDirection};
 use gcode_lang::program::modes::{Unit, WorkSystem};
 
@@ -250,8 +252,8 @@ impl Registers {
         Ok(Value::Number((bits >> item & 1) as f64))
     }
 
-    /// Returns a value of the machine: one that follows from the settings of the control, or is stated; 0 with a note for any
-    /// other.
+    /// Returns a value of the machine: one that follows from the settings of the control, or is stated; an assumed one with a
+    /// note for any other.
     pub(super) fn machine_value(&self, number: u32, item: Option<u32>) -> f64 {
         let known = if item.is_none() { self.haas_setting(number) } else { None };
         if let Some(value) = known {
@@ -265,7 +267,7 @@ impl Registers {
             }
             None => {
                 self.block_effects.record_note(Note::MachineValueUnknown { number, item });
-                0.0
+                f64::from(assumed_machine_value(number, item))
             }
         }
     }

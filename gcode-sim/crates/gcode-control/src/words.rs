@@ -36,6 +36,9 @@ impl WordNumber {
     }
 }
 
+/// Function of `,A`, which is not simulated.
+pub(super) const DIRECT_DRAWING: &str = "direct drawing dimensions (,A)";
+
 /// Largest number of G codes in a block: more than there are modal groups.
 pub(super) const MAX_G_CODES: usize = 32;
 
@@ -77,7 +80,7 @@ impl BlockWords {
     /// Adds `,R` or `,C`.
     pub(super) fn put_corner(&mut self, word: &LoweredWord, raw: WordNumber) -> Result<(), Alarm> {
         if word.letter == b'A' {
-            return Err(Alarm::NotSimulated { what: "direct drawing dimensions (,A)".into() });
+            return Err(Alarm::NotSimulated { what: DIRECT_DRAWING.into() });
         }
         if !matches!(word.letter, b'R' | b'C') || self.corner.is_some() {
             return Err(Alarm::CornerWords);

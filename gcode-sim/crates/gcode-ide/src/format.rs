@@ -41,7 +41,9 @@ fn next_line(text: &[u8], end: u32) -> u32 {
 /// Returns the edits of a line, if it is read the same afterwards.
 fn line_edits(text: &[u8], line: TextRange) -> Vec<TextEdit> {
     let Some(block) = block_at(SOURCE, &text[..line.end as usize], line.start) else { return Vec::new() };
-    let is_own = line.start <= block.span.start && block.span.end <= line.end;
+    // Behind `;` another block may follow.
+    let is_alone = || text[block.span.end as usize..line.end as usize].trim_ascii().is_empty();
+    let is_own = line.start <= block.span.start && block.span.end <= line.end && is_alone();
     let edits = if is_own { block_edits(text, line, &block) } else { Vec::new() };
     if edits.is_empty() {
         return edits;
@@ -182,6 +184,7 @@ mod tests {
         assert_eq!(shown("/N5G0X1.\n/ 2  N5\n"), "/N5 G0 X1.\n/ 2 N5\n");
         assert_eq!(shown("  N5  G0\r\n\r\n X1.\r\n"), "N5 G0\r\n\r\nX1.\r\n");
         assert_eq!(shown("G1X1.;\nG1X1.  // UP \n"), "G1 X1.;\nG1 X1. // UP\n");
+        assert_eq!(shown("G43  ;  H1 \n"), "G43  ;  H1 \n", "two blocks in a line");
     }
 
     #[test]

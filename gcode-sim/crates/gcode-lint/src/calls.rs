@@ -28,6 +28,8 @@ pub struct CallSite {
     pub folder: Option<Folder>,
     /// Sequence number in Q of M98, where the subprogram starts.
     pub start: Option<u32>,
+    /// All digits of P, if the first ones are repeats.
+    pub digits_of_p: Option<u32>,
     /// Word of the sequence number.
     pub start_span: Option<Span>,
     /// Locals that the arguments set.
@@ -87,18 +89,23 @@ pub fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<C
     }
     let has_repeats_in_p =
         call.kind == CallCode::Subprogram && settings.reads_repeats_in_p && call.repeats.is_none();
+    let mut digits_of_p = None;
     let target = match &call.target {
         CallTarget::None => CalledProgramName::Missing,
         CallTarget::Name(name) => CalledProgramName::Name(name.clone()),
         CallTarget::Number(word) => match literal::word_count(word) {
             None => CalledProgramName::Computed,
             // M98 P with more than four digits: repeats before a four-digit program number.
-            Some(number) if has_repeats_in_p && number > 9999 => CalledProgramName::Number(number % 10_000),
+            Some(number) if has_repeats_in_p && number > 9999 => {
+                digits_of_p = Some(number);
+                CalledProgramName::Number(number % 10_000)
+            }
             Some(number) => CalledProgramName::Number(number),
         },
     };
     let target_span = match &call.target {
-        CallTarget::Number(word) => Some(word.span),
+        // O stands for a path in a comment.
+        CallTarget::Number(word) => (word.letter == b'P').then_some(word.span),
         CallTarget::Name(_) | CallTarget::None => None,
     };
     Some(CallSite {
@@ -107,6 +114,7 @@ pub fn call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<C
         has_own_locals: !subprogram,
         is_modal: matches!(call.kind, CallCode::AfterMoves | CallCode::EveryBlock),
         target,
+        digits_of_p,
         target_span,
         folder: None,
         start: call.start.as_ref().and_then(literal::word_count),
@@ -160,6 +168,7 @@ fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<
             has_own_locals,
             is_modal,
             target,
+            digits_of_p: None,
             target_span,
             folder: None,
             start: None,

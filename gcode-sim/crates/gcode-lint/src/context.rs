@@ -1,5 +1,5 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
@@ -37,6 +37,8 @@ pub(crate) struct CheckContext<'a> {
     /// Names of all rules, as valid in CHECK-OFF.
     pub rules: Vec<&'static str>,
     unit_indices: BTreeMap<ProgramId, usize>,
+    /// Files for calculator-type input, see the rule `missing-point`.
+    pub calculator_files: OnceLock<BTreeSet<SourceId>>,
 }
 
 /// Sequence number of a block that is left out of a check.
@@ -119,7 +121,8 @@ impl<'a> CheckContext<'a> {
     ) -> Self {
         let unit_indices = programs.iter().enumerate().map(|(unit, program)| (program.id, unit)).collect();
         let units = programs.into_iter().map(|program| ProgramUnit::new(memory, program)).collect();
-        let mut context = Self { memory, settings, knowledge, units, rules, unit_indices };
+        let calculator_files = OnceLock::new();
+        let mut context = Self { memory, settings, knowledge, units, rules, unit_indices, calculator_files };
         context.link_calls();
         context
     }
@@ -309,6 +312,20 @@ impl<'a> ProgramUnit<'a> {
     /// Returns the component of each node of the control flow, see `components`.
     pub(crate) fn components(&self) -> &[usize] {
         self.components.get_or_init(|| strongly_connected_components(&self.flow))
+    }
+
+    /// Returns true for an unreached block to which a jump in a comment leads, `(IF[#1 EQ 1]GOTO 50)`.
+    pub(crate) fn is_jump_commented_out(&self, block: OpIndex) -> bool {
+        let unreached = (0..=block).rev().take_while(|before| !self.is_reached[*before]);
+        let Some(number) = unreached.filter_map(|before| self.op(before).number).next() else { return false };
+        let jumps = |comment: &ast::Comment| {
+            let text = String::from_utf8_lossy(&comment.text).to_ascii_uppercase();
+            text.split("GOTO").skip(1).any(|behind| {
+                let digits: String = behind.trim_start().chars().take_while(char::is_ascii_digit).collect();
+                digits.parse() == Ok(number)
+            })
+        };
+        self.blocks.iter().flat_map(|block| &block.comments).any(jumps)
     }
 
     pub(crate) fn op(&self, block: OpIndex) -> &Op {

@@ -125,6 +125,10 @@ impl ControlFlowGraph {
             Statement::While { end, .. } => Successors::next_or(vec![end + 1]),
             Statement::End { start, .. } => Successors { jumps: vec![*start], ..Successors::default() },
             statement if is_raise(statement) => Successors::exit(),
+            Statement::Assignments(all) if matches!(all.last(), Some(Statement::Goto(_))) => {
+                let goto = all.last().unwrap_or(statement);
+                self.statement_successors(program, block, goto)
+            }
             Statement::Assign { .. }
             | Statement::AssignDirect(_)
             | Statement::Assignments(_)

@@ -178,6 +178,11 @@ fn load_called_programs(
             };
             found.extend(called.filter(|called| known.insert(*called)));
         }
+        // The help of a missing program names the one with all digits of P if it is there.
+        for call in &program.calls {
+            let digits = call.digits_of_p.filter(|_| call.target.find(memory, None).is_none());
+            _ = digits.and_then(|digits| memory.fetch(digits, library));
+        }
         loaded.push(program);
         next += 1;
     }

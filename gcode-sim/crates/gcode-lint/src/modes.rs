@@ -3,7 +3,7 @@
 //! A mode is unknown where a setting of the control decides it (at power-on), a caller or a called program.
 use gcode_lang::program::code_facts::AxisWords;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
-use gcode_lang::program::modes::{Rotation, Scaling, StrokeCheck};
+use gcode_lang::program::modes::{FeedMode, Rotation, Scaling, StrokeCheck};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 
 use crate::context::has_feed_word;
@@ -54,16 +54,11 @@ fn modes_after(
     if op.skip().is_some() { after.join(*before) } else { after }
 }
 
-/// Returns the modes after the words of a block.
-pub(crate) fn after_words(
-    context: &CheckContext<'_>,
-    words: &Words,
-    before: &PossibleModes,
-) -> PossibleModes {
+fn after_words(context: &CheckContext<'_>, words: &Words, before: &PossibleModes) -> PossibleModes {
     let mut after = *before;
     for word in &words.list {
         if is_computed_g_code(word) {
-            after = after.with_unknown_motion().with_unknown_distance();
+            after = after.with_unknown_motion();
         } else if let Some(row) = context.g_code_row(word) {
             after = after.after_effect(row.effect);
         }
@@ -96,12 +91,15 @@ fn after_call(
     for op in called.program.ops() {
         match op.kind() {
             OpKind::Words(words) => {
-                let sets_motion = words.list.iter().any(is_computed_g_code)
-                    || context.has_effect(words, |e| matches!(e, Effect::Motion(_) | Effect::Cycle(_)));
+                let sets_mode = |effect| {
+                    matches!(
+                        effect,
+                        Effect::Motion(_) | Effect::Cycle(_) | Effect::FeedMode(_) | Effect::Distance(_)
+                    )
+                };
+                let sets_motion =
+                    words.list.iter().any(is_computed_g_code) || context.has_effect(words, sets_mode);
                 after = if sets_motion { after.with_unknown_motion() } else { after };
-                let sets_distance = words.list.iter().any(is_computed_g_code)
-                    || context.has_effect(words, |effect| matches!(effect, Effect::Distance(_)));
-                after = if sets_distance { after.with_unknown_distance() } else { after };
                 after.has_feed |= has_feed_word(words);
             }
             OpKind::If { .. } => return PossibleModes::ANYTHING,
@@ -123,18 +121,44 @@ pub(crate) fn missing_feed_alarm(
     words: &Words,
     before: &PossibleModes,
 ) -> Option<Alarm> {
-    let names_axis = || words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
-    let lacks_feed = before.is_unreported
-        && !before.has_feed
-        && !has_feed_word(words)
-        && names_axis()
-        // The words may be arguments of a code that calls a program.
-        && words.call().is_none()
-        && unit.call_in(block).is_none();
-    let modes = lacks_feed.then(|| modes_of_move(context, words, before)).flatten()?;
+    let modes = (before.is_unreported && !before.has_feed)
+        .then(|| modes_without_feed_word(context, unit, block, words, before))
+        .flatten()?;
     let is_feed = !(modes.is_rapid && modes.is_outside_cycle);
     let is_arc = !modes.is_straight && !modes.is_in_cycle;
     is_feed.then_some(if is_arc { Alarm::ArcFeedZero } else { Alarm::FeedZero })
+}
+
+/// Returns true for a feed move without F in G93, in which each needs its own; a canned cycle is none.
+pub(crate) fn lacks_inverse_time(
+    context: &CheckContext<'_>,
+    unit: &ProgramUnit<'_>,
+    block: OpIndex,
+    words: &Words,
+    before: &PossibleModes,
+) -> bool {
+    let may_be_inverse = before.is_inverse_time
+        || context.has_effect(words, |effect| effect == Effect::FeedMode(FeedMode::InverseTime));
+    let modes =
+        may_be_inverse.then(|| modes_without_feed_word(context, unit, block, words, before)).flatten();
+    modes.is_some_and(|modes| !modes.is_other_feed_mode && !modes.is_rapid && !modes.is_in_cycle)
+}
+
+/// Returns the modes in which a block without F moves its axes; `None` for any other block.
+fn modes_without_feed_word(
+    context: &CheckContext<'_>,
+    unit: &ProgramUnit<'_>,
+    block: OpIndex,
+    words: &Words,
+    before: &PossibleModes,
+) -> Option<PossibleModes> {
+    let names_axis = words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
+    let lacks_feed = !has_feed_word(words)
+        && names_axis
+        // The words may be arguments of a code that calls a program.
+        && words.call().is_none()
+        && unit.call_in(block).is_none();
+    lacks_feed.then(|| modes_of_move(context, words, before)).flatten()
 }
 
 /// Returns the modes in which a block moves its axes; `None` if its axis words may be no move.

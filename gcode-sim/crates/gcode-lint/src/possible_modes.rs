@@ -1,8 +1,8 @@
-//! The feed, the motion mode, the canned cycle, and G90 or G91 that are possible before a block.
+//! The feed, the motion mode and the canned cycle that are possible before a block.
 use gcode_control::static_plan::ModesInForce;
 use gcode_lang::program::cycles::{Cycle, DRILLING as DRILLING_CYCLE};
 use gcode_lang::program::g_codes::Effect;
-use gcode_lang::program::modes::{Distance, Motion};
+use gcode_lang::program::modes::{Distance, FeedMode, Motion};
 
 /// A cycle that needs no word of its own.
 static DRILLING: Cycle = DRILLING_CYCLE;
@@ -10,10 +10,6 @@ static DRILLING: Cycle = DRILLING_CYCLE;
 /// Possible modes before a block: each is true if it holds on some path to the block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PossibleModes {
-    /// G90 is in force.
-    pub is_absolute: bool,
-    /// G91 is in force.
-    pub is_incremental: bool,
     /// F is commanded.
     pub has_feed: bool,
     /// The motion mode is G00.
@@ -28,15 +24,19 @@ pub(crate) struct PossibleModes {
     pub cycle: Option<&'static Cycle>,
     /// The depth of a peck is commanded.
     pub has_pecks: bool,
+    /// The feed mode is G93.
+    pub is_inverse_time: bool,
+    /// The feed mode is another one.
+    pub is_other_feed_mode: bool,
+    /// The mode is G90.
+    pub is_absolute: bool,
     /// No earlier block lacks F. The first that does stops the control, and its F serves the blocks after it.
     pub is_unreported: bool,
 }
 
 impl PossibleModes {
-    /// Modes at power-on; settings of the control decide between G00 and G01, and between G90 and G91.
+    /// Modes at power-on; a setting of the control decides between G00 and G01.
     pub(super) const POWER_ON: Self = Self {
-        is_absolute: true,
-        is_incremental: true,
         has_feed: false,
         is_rapid: true,
         is_straight: true,
@@ -44,15 +44,16 @@ impl PossibleModes {
         is_in_cycle: false,
         cycle: None,
         has_pecks: false,
+        is_inverse_time: false,
+        is_other_feed_mode: true,
+        is_absolute: true,
         is_unreported: true,
     };
     pub(super) const ANYTHING: Self =
-        Self { has_feed: true, is_in_cycle: true, has_pecks: true, ..Self::POWER_ON };
+        Self { has_feed: true, is_in_cycle: true, has_pecks: true, is_inverse_time: true, ..Self::POWER_ON };
 
     pub(super) fn join(self, other: Self) -> Self {
         Self {
-            is_absolute: self.is_absolute | other.is_absolute,
-            is_incremental: self.is_incremental | other.is_incremental,
             has_feed: self.has_feed | other.has_feed,
             is_rapid: self.is_rapid | other.is_rapid,
             is_straight: self.is_straight | other.is_straight,
@@ -64,6 +65,9 @@ impl PossibleModes {
                 (false, _) => other.cycle,
             },
             has_pecks: self.has_pecks | other.has_pecks,
+            is_inverse_time: self.is_inverse_time | other.is_inverse_time,
+            is_other_feed_mode: self.is_other_feed_mode | other.is_other_feed_mode,
+            is_absolute: self.is_absolute | other.is_absolute,
             is_unreported: self.is_unreported | other.is_unreported,
         }
     }
@@ -76,12 +80,11 @@ impl PossibleModes {
             is_in_cycle: true,
             cycle: None,
             has_pecks: true,
+            // A computed G code may be any.
+            is_other_feed_mode: true,
+            is_absolute: true,
             ..self
         }
-    }
-
-    pub(super) fn with_unknown_distance(self) -> Self {
-        Self { is_absolute: true, is_incremental: true, ..self }
     }
 
     /// Returns the modes after a G code; a code of group 01 ends a cycle.
@@ -103,11 +106,12 @@ impl PossibleModes {
                 has_pecks: cycle.is_some() && self.has_pecks,
                 ..self
             },
-            Effect::Distance(distance) => Self {
-                is_absolute: distance == Distance::Absolute,
-                is_incremental: distance == Distance::Incremental,
+            Effect::FeedMode(mode) => Self {
+                is_inverse_time: mode == FeedMode::InverseTime,
+                is_other_feed_mode: mode != FeedMode::InverseTime,
                 ..self
             },
+            Effect::Distance(distance) => Self { is_absolute: distance == Distance::Absolute, ..self },
             _ => self,
         }
     }

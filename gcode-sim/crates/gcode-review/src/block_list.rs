@@ -234,6 +234,8 @@ pub(super) struct ExecutedBlocks {
 #[derive(Clone, Debug)]
 pub(super) struct MemoryProgram {
     pub label: String,
+    /// Label with the folder of a memory dump.
+    path: String,
     span: Span,
     pub texts: BlockTexts,
 }
@@ -243,10 +245,22 @@ impl ExecutedBlocks {
         numbers.last_calls = Default::default();
         let programs = memory.programs().iter().map(|program| MemoryProgram {
             label: program.label(),
+            path: program.path(),
             span: program.span,
             texts: program.block_texts().clone(),
         });
         Self { numbers, sources: memory.sources().clone(), programs: programs.collect() }
+    }
+
+    /// Returns a name of a program that no other program of the memory has: its label, else with its folder, else with its
+    /// place among those of the same folder.
+    pub(super) fn unique_name(&self, number: usize) -> String {
+        let MemoryProgram { label, path, .. } = &self.programs[number];
+        if self.programs.iter().filter(|other| other.label == *label).count() == 1 {
+            return label.clone();
+        }
+        let before = self.programs[..number].iter().filter(|other| other.path == *path).count();
+        if before == 0 { path.clone() } else { format!("{path} {}", before + 1) }
     }
 
     /// Returns the name of the program that contains a span.

@@ -65,7 +65,7 @@ fn read_words_and_text(block: &str, code: &mut String) {
 
 /// Blocks of one program of a record.
 pub(super) struct ProgramSide<'a> {
-    /// Name of the program; empty for the main program.
+    /// Name of the program, see [`ExecutedBlocks::unique_name`]; empty for the first one.
     pub name: String,
     blocks: SideBlocks<'a>,
 }
@@ -143,7 +143,7 @@ impl<'a> ProgramSide<'a> {
 pub(super) fn written(record: &Record) -> Option<Vec<ProgramSide<'_>>> {
     let BlockList::Executed(blocks) = &record.blocks else { return None };
     let side = |number: usize| {
-        let name = if number == 0 { String::new() } else { blocks.programs[number].label.clone() };
+        let name = if number == 0 { String::new() } else { blocks.unique_name(number) };
         ProgramSide { name, blocks: SideBlocks::Text(blocks, number) }
     };
     Some((0..blocks.programs.len()).map(side).collect())
@@ -355,6 +355,10 @@ pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
 
 #[cfg(test)]
 mod tests {
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::program::NoLibrary;
+    use gcode_session::Request;
+
     use super::*;
 
     fn side(text: &str) -> ProgramSide<'static> {
@@ -366,6 +370,25 @@ mod tests {
         };
         let blocks = text.lines().enumerate().map(|line| (block(line), Some(line.0)));
         ProgramSide::named(String::new(), blocks.collect())
+    }
+
+    /// A dump has O2 in two folders: each is compared with that of its own folder.
+    #[test]
+    fn programs_of_one_number_are_paired_by_their_folders() {
+        let run = |library: &str| {
+            let text = format!(
+                "O1\nM98 P2\nM30\n&F=//CNC_MEM/USER/PATH1/\nO2\n#100=1\nM99\n&F=//CNC_MEM/USER/LIBRARY/\nO2\n{library}\nM99\n"
+            );
+            let request = Request::new("O1.nc", text.into_bytes(), Machine::default());
+            Revision::of(&request, &mut NoLibrary, None).unwrap()
+        };
+        let lines = |old: &Revision, new: &Revision| {
+            let all = unexecuted(old, new).into_iter();
+            all.map(|change| [change.old, change.new].map(|block| block.map(|block| block.line)))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(lines(&run("#100=2"), &run("#100=2")), [[None; 2]; 0]);
+        assert_eq!(lines(&run("#100=2"), &run("#100=3")), [[Some(10), Some(10)]]);
     }
 
     /// Returns the first and the last block of each gap, old and new; none of an empty side.

@@ -9,7 +9,7 @@ mod typos;
 use crate::source::{Span, Spanned};
 
 pub use code::AlarmCode;
-pub use typos::{missing_macro_help, remedy};
+pub use typos::{missing_macro_help, remedy, repeats_in_p_help};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub enum Alarm {
     LowerCase,
     /// A keyword is abbreviated (`WH`, `GO`), which the control refuses.
     ShortWord,
-    /// The text after a `;` may be a block or a comment.
+    /// A block follows a `;` in its line.
     TwoBlocksInOneLine,
     /// An address has no number.
     NoDataAfterAddress {
@@ -248,7 +248,7 @@ pub enum Alarm {
     ProgramNotFound {
         /// O number.
         number: u32,
-        /// Failure to read a file during the search.
+        /// Failure to read a file during the search, or what else was found.
         read_error: Option<String>,
     },
     /// The file of M198 is not found.

@@ -24,7 +24,7 @@ impl Alarm {
             Self::NotAWord { text } => (&PS0004, format!("'{text}' is neither a word nor a macro statement"), Some("write a letter followed by a number, #variable or [expression]")),
             Self::LowerCase => (&PS0004, "letters in lower case".into(), Some("write capitals; comments may use both")),
             Self::ShortWord => (&PS0004, "a statement keyword is abbreviated".into(), Some("write WHILE, GOTO, END, THEN in full")),
-            Self::TwoBlocksInOneLine => (&PS0004, "text after ';' is ambiguous: a block or a comment".into(), Some("write the block on a line of its own, the comment in round brackets")),
+            Self::TwoBlocksInOneLine => (&PS0004, "a block behind ';' in a line".into(), Some("write the block on a line of its own, a comment in round brackets")),
             Self::NoDataAfterAddress { letter } => (&PS0005, format!("address {letter} has no number"), Some("write its value, or remove the letter")),
             Self::MissingWord { code, letter } => (&PS0005, format!("{code} needs {letter}"), Some("write it in the same block")),
             Self::PolarInterpolationFormat(what) => (&PS0145, format!("polar coordinate interpolation: {what}"), Some("command G12.1 alone in its block, after G40, with the axes of parameters 5460 and 5461")),

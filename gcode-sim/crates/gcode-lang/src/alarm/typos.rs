@@ -41,6 +41,14 @@ fn protected_program(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
     missing_macro_help(*number)
 }
 
+/// Returns what to do about M98 P whose digits are repeats and a missing program, and a program that is there.
+pub fn repeats_in_p_help(digits: u32) -> String {
+    let (repeats, number) = (digits / 10_000, digits % 10_000);
+    format!(
+        "P{digits} calls O{number:04} {repeats} times; to call O{digits}, write L behind it, M98 P{digits} L1, or give --control REPEATS-IN-P=0"
+    )
+}
+
 /// Returns the control that has a code which this one lacks.
 fn other_control(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
     let Alarm::ImproperGCode { control: Some(control), .. } = alarm else { return None };

@@ -88,6 +88,12 @@ impl MachineValues {
     }
 }
 
+/// Returns the value that a variable, or one of its items, is assumed to have: 0, but 1 for item 25 of parameter 57. With 0
+/// lengths and work offsets of a Haas have no sign, and its probing macros stop with `SET PARAM 57 NEG OFFSETS TO 1`.
+pub fn assumed_machine_value(number: u32, item: Option<u32>) -> u8 {
+    u8::from((number, item) == (30_057, Some(25)))
+}
+
 /// Returns true for a parameter, whose point separates an item; behind any other number it separates a bit.
 pub fn has_items(number: u32) -> bool {
     (30_000..=39_999).contains(&number)

@@ -16,7 +16,7 @@ pub use code_calls::{
 };
 pub use declared_codes::{DeclaredCodes, DeclaredEffect};
 pub use kinematics::{Kinematics, RotaryAxis};
-pub use machine_values::{MachineValue, MachineValues, has_items};
+pub use machine_values::{MachineValue, MachineValues, assumed_machine_value, has_items};
 pub use parameters::{ParameterError, ParameterId, changes_motion, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues, UndocumentedChoices};
 
@@ -224,6 +224,8 @@ with_defaults! {
         pub increment: Increment = Default::default(),
         /// True for inches at power-on, false for mm; `None` if nothing states it, which counts as mm.
         pub is_inch_at_power_on: Option<bool> = None,
+        /// True if G67 without G66 raises PS1100; `None` if only one without other G codes in its block does.
+        pub g67_alarms: Option<bool> = None,
         /// Axes in the order of their numbers.
         pub axes: Axes = Default::default(),
         /// ROA 1008#0: axes whose work coordinate rolls over from 360 to 0 and that take the shorter rotation.

@@ -190,6 +190,7 @@ const DOCUMENTED: &[SettingRow] = &[
     switch!("SCS", "S calls O9029 with its number in #147", code_calls.s_calls_program),
     switch!("BCS", "B, unless it is an axis, calls O9028 with its number in #146", code_calls.b_calls_program),
     switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has no effect", converts_arguments),
+    switch!("G67-ALARM", "G67 without G66 raises PS1100, as with 0 in 6000#0; without this setting only a G67 without other G codes in its block does", |s, on| s.g67_alarms = Some(on)),
     switch!("FXY", "5101#0: canned cycles drill along the normal of the plane, not always Z", drills_by_plane),
     switch!("D15", "6004#5: #2401 to #2800 are the offsets of D, and #2500 to #2806 no work offsets", has_diameter_variables),
     switch!("V15", "6000#3: geometry and wear are exchanged in tool offset variables", series_15_offsets),
@@ -317,9 +318,10 @@ undocumented_choices! {
     "G31-R" skip_takes_r = true, "R beside G31 selects a skip signal, as P does; otherwise SIM0001";
     "G43-MOVES" length_moves_at_once = true, "G43 H without an axis moves by the offset at once";
     "TAP-DWELL-R" tap_dwells_at_r = true, "G84 and G74 dwell at the R point level as well";
-    "G67-ALARM" g67_alarms = true, "G67 without G66 raises PS1100";
     "SMALL-R-ALARM" small_radius_alarms = true, "an arc whose R is too small raises PS0020 instead of becoming a half circle";
     "TWO-ASSIGNMENTS" allows_several_assignments = false, "several assignments in a block are accepted";
+    "ASSIGN-GOTO" allows_goto_after_assignment = false, "a GOTO behind assignments in a block is accepted";
+    "EOB-IN-LINE" semicolon_ends_block = true, "a block behind `;` in a line is executed instead of raising PS0004";
     "SIGNS" allows_relation_signs = false, "conditions accept = <> > >= < <= & and |";
     "SHORT-WORDS" allows_short_words = true, "statement keywords may be abbreviated to two letters: WH GO EN TH PO PC DP BP SE";
     "LOWER-CASE" reads_lower_case = true, "lower case is read as capitals instead of raising PS0004";

@@ -1,6 +1,6 @@
 //! Syntax that only some controls accept, recorded at lowering and checked against the settings at run time.
 use crate::alarm::Alarm;
-use crate::control::Settings;
+use crate::control::{Dialect, Settings};
 
 use super::g_codes;
 
@@ -19,6 +19,10 @@ pub enum DialectSyntax {
     RelationSigns,
     /// Several assignments in a block: `#1=1 #2=2`.
     SeveralAssignments,
+    /// GOTO behind an assignment in a block: `#1=1 GOTO 5`.
+    GotoAfterAssignment,
+    /// A block behind another one and `;` in its line.
+    BlockAfterSemicolon,
     /// `IF[…]` before words or an assignment, without THEN.
     PlainIf,
     /// `IF[…]THEN` before words.
@@ -42,6 +46,8 @@ pub enum DialectSyntax {
     },
     /// Modal codes before G65, G66 or G66.1.
     CodesBeforeCall,
+    /// Call of a file by its path, `M98 (Memory/O00002.nc)`.
+    PathOfCall,
     /// Program number 0.
     ProgramZero,
 }
@@ -56,6 +62,8 @@ impl DialectSyntax {
             Self::ShortWord => undocumented.allows_short_words,
             Self::RelationSigns => undocumented.allows_relation_signs,
             Self::SeveralAssignments => undocumented.allows_several_assignments,
+            Self::GotoAfterAssignment => undocumented.allows_goto_after_assignment,
+            Self::BlockAfterSemicolon => undocumented.semicolon_ends_block,
             Self::PlainIf => settings.allows_plain_if,
             Self::ThenWords => settings.then_takes_words,
             Self::ThenGoto => undocumented.then_takes_goto,
@@ -66,6 +74,7 @@ impl DialectSyntax {
             Self::FractionalNumber => !settings.has_variable_bits,
             Self::ValueCondition { .. } => settings.allows_value_conditions,
             Self::CodesBeforeCall => undocumented.allows_codes_before_call,
+            Self::PathOfCall => settings.codes == Dialect::HaasNgc,
             Self::ProgramZero => undocumented.reads_program_zero,
         }
     }
@@ -79,6 +88,10 @@ impl DialectSyntax {
             Self::ShortWord => Alarm::ShortWord,
             Self::RelationSigns => Alarm::RelationSymbol,
             Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },
+            Self::GotoAfterAssignment => {
+                Alarm::MacroFormat { what: "GOTO behind an assignment in one block".into() }
+            }
+            Self::BlockAfterSemicolon => Alarm::TwoBlocksInOneLine,
             Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,
             Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
             Self::NewWord(word) => Alarm::NotAWord { text: word.into() },
@@ -87,6 +100,7 @@ impl DialectSyntax {
             Self::ValueCondition { of_loop: false } => Alarm::IfFormat,
             Self::ValueCondition { of_loop: true } => Alarm::WhileFormat,
             Self::ProgramZero => Alarm::ProgramNumber,
+            Self::PathOfCall => Alarm::ProgramNotNamed,
             Self::CodesBeforeCall => Alarm::MacroFormat { what: "words before the macro call".into() },
         }
     }

@@ -180,7 +180,7 @@ pub enum Statement {
         /// Comment after the statement: the text of `#3000=` and `#3006=`.
         text: Option<Box<[u8]>>,
     },
-    /// Assignments of one block in order, `#1=1 #2=2`.
+    /// Assignments of one block in order, `#1=1 #2=2`; a GOTO may follow them.
     Assignments(Vec<Self>),
     /// `GOTO n`.
     Goto(Spanned<Operand>),

@@ -221,6 +221,11 @@ impl Words {
         self.uncommon.as_ref()?.call.as_ref()
     }
 
+    /// Returns the call of the block for a change of its target.
+    pub(super) fn call_mut(&mut self) -> Option<&mut CallOp> {
+        self.uncommon.as_mut()?.call.as_mut()
+    }
+
     /// Returns the switch of `/n` inside the block, and the words left while it is on.
     pub fn form_if_skipped(&self) -> Option<&(u8, Self)> {
         self.uncommon.as_ref()?.form_if_skipped.as_ref()

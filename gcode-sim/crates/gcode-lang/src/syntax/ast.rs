@@ -30,6 +30,8 @@ pub struct Block {
     pub number: Option<Spanned<u32>>,
     /// First statement with an abbreviated keyword: `WH[…]DO1`, `GO 5`.
     pub short_word: Option<Span>,
+    /// The `;` before the block, if it ends another block of the line.
+    pub behind_semicolon: Option<Span>,
     /// Words, statements and inner skips, in the order written.
     pub items: Vec<Item>,
     /// Comments in the order written.

@@ -12,8 +12,8 @@ use crate::source::Spanned;
 
 /// Reads one line without its end into an empty block; an unreadable rest becomes the last item.
 ///
-/// `%`, and an O word after M02, M30 or M99 (`M99O0810(TEXT)`), end the block. Returns the input from there
-/// on.
+/// `%`, a `;` with another block behind it, and an O word after M02, M30 or M99 (`M99O0810(TEXT)`), end the block.
+/// Returns the input from there on.
 pub(super) fn read_block<'a>(line: LineInput, input: Input<'a>, block: &mut Block) -> Input<'a> {
     let mut rest = spaces(input);
     while !rest.is_empty() && !ends_block(rest, block) {
@@ -31,7 +31,7 @@ pub(super) fn read_block<'a>(line: LineInput, input: Input<'a>, block: &mut Bloc
 
 fn ends_block(rest: Input<'_>, block: &Block) -> bool {
     match rest.first() {
-        Some(b'%') => true,
+        Some(b'%' | b';') => true,
         Some(b'O' | b'o') => begins_program(rest) && block.items.last().is_some_and(ends_program),
         _ => false,
     }
@@ -134,7 +134,6 @@ fn read_item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> ReadResul
             }
         },
         [b']', ..] => return fail(at, Alarm::MissingOpenBracket),
-        [b';', ..] => return fail(at, Alarm::TwoBlocksInOneLine),
         _ => return no_match(at),
     };
     block.items.push(item);

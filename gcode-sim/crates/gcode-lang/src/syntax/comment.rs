@@ -8,7 +8,7 @@ use crate::source::{SourceId, Span};
 /// Copies a line into `code` with its comments overwritten by [`COMMENT`], and appends them to `comments`.
 ///
 /// Remarks at the end, `; TEXT` and `// TEXT`, are cut off. If the text after a `;` is a block according to
-/// `is_block`, it may be a remark or a second block; the `;` then stays in the code and raises an alarm.
+/// `is_block`, the `;` stays in the code and ends the block before it.
 pub(super) fn blank_out_comments(
     source: SourceId,
     start: u32,
@@ -48,11 +48,15 @@ pub(super) fn blank_out_comments(
                 let text = &rest[1..];
                 if text.iter().all(|b| is_space(*b) || *b == b';') {
                     code.truncate(at);
-                } else if !is_block(text.split(|b| *b == b'(').next().unwrap_or(text)) {
+                    return;
+                }
+                let first = text.iter().position(|b| matches!(b, b'(' | b';')).unwrap_or(text.len());
+                let is_empty = text.get(first) == Some(&b';') && text[..first].iter().all(|b| is_space(*b));
+                if !is_empty && !is_block(&text[..first]) {
                     push_comment(at, line.len(), text, CommentMark::Semicolon);
                     code.truncate(at);
+                    return;
                 }
-                return;
             }
             b'/' if brackets + names == 0 && begins_remark(rest) => {
                 push_comment(at, line.len(), &rest[2..], CommentMark::Slashes);
@@ -137,6 +141,8 @@ mod tests {
         check("G0 X1.;", "G0 X1.", &[]);
         check("G0 X1.; UP (AGAIN)", "G0 X1.", &[" UP (AGAIN)"]);
         check("G0 X1.; G1", "G0 X1.; G1", &[]);
+        check("G0 X1.;; G1 (A); UP", "G0 X1.;; G1 (((", &["A", " UP"]);
+        check("G0 X1.; G1; G1 ;", "G0 X1.; G1; G1 ", &[]);
         check("G0 // UP", "G0 ", &[" UP"]);
         check("#1=#2//2", "#1=#2//2", &[]);
         check("M98<//CNC_MEM/A>", "M98<//CNC_MEM/A>", &[]);

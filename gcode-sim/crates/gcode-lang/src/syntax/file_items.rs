@@ -150,9 +150,10 @@ impl<'a> FileItems<'a> {
             None => &self.bytes[self.position..self.code_end],
         };
         let line = LineInput { source: self.source, end: self.code_end as u32 };
-        let from = self.position;
-        let at = spaces(text);
         let left = |rest: Input<'_>| self.code_end - rest.len();
+        let (text, semicolon) = behind_semicolons(line, text);
+        let from = left(text);
+        let at = spaces(text);
         if at.is_empty() && self.comments.is_empty() {
             return None;
         }
@@ -173,7 +174,7 @@ impl<'a> FileItems<'a> {
             self.position = left(rest);
             return Some(FileItem::Program { name, span });
         }
-        let mut block = Block::default();
+        let mut block = Block { behind_semicolon: semicolon, ..Block::default() };
         let to = left(read_block(line, text, &mut block));
         self.position = to;
         self.attach_comments(&mut block, from, to);
@@ -310,6 +311,16 @@ fn is_unreadable(item: &Item) -> bool {
 
 fn has_nothing_readable(piece: &FileItem) -> bool {
     matches!(piece, FileItem::Block(block) if block.is_unreadable())
+}
+
+/// Returns a text behind the `;` that end the block before it, with the last of them.
+fn behind_semicolons(line: LineInput, text: Input<'_>) -> (Input<'_>, Option<Span>) {
+    let (mut text, mut semicolon) = (text, None);
+    while let [b';', behind @ ..] = spaces(text) {
+        semicolon = Some(line.span(spaces(text), behind));
+        text = behind;
+    }
+    (text, semicolon)
 }
 
 /// Reads `O0001`, `:0007`, `<NAME>` or `O9123<NAME>`; in the last the name is only a title.

@@ -241,6 +241,7 @@ fn block() -> impl Strategy<Value = Block> {
             skip,
             number,
             short_word: None,
+            behind_semicolon: None,
             items,
             comments,
         })

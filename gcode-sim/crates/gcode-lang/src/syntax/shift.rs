@@ -6,7 +6,11 @@ impl Block {
     /// Moves all places of the block by a number of bytes.
     pub(super) fn shift(&mut self, delta: i64) {
         shift_span(&mut self.span, delta);
-        let marks = [self.skip.as_mut().map(|skip| &mut skip.span), self.short_word.as_mut()];
+        let marks = [
+            self.skip.as_mut().map(|skip| &mut skip.span),
+            self.short_word.as_mut(),
+            self.behind_semicolon.as_mut(),
+        ];
         let number = self.number.as_mut().map(|number| &mut number.span);
         marks.into_iter().chain([number]).flatten().for_each(|span| shift_span(span, delta));
         self.comments.iter_mut().for_each(|comment| shift_span(&mut comment.span, delta));

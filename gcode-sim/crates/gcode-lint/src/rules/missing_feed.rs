@@ -1,19 +1,24 @@
-//! Rule: a feed move or a canned cycle that no F precedes on any path: PS0011, and PS0025 for an arc.
+//! Rule: a feed move or a canned cycle that no F precedes on any path: PS0011, and PS0025 for an arc. In G93 each feed move
+//! needs an F of its own: PS1202.
 //!
 //! An unknown motion mode is no finding, see [`crate::modes`].
-use crate::modes::{missing_feed_alarm, modes_before};
+use crate::modes::{lacks_inverse_time, missing_feed_alarm, modes_before};
 use crate::prelude::*;
 
 pub(super) static RULE: Rule = Rule::new("missing-feed", Severity::Error, "a feed move before any F", find);
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    // The caller of a program may have set the feed.
-    if unit.role != Role::Main {
-        return Vec::new();
-    }
+    // A modal macro may take the words of any block as its arguments.
+    let takes_words = unit.calls.iter().any(|call| call.is_modal);
     let before = modes_before(context, unit);
     let alarms = unit.reached_words().filter_map(|(block, words)| {
-        let alarm = missing_feed_alarm(context, unit, block, words, &before[block]?)?;
+        let modes = &before[block]?;
+        // The caller of a program may have set the feed.
+        let missing = (unit.role == Role::Main)
+            .then(|| missing_feed_alarm(context, unit, block, words, modes))
+            .flatten();
+        let lacks_time = || !takes_words && lacks_inverse_time(context, unit, block, words, modes);
+        let alarm = missing.or_else(|| lacks_time().then_some(Alarm::NoInverseTime))?;
         Some((block, alarm.located_at(unit.op(block).span)))
     });
     alarms.map(|(block, alarm)| context.alarm_finding(unit, &RULE.kind, block, &alarm)).collect()
@@ -49,6 +54,29 @@ mod tests {
             ("O1\nG1\nG69 X5.\nM30\n", 3),
         ] {
             assert_eq!(lines(&RULE, text), [found], "{text}");
+        }
+    }
+
+    #[test]
+    fn each_feed_move_of_g93_needs_an_f() {
+        for (text, found) in [
+            ("O1\nG93 G01 X1. F10.\nX2.\nM30\n", 3),
+            ("O1\nG93 G01 X1. F10.\nG0 X5.\nG02 X2. R5.\nG94\nM30\n", 4),
+            ("O2\nG93 G01 X1. F10.\nX2.\nM99\n", 3),
+        ] {
+            let messages = messages(&RULE, text);
+            assert!(messages.len() == 1 && messages[0].starts_with("PS1202"), "{text}: {messages:?}");
+            assert_eq!(lines(&RULE, text), [found], "{text}");
+        }
+        for text in [
+            "O1\nG93 G01 X1. F10.\nX2. F#1\nG0 X5.\nM30\n",
+            "O1\nG93 G01 X1. F10.\nG94 X2.\nX3.\nM30\n",
+            "O1\nG93 G01 X1. F10.\nIF[#500 EQ 1]GOTO 5\nG94\nN5 X2.\nM30\n",
+            "O1\nG93 G01 X1. F10.\nG#1\nX2.\nM30\n",
+            "O1\nG93 G01 X1. F10.\nM98 P7\nX2.\nM30\n",
+            "O2\nG01 X2.\nM99\n",
+        ] {
+            assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
         }
     }
 

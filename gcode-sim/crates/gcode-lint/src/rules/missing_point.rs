@@ -2,11 +2,14 @@
 //!
 //! Programs that count in increments throughout (`X45000`) are exempt: they have no decimal point, and a
 //! number of 1 mm or more.
+use std::collections::{BTreeMap, BTreeSet};
+
 use gcode_lang::control::Settings;
 use gcode_lang::program::code_facts::Measured;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::modes::{Motion, Unit};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
+use gcode_lang::source::SourceId;
 use gcode_lang::syntax::ast::Decimal;
 
 use crate::literal::without_point;
@@ -31,6 +34,62 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     if settings.uses_calculator_input || counts_in_increments(unit, settings) {
         return Vec::new();
     }
+    let found = numbers_without_point(context, unit);
+    let calculator_files = context.calculator_files.get_or_init(|| calculator_files(context));
+    if found.is_empty() || !calculator_files.contains(&unit.program.span.source) {
+        return found;
+    }
+    // Such a file is written for another setting, which is one fault.
+    let is_first = |other: &&ProgramUnit<'_>| !numbers_without_point(context, other).is_empty();
+    if programs_of_file(context, unit).find(is_first).is_some_and(|first| first.id != unit.id) {
+        return Vec::new();
+    }
+    let others = found.len().saturating_sub(1);
+    let as_whole = found.into_iter().next().map(|first| {
+        let message = format!(
+            "{}, and so with {others} more: hardly a number of the program has a point",
+            first.message
+        );
+        let help = "write the points, or give --control DPI=1 for a control with calculator-type input";
+        context.unless_optional(Diagnostic { message, ..first }.help(help))
+    });
+    as_whole.into_iter().collect()
+}
+
+/// Number of numbers without a point from which a file that hardly has a point is one finding.
+const MANY_NUMBERS: usize = 4;
+
+/// Numbers without a point for each with one in a file that hardly has a point.
+const POINTLESS_FOR_EACH_POINTED: usize = 9;
+
+/// Returns the files that are written for calculator-type input: hardly a length in them has a point.
+fn calculator_files(context: &CheckContext<'_>) -> BTreeSet<SourceId> {
+    // Numbers with and without a point.
+    let mut counts: BTreeMap<SourceId, (usize, usize)> = BTreeMap::new();
+    for unit in &context.units {
+        let (pointed, without) = counts.entry(unit.program.span.source).or_default();
+        for number in numbers(unit, context.settings).filter(|number| number.digits > 0) {
+            *(if number.places.is_some() { &mut *pointed } else { &mut *without }) += 1;
+        }
+    }
+    let hardly_has_points = |(pointed, without): (usize, usize)| {
+        without >= MANY_NUMBERS.max(POINTLESS_FOR_EACH_POINTED * pointed)
+    };
+    counts.into_iter().filter(|(_, count)| hardly_has_points(*count)).map(|(source, _)| source).collect()
+}
+
+/// Iterates over the programs under check in the file of a program.
+fn programs_of_file<'c, 'a>(
+    context: &'c CheckContext<'a>,
+    unit: &ProgramUnit<'_>,
+) -> impl Iterator<Item = &'c ProgramUnit<'a>> {
+    let source = unit.program.span.source;
+    context.units.iter().filter(move |other| other.program.span.source == source)
+}
+
+/// Returns a finding for each number without a point.
+fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    let settings = context.settings;
     let mut words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
     let is_inch = words.any(|words| BlockCodes::of(words).has(|effect| *effect == Effect::Unit(Unit::Inch)));
     let parameters = parameters::parameter_blocks(unit.program);
@@ -58,23 +117,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             found.push(finding.with_severity(severity).help(format!("write {written}.")));
         }
     }
-    if found.len() < MANY_NUMBERS || numbers(unit, settings).any(|number| number.places.is_some()) {
-        return found;
-    }
-    // Such a program is written for another setting, which is one fault.
-    let others = found.len() - 1;
-    let first = found.into_iter().next().into_iter();
-    let as_whole = first.map(|first| {
-        let message =
-            format!("{}, and so with {others} more: no number of the program has a point", first.message);
-        let help = "write the points, or give --control DPI=1 for a control with calculator-type input";
-        Diagnostic { message, ..first }.help(help)
-    });
-    as_whole.collect()
+    found
 }
-
-/// Number of numbers without a point from which a program without any point is one finding.
-const MANY_NUMBERS: usize = 4;
 
 /// Iterates over the literals that are lengths, angles or seconds.
 fn numbers<'a>(unit: &'a ProgramUnit<'_>, settings: &'a Settings) -> impl Iterator<Item = Decimal> + 'a {
@@ -271,9 +315,14 @@ mod tests {
         let text = "O1\nG0 X10 Y20\nG1 Z-3 F100\nX45\nM30\n";
         assert_eq!(
             messages(&RULE, text),
-            ["X10 is 0.01 mm, and so with 3 more: no number of the program has a point"]
+            ["X10 is 0.01 mm, and so with 3 more: hardly a number of the program has a point"]
         );
-        assert_eq!(lines(&RULE, &text.replace("X45", "X45.5")), [2, 2, 3], "it has a point");
+        assert_eq!(lines(&RULE, &text.replace("X45", "X45.5")), [2, 2, 3], "one of four has a point");
+        let longer = text.replace("M30", "X1\nX2\nX3\nX4\nX5\nX6\nX7.5\nM30");
+        assert_eq!(lines(&RULE, &longer), [2], "one of eleven has a point");
+        assert_eq!(lines(&RULE, &longer.replace("X1\n", "X1.\n")).len(), 9, "two have one");
+        let two = format!("{longer}O2\nG0 X7\nM30\n");
+        assert_eq!(lines(&RULE, &two), [2], "the file is one finding");
     }
 
     #[test]

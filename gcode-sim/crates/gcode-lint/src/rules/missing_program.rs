@@ -2,7 +2,8 @@
 //!
 //! A macro that a control protects is probably on the control: its absence here is a warning.
 use gcode_lang::alarm::kinds::{PS0076, PS0310};
-use gcode_lang::alarm::missing_macro_help;
+use gcode_lang::alarm::{missing_macro_help, repeats_in_p_help};
+use gcode_lang::syntax::ast::ProgramName;
 
 use crate::calls::CalledProgramName;
 use crate::prelude::*;
@@ -36,7 +37,9 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
                 if of_macro.is_some() {
                     severity = Severity::Warning;
                 }
-                let help = of_macro.unwrap_or_else(|| "give the folder that holds it with --lib".to_owned());
+                let in_p = call.digits_of_p.filter(|digits| is_in_memory(context, *digits));
+                let help = in_p.map(repeats_in_p_help).or(of_macro);
+                let help = help.unwrap_or_else(|| "give the folder that holds it with --lib".to_owned());
                 (format!("{PS0076}: program {label} is not found{}", count_text(unit, &call.target)), help)
             }
             CalledProgramName::Name(_) => (
@@ -48,6 +51,11 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         found.push(finding.with_severity(severity).help(help));
     }
     found
+}
+
+/// Returns true if a program is among those read.
+fn is_in_memory(context: &CheckContext<'_>, number: u32) -> bool {
+    context.memory.find_from(&ProgramName::Number(number), None).is_some()
 }
 
 /// Returns the number of calls of a program, if there are several.

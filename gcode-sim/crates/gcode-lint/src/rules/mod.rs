@@ -3,7 +3,7 @@ mod constant_alarm;
 mod doubled_n;
 mod doubled_program;
 mod endless_loop;
-mod ignored_g53;
+mod ignored_move;
 mod jump_into_loop;
 mod live_position;
 mod loop_pairs;
@@ -56,6 +56,7 @@ pub static ALL: &[&Rule] = &[
     &constant_alarm::RULE,
     &missing_offset::RULE,
     &missing_feed::RULE,
+    &ignored_move::RULE,
     &open_comment::RULE,
     &stray_word::RULE,
     &refused_words::RULE,
@@ -63,7 +64,6 @@ pub static ALL: &[&Rule] = &[
     &missing_point::RULE,
     &rounded_pi::RULE,
     &live_position::RULE,
-    &ignored_g53::RULE,
     &endless_loop::RULE,
     &unreachable_alarm::RULE,
     &unreachable::RULE,
@@ -125,9 +125,9 @@ fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagno
 pub(super) mod testing {
     //! Runs all rules on a program and returns the findings of one.
     use super::Rule;
-    use crate::check;
+    use crate::{ControlKnowledge, check, check_loaded};
     use gcode_lang::control::Settings;
-    use gcode_lang::program::NoLibrary;
+    use gcode_lang::program::{Memory, NoLibrary};
 
     pub(crate) const NOWHERE: [u32; 0] = [];
 
@@ -138,6 +138,15 @@ pub(super) mod testing {
         of_rule
             .map(|f| checked.memory.sources().line_column(f.backtrace.as_ref().unwrap().block).line)
             .collect()
+    }
+
+    /// Returns the messages of a rule's findings where no file states the control.
+    pub(crate) fn messages_if_assumed(rule: &Rule, text: &str) -> Vec<String> {
+        let mut memory = Memory::default();
+        memory.load("test.nc", text.as_bytes());
+        let assumed = ControlKnowledge::Assumed;
+        let checked = check_loaded(memory, &Settings::default(), assumed, &mut NoLibrary);
+        checked.findings.into_iter().filter(|f| f.kind == &rule.kind).map(|f| f.message).collect()
     }
 
     pub(crate) fn messages(rule: &Rule, text: &str) -> Vec<String> {

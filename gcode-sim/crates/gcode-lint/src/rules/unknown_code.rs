@@ -1,7 +1,7 @@
 //! Rule: a G code that the control does not have.
 //!
-//! Notes report M codes of the machine builder, codes that are not simulated, and unknown G codes where the control is
-//! assumed.
+//! Notes report M codes of a stated machine's builder, codes that are not simulated, and unknown G codes where the control
+//! is assumed.
 use std::collections::BTreeSet;
 
 use gcode_lang::alarm::kinds::PS0010;
@@ -10,6 +10,7 @@ use gcode_lang::program::g_codes::{Effect, spelled};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::{LoweredWord, WordOperand};
 
+use crate::ControlKnowledge;
 use crate::literal;
 use crate::prelude::*;
 
@@ -69,6 +70,8 @@ fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String,
                 Some(_) => return None,
                 None if m_codes::is_auxiliary(code, settings.codes) => return None,
                 None if settings.codes == Dialect::HaasNgc => "is not simulated: its effect is unknown",
+                // Every machine has such codes, and nothing is known about them.
+                None if context.knowledge == ControlKnowledge::Assumed => return None,
                 None => "is a code of the machine builder: its effect is unknown",
             };
             Some((format!("M{code:02} {fault}"), None))
@@ -79,8 +82,16 @@ fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String,
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::lines;
+    use super::super::testing::{lines, messages_if_assumed};
     use super::RULE;
+
+    #[test]
+    fn m_codes_of_the_builder_are_reported_if_the_machine_is_stated() {
+        let text = "O1\nM88\nM30\n";
+        assert_eq!(lines(&RULE, text), [2]);
+        assert!(messages_if_assumed(&RULE, text).is_empty());
+        assert_eq!(messages_if_assumed(&RULE, "O1\nG12 I5.\nM30\n").len(), 1);
+    }
 
     #[test]
     fn unknown_g_codes_are_reported_always_and_m_codes_once() {

@@ -24,6 +24,9 @@ fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(_, op)| raises_alarm(op.kind())) {
         if !unit.is_reached[block] {
+            if unit.is_jump_commented_out(block) {
+                continue;
+            }
             let help = "jump to its number, or remove it";
             let message = "this alarm is never reached, so it never stops the program";
             found.push(unit.finding(&RULE.kind, block, message).help(help));
@@ -55,6 +58,9 @@ mod tests {
         let head = "O2\nIF[#24 EQ #0]GOTO 90\nX#24\nM99\n";
         assert_eq!(lines(&RULE, &format!("{head}N90 #3000=1(NO X)\n")), NOWHERE);
         assert_eq!(lines(&RULE, &format!("{head}N90 M99\nN91 #3000=1(NO X)\n")), [6]);
+        let commented_out = |jump: &str| format!("O2\n({jump})\nX#24\nM99\nN50\n#3000=7(LIFE)\n");
+        assert_eq!(lines(&RULE, &commented_out("IF[#1009EQ1]GOTO50,LIFE")), NOWHERE);
+        assert_eq!(lines(&RULE, &commented_out("IF[#1009EQ1]GOTO 5")), [6]);
     }
 
     #[test]

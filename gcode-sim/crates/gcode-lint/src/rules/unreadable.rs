@@ -1,11 +1,26 @@
-//! Rule: a block that raises an alarm as it is read: unreadable text, or words that exclude each other.
+//! Rule: a block that raises an alarm as it is read: unreadable text, or words that exclude each other. A block behind `;`
+//! in its line is a note.
+use gcode_lang::program::DialectSyntax;
+use gcode_lang::source::Spanned;
+
 use crate::prelude::*;
 
 pub(super) static RULE: Rule =
     Rule::new("unreadable", Severity::Error, "a block that raises an alarm as it is read", find);
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    context.reading_findings(unit, &RULE.kind, |alarm| !has_own_rule(alarm))
+    let mut found = context.reading_findings(unit, &RULE.kind, |alarm| !has_own_rule(alarm));
+    for (block, op) in unit.reached_ops() {
+        let second = |syntax: &&Spanned<_>| syntax.node == DialectSyntax::BlockAfterSemicolon;
+        let Some(syntax) = op.dialect_syntax().iter().find(second) else { continue };
+        if syntax.node.is_accepted(context.settings) {
+            let message = "the text behind ; is a block of its own, and it is executed";
+            let help = "write the block on a line of its own, a comment in round brackets";
+            let finding = unit.finding(&RULE.kind, block, message).with_span(syntax.span).help(help);
+            found.push(finding.with_severity(Severity::Note));
+        }
+    }
+    found
 }
 
 /// Returns true for the alarms that `loop-pairs`, `round-brackets`, `relation-symbol` and `unknown-code` report.
@@ -41,6 +56,12 @@ mod tests {
     fn an_if_without_then_is_refused() {
         let found = messages(&RULE, "O1\nIF[#1 EQ 0]#2=1\nM30\n");
         assert!(found[0].starts_with("PS1137: "), "{found:?}");
+    }
+
+    #[test]
+    fn a_block_behind_a_semicolon_is_a_note() {
+        let found = messages(&RULE, "O1\nG43; H01 (TOOL 1)\nG0 X1.; TO THE LEFT\nG0 X2.;\nM30\n");
+        assert_eq!(found, ["the text behind ; is a block of its own, and it is executed"]);
     }
 
     #[test]

@@ -45,8 +45,10 @@ impl<F: FileAccess> FolderLibrary<F> {
     /// Returns the files that may be programs, in the order of folders and names; known other extensions are
     /// skipped.
     fn candidates(&mut self) -> Vec<PathBuf> {
-        const OTHERS: [&str; 11] =
-            ["toml", "json", "csv", "png", "md", "html", "snap", "pdf", "zip", "rs", "new"];
+        const OTHERS: [&str; 15] = [
+            "toml", "json", "csv", "tsv", "xml", "log", "svg", "png", "md", "html", "snap", "pdf", "zip",
+            "rs", "new",
+        ];
         let mut files = Vec::new();
         for folder in &self.folders {
             match self.files.files(folder) {

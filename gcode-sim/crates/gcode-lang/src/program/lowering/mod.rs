@@ -2,7 +2,10 @@
 mod expr;
 
 use super::bytecode::{AssignmentTarget, Bytecode, Instruction, Slot};
-use super::{Assign, DialectSyntax, GuardedOp, Op, OpBody, OpKind, Operand, PrintPart, Statement};
+use super::{
+    Assign, CallCode, CallTarget, DialectSyntax, GuardedOp, LoweredWord, Op, OpBody, OpKind, Operand,
+    PrintPart, Statement, WordOperand, Words,
+};
 use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
@@ -37,6 +40,9 @@ impl Lowering {
         }
         if let Some(span) = block.short_word {
             self.record_syntax(DialectSyntax::ShortWord, span);
+        }
+        if let Some(span) = block.behind_semicolon {
+            self.record_syntax(DialectSyntax::BlockAfterSemicolon, span);
         }
         let unclosed = |comment: &&ast::Comment| comment.mark == ast::CommentMark::Unclosed;
         if let Some(comment) = block.comments.iter().find(unclosed) {
@@ -121,6 +127,7 @@ impl Lowering {
             }
             (None, false) => {
                 let mut lowered = self.lower_words(&block.items, &skips)?;
+                self.take_path_of_call(block, &mut lowered);
                 if let Some(comment) = block.comments.first() {
                     lowered.keep_text_length(comment.text.len());
                 }
@@ -133,17 +140,56 @@ impl Lowering {
         }
     }
 
-    /// Lowers a block of two or more assignments and nothing else; `None` for any other block.
+    /// Gives a call without P the program that a path behind its code names, `M98 (Memory/O00002.nc) L2`.
+    fn take_path_of_call(&mut self, block: &ast::Block, lowered: &mut Words) {
+        let Some(call) = lowered.call_mut() else { return };
+        let names_program = !matches!(call.kind, CallCode::Return | CallCode::Cancel | CallCode::Local);
+        if !names_program || !matches!(call.target, CallTarget::None) || call.start.is_some() {
+            return;
+        }
+        let behind = block.comments.iter().find(|comment| call.span.end <= comment.span.start);
+        let Some((path, span)) = behind.map(|comment| (&comment.text, comment.span)) else { return };
+        let path = String::from_utf8_lossy(path);
+        let file = path.rsplit(['/', '\\']).next().unwrap_or_default().trim();
+        let is_file = |(stem, ending): &(&str, &str)| {
+            !stem.is_empty() && !ending.is_empty() && ending.bytes().all(|byte| byte.is_ascii_alphanumeric())
+        };
+        let Some((stem, _)) = file.rsplit_once('.').filter(is_file) else { return };
+        call.target = match stem.trim_start_matches(['O', 'o']).parse() {
+            Ok(digits) => {
+                let value = WordOperand::Literal(ast::Decimal { negative: false, digits, places: None });
+                CallTarget::Number(LoweredWord { letter: b'O', axis: None, comma: false, value, span })
+            }
+            Err(_) => CallTarget::Name(stem.to_owned()),
+        };
+        self.record_syntax(DialectSyntax::PathOfCall, span);
+    }
+
+    /// Lowers a block of two or more assignments, of which the last may be a GOTO, and nothing else; `None` for any other block.
     fn lower_assignments(&mut self, block: &ast::Block) -> LoweringResult<Option<Statement>> {
         let [_, second, ..] = &block.items[..] else { return Ok(None) };
         let ast::Item::Statement(second) = second else { return Ok(None) };
         let mut several = Vec::new();
+        let mut jump = None;
         for item in &block.items {
             let ast::Item::Statement(found) = item else { return Ok(None) };
-            let ast::Statement::Assign { target, value } = &found.node else { return Ok(None) };
-            several.push(self.lower_assignment(target, value, found.span, block)?);
+            match &found.node {
+                ast::Statement::Assign { target, value } if jump.is_none() => {
+                    several.push(self.lower_assignment(target, value, found.span, block)?);
+                }
+                ast::Statement::Goto(to) if jump.is_none() && !several.is_empty() => {
+                    jump = Some((Statement::Goto(self.lower_jump_target(to)?), found.span));
+                }
+                _ => return Ok(None),
+            }
         }
-        self.record_syntax(DialectSyntax::SeveralAssignments, second.span);
+        if several.len() > 1 {
+            self.record_syntax(DialectSyntax::SeveralAssignments, second.span);
+        }
+        if let Some((goto, span)) = jump {
+            self.record_syntax(DialectSyntax::GotoAfterAssignment, span);
+            several.push(goto);
+        }
         Ok(Some(Statement::Assignments(several)))
     }
 
