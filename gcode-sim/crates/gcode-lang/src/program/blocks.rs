@@ -2,6 +2,7 @@
 //!
 //! A loop lowers its blocks once, and a long file never has all of its blocks lowered at the same time.
 use std::collections::BTreeMap;
+use std::thread;
 
 use super::block_texts::{BlockTexts, ProgramText};
 use super::loops::Loops;
@@ -12,6 +13,9 @@ use crate::syntax::{KnownBlocks, ast, sequence_number_at};
 
 /// Number of operations kept. Most loops are shorter; the operations take a few megabytes at most.
 const KEPT_OPERATIONS: usize = 8192;
+
+/// Number of blocks from which several threads share the lowering of all: fewer are lowered sooner than a thread starts.
+const MIN_BLOCKS_TO_SHARE: usize = 2000;
 
 /// Blocks of a program, and the operations of some.
 #[derive(Debug)]
@@ -134,26 +138,43 @@ impl Blocks {
     }
 
     /// Lowers all blocks and returns their trees. A block that is not known is read once.
+    ///
+    /// Blocks are lowered one apart from another, so that several threads share a long program.
     pub(super) fn lower_with_trees(&mut self, loops: &Loops, known: &mut KnownBlocks) -> Vec<ast::Block> {
         self.index_mask = usize::MAX;
-        self.ops = Vec::with_capacity(self.len());
-        let mut trees = Vec::with_capacity(self.len());
-        for index in 0..self.len() {
-            let start = self.texts.start(index);
-            let is_separate = self.texts.separate_trees.contains_key(&(index as u32));
-            let known = if is_separate { None } else { known.take(start) };
-            let Some(tree) = known.or_else(|| self.tree(index)) else { break };
-            let mut op = Op::default();
-            if is_separate || !op.refill(self.texts.text.source, self.texts.text.content(), start) {
-                let small = lower_case(&tree, &self.texts.text.bytes);
-                op = self.lowering.lower_block(&tree, small);
-                link_loop(&mut op, index, loops);
+        self.ops.clear();
+        self.ops.resize_with(self.len(), Op::default);
+        let texts = &self.texts;
+        let take = |index: OpIndex| {
+            let is_separate = texts.separate_trees.contains_key(&(index as u32));
+            if is_separate { None } else { known.take(texts.start(index)) }
+        };
+        let mut trees: Vec<Option<ast::Block>> = (0..texts.count()).map(take).collect();
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        let threads = if trees.len() < MIN_BLOCKS_TO_SHARE { 1 } else { cores };
+        let share = trees.len().div_ceil(threads).max(1);
+        let lower = |first: OpIndex, (trees, ops): (&mut [Option<ast::Block>], &mut [Op])| {
+            let mut lowering = Lowering::default();
+            for (index, (tree, op)) in (first..).zip(trees.iter_mut().zip(ops)) {
+                if tree.is_none() {
+                    *tree = texts.tree(index);
+                }
+                let Some(tree) = tree else { break };
+                lower_into(op, (index, tree), (texts, loops), &mut lowering);
             }
-            op.ordinal = index as u32 + 1;
-            self.ops.push(op);
-            trees.push(tree);
-        }
-        trees
+        };
+        let shares = trees.chunks_mut(share).zip(self.ops.chunks_mut(share));
+        let mut shares = (0..).step_by(share).zip(shares);
+        let own = shares.next();
+        thread::scope(|scope| {
+            for (first, share) in shares {
+                scope.spawn(move || lower(first, share));
+            }
+            if let Some((first, share)) = own {
+                lower(first, share);
+            }
+        });
+        trees.into_iter().map(Option::unwrap_or_default).collect()
     }
 
     /// Lowers a block that has more than numbers.
@@ -165,6 +186,22 @@ impl Blocks {
         link_loop(&mut op, index, loops);
         Some(op)
     }
+}
+
+/// Lowers a block into its slot.
+fn lower_into(
+    op: &mut Op,
+    (index, tree): (OpIndex, &ast::Block),
+    (texts, loops): (&BlockTexts, &Loops),
+    lowering: &mut Lowering,
+) {
+    let is_separate = texts.separate_trees.contains_key(&(index as u32));
+    if is_separate || !op.refill(texts.text.source, texts.text.content(), texts.start(index)) {
+        let small = lower_case(tree, &texts.text.bytes);
+        *op = lowering.lower_block(tree, small);
+        link_loop(op, index, loops);
+    }
+    op.ordinal = index as u32 + 1;
 }
 
 /// Links a WHILE, DO or END with its partner.
