@@ -6,3 +6,6 @@ pub(crate) const FAULTLESS: BlockMarks = 1;
 
 /// It reads no variables but commons.
 pub(crate) const READS_COMMONS_ALONE: BlockMarks = 2;
+
+/// It leaves the states of the locals as they are, on every way out of it.
+pub(crate) const KEEPS_LOCALS: BlockMarks = 4;

@@ -9,7 +9,7 @@ use gcode_lang::program::NoLibrary;
 /// Blocks of all kinds, some of them only parts of blocks.
 const BLOCKS: &str = "(N[1-4]0 ?)?(G0?[0-3] ?)?X[0-9]\\.(Y[0-9]{1,2})?( F[0-9]0\\.)?|M30|M99|G81Z-1\\.R1\\.|#1=#2|#[1-4]=#[1-4]\\+1|IF\\[#1EQ#0\\]GOTO[1-4]0\
     |GOTO[1-4]0|M98P2|G65P2A1\\.|WHILE\\[#1LT2\\]DO1|END1|\\(A\\)|O2|%|IF\\[#1EQ2\\]THEN#3000=1\\(A\\)|G4X#7|X1\\.\\.|/2X1\\.\
-    |#34=#[1-4]|#100=#10[0-9]\\+1|#101=#450|#2=#[1-4]\\*3\\.14|#101=SQRT\\[-4\\]|#3=#5021|\\(CHECK-OFF ROUNDED-PI\\)|X#101";
+    |#34=#[1-4]|#100=#10[0-9]\\+1|#101=#450|#2=#[1-4]\\*3\\.14|#101=SQRT\\[-4\\]|#3=#5021|IF\\[#10[0-1]EQ#[0-1]\\](GOTO[1-4]0|THEN#10?1=5\\.)|IF\\[#0EQ#0\\]GOTO20|WHILE\\[#101LT[#2]2\\]DO1|\\(CHECK-OFF ROUNDED-PI\\)|X#101";
 
 fn shown(checked: &CheckResult) -> Vec<String> {
     let each = checked.findings.iter().map(|f| {

@@ -6,8 +6,11 @@
 use std::collections::BTreeSet;
 
 use gcode_lang::program::{self, OpIndex, OpKind};
-use gcode_lang::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Relation, Statement};
+use gcode_lang::syntax::ast::{
+    BinaryOp, Block, CallForm, Condition, Expr, ExprKind, Function, Item, Relation, Statement,
+};
 
+use super::block_marks::KEEPS_LOCALS;
 use super::context::ProgramUnit;
 use super::control_flow::raises_alarm;
 pub(crate) use super::locals::{ANY_VALUE, Locals, NUMBER, States, UNSET, VACANT};
@@ -70,8 +73,10 @@ pub(super) fn steps(
     let mut to_all = |state: Locals| steps.extend(unit.flow.successors(block).map(|to| (to, state)));
     let Some(op) = unit.program.ops().get(block) else { return to_all(*state) };
     let mut after = *state;
-    let statement = variables::statement(&unit.blocks, block);
+    let keeps_locals = unit.marks[block] & KEEPS_LOCALS != 0;
+    let statement = if keeps_locals { None } else { variables::statement(&unit.blocks, block) };
     match (op.kind(), statement) {
+        _ if keeps_locals => to_all(after),
         (
             OpKind::Statement(_),
             Some(Statement::IfGoto { condition, .. } | Statement::While { condition, .. }),
@@ -129,6 +134,25 @@ pub(super) fn steps(
     }
     if op.skip().is_some() {
         steps.push((block + 1, *state));
+    }
+}
+
+/// Returns true for a statement that reads commons alone, sets none of the locals and has a condition that may be true or
+/// false: [`steps`] leads on with the same states.
+pub(super) fn keeps_locals(block: &Block) -> bool {
+    let sets_none = |statement: &Statement| match variables::statement_assignment(statement) {
+        Some((target, _)) => literal::variable(target).is_some_and(|number| !(1..=33).contains(&number)),
+        None => true,
+    };
+    let [Item::Statement(statement)] = &block.items[..] else { return false };
+    match &statement.node {
+        Statement::IfGoto { condition, .. }
+        | Statement::While { condition, .. }
+        | Statement::IfThen { condition, .. } => {
+            truth(condition, &Locals::ANYTHING).is_none() && sets_none(&statement.node)
+        }
+        Statement::Assign { .. } => sets_none(&statement.node),
+        _ => false,
     }
 }
 

@@ -57,7 +57,8 @@ fn work(receiver: &Receiver<CheckJob>, answers: impl Fn(CheckAnswer)) {
         let answer = jobs.remove(&file).and_then(|job| check(&job, before.unwrap_or_default()));
         let Some((answer, CheckResult { memory, findings, blocks, .. })) = answer else { continue };
         answers(answer);
-        drop((memory, findings));
+        // To release the operations of a long program takes as long as some rules: the next edit doesn't wait for it.
+        std::thread::spawn(move || drop((memory, findings)));
         last = (blocks.count() <= MAX_KEPT_BLOCKS).then_some((file, blocks));
     }
 }

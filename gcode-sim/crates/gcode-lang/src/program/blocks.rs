@@ -2,20 +2,17 @@
 //!
 //! A loop lowers its blocks once, and a long file never has all of its blocks lowered at the same time.
 use std::collections::BTreeMap;
-use std::thread;
 
 use super::block_texts::{BlockTexts, ProgramText};
 use super::loops::Loops;
 use super::lowering::{Lowering, lower_case};
 use super::{Op, OpBody, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
+use crate::shares::{share_length, work_on};
 use crate::syntax::{KnownBlocks, ast, sequence_number_at};
 
 /// Number of operations kept. Most loops are shorter; the operations take a few megabytes at most.
 const KEPT_OPERATIONS: usize = 8192;
-
-/// Number of blocks from which several threads share the lowering of all: fewer are lowered sooner than a thread starts.
-const MIN_BLOCKS_TO_SHARE: usize = 2000;
 
 /// Blocks of a program, and the operations of some.
 #[derive(Debug)]
@@ -150,10 +147,9 @@ impl Blocks {
             if is_separate { None } else { known.take(texts.start(index)) }
         };
         let mut trees: Vec<Option<ast::Block>> = (0..texts.count()).map(take).collect();
-        let cores = thread::available_parallelism().map_or(1, usize::from);
-        let threads = if trees.len() < MIN_BLOCKS_TO_SHARE { 1 } else { cores };
-        let share = trees.len().div_ceil(threads).max(1);
-        let lower = |first: OpIndex, (trees, ops): (&mut [Option<ast::Block>], &mut [Op])| {
+        let share = share_length(trees.len());
+        let shares = trees.chunks_mut(share).zip(self.ops.chunks_mut(share));
+        work_on((0..).step_by(share).zip(shares), |(first, (trees, ops))| {
             let mut lowering = Lowering::default();
             for (index, (tree, op)) in (first..).zip(trees.iter_mut().zip(ops)) {
                 if tree.is_none() {
@@ -161,17 +157,6 @@ impl Blocks {
                 }
                 let Some(tree) = tree else { break };
                 lower_into(op, (index, tree), (texts, loops), &mut lowering);
-            }
-        };
-        let shares = trees.chunks_mut(share).zip(self.ops.chunks_mut(share));
-        let mut shares = (0..).step_by(share).zip(shares);
-        let own = shares.next();
-        thread::scope(|scope| {
-            for (first, share) in shares {
-                scope.spawn(move || lower(first, share));
-            }
-            if let Some((first, share)) = own {
-                lower(first, share);
             }
         });
         trees.into_iter().map(Option::unwrap_or_default).collect()

@@ -3,6 +3,7 @@ use std::cell::Cell;
 
 use super::ast::Block;
 use super::token::is_space;
+use crate::shares::{share_length, work_on};
 use crate::source::Bytes;
 
 /// Bits that a user of blocks keeps with each: what holds of a block wherever an edit moves it.
@@ -53,16 +54,21 @@ impl ReadBlocks {
         let back = &before[before.len() - same_back..];
         let back_start = before.len() - same_back + back.iter().position(is_line_end).unwrap_or(same_back);
         let delta = text.len() as i64 - before.len() as i64;
-        let mut known = KnownBlocks::default();
-        for (mut block, marks) in self.blocks.into_iter().zip(self.marks) {
+        let mut blocks = self.blocks;
+        let first_behind = blocks.partition_point(|block| block.span.start as usize <= back_start);
+        let is_known = |(index, block): (usize, &Block)| {
             let (start, end) = (block.span.start as usize, block.span.end as usize);
-            let is_behind = back_start < start;
-            if !is_behind && front_end < end || !fills_its_line(&before, start, end) {
-                continue;
-            }
-            if is_behind && delta != 0 {
-                block.shift(delta);
-            }
+            (first_behind <= index || end <= front_end) && fills_its_line(&before, start, end)
+        };
+        let is_known: Vec<bool> = blocks.iter().enumerate().map(is_known).collect();
+        if delta != 0 {
+            let behind = &mut blocks[first_behind..];
+            let share = share_length(behind.len());
+            work_on(behind.chunks_mut(share), |share| share.iter_mut().for_each(|block| block.shift(delta)));
+        }
+        let mut known = KnownBlocks::default();
+        let all = blocks.into_iter().zip(self.marks).zip(is_known);
+        for ((block, marks), _) in all.filter(|(_, is_known)| *is_known) {
             known.starts.push(block.span.start);
             known.blocks.push(Some(block));
             known.marks.push(marks);

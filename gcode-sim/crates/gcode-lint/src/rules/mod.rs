@@ -35,11 +35,12 @@ use gcode_lang::diag::{Diagnostic, FindingKind};
 use gcode_lang::program::Slot;
 use gcode_lang::syntax::BlockMarks;
 
-use super::block_marks::{FAULTLESS, READS_COMMONS_ALONE};
+use super::block_marks::{FAULTLESS, KEEPS_LOCALS, READS_COMMONS_ALONE};
 use super::context::{CheckContext, ProgramUnit};
 use super::rule::Find;
 pub use super::rule::Rule;
 use super::suppression::suppressions;
+use super::vacancy::keeps_locals;
 
 /// All rules, in the order of their findings about one block.
 pub static ALL: &[&Rule] = &[
@@ -168,6 +169,7 @@ fn findings_about_blocks(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, sha
         }
         if unit.reads(block).iter().all(|read| is_common(read.number)) {
             marks |= READS_COMMONS_ALONE;
+            marks |= if keeps_locals(&unit.blocks[block]) { KEEPS_LOCALS } else { 0 };
         }
         marks
     });
