@@ -1,6 +1,7 @@
 //! Command-line parts that both programs share: help, usage errors, colours.
 use std::ffi::OsString;
 
+use clap::error::{ContextKind, ErrorKind};
 use clap::{Args, Parser, ValueEnum};
 
 use super::{ExitStatus, UsageError, output};
@@ -57,7 +58,11 @@ pub fn main<A: Parser>(
 ) -> ExitStatus {
     let arguments = match A::try_parse_from(arguments.into_iter().map(unquoted)) {
         Ok(arguments) => arguments,
-        Err(error) => {
+        Err(mut error) => {
+            if error.kind() == ErrorKind::UnknownArgument {
+                // The tip to write `-- --flag` takes the flag for a value, which none is.
+                error.remove(ContextKind::Suggested);
+            }
             let text = error.render().ansi().to_string();
             if !error.use_stderr() && output::print(&text).is_ok() {
                 return ExitStatus::Passed;

@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::ListFormat;
-use super::{ExitStatus, UsageError, options, output, page, progress};
+use super::{ExitStatus, UsageError, options, output, page, progress, unused_machine};
 use crate::report::holes::{self as report, Origin};
 use gcode_part::{HoleList, Total};
 use gcode_session::{Request, Simulation};
@@ -35,17 +35,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if let Some(path) = &arguments.page {
         let traced = page::judge_traced(&mut request, &mut folders, None)?;
         page::write_alone(&request, &traced, None, &program.conditions, path)?;
-        let status = print_result(arguments, &request, &traced.0.simulation)?;
+        let status = print_result(arguments, &program, &request, &traced.0.simulation)?;
         output::written("page", path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }
     let simulation =
         progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))?;
-    print_result(arguments, &request, &simulation)
+    print_result(arguments, &program, &request, &simulation)
 }
 
 fn print_result(
     arguments: &Arguments,
+    program: &ProgramArguments,
     request: &Request,
     simulation: &Simulation,
 ) -> Result<ExitStatus, UsageError> {
@@ -65,6 +66,7 @@ fn print_result(
     if let Some(sentence) = list.stopped.filter(|_| arguments.format == ListFormat::Text) {
         output::print(&format!("{sentence}\n"))?;
     }
+    unused_machine::warn_missing_machine(program, &request.bytes, (&simulation.run, &simulation.extracted));
     let of_run = super::findings(&simulation.extracted.findings, &simulation.run);
     Ok(of_run.max(super::findings(&denied, &simulation.run)))
 }

@@ -1,6 +1,7 @@
 //! Warns of an unused machine file: `--machine` is easily forgotten, and another machine makes other holes.
 use super::conditions::ProgramArguments;
 use super::output;
+use gcode_inspect::holes::HoleExtraction;
 use gcode_inspect::machine::Machine;
 use gcode_lang::control::{Dialect, Increment};
 use gcode_session::files::MACHINE_FILE;
@@ -12,6 +13,26 @@ pub(super) fn warn_unused_machine(arguments: &ProgramArguments, request: &Reques
         let why = "the program's comments name a machine file, and none is used: give --machine MACHINE.toml";
         output::print_message(&format!("note: {why}\n"));
     }
+}
+
+/// Prints a note if a program makes holes by linear axes alone and no machine file states the head and the axes.
+pub(super) fn warn_missing_machine(
+    arguments: &ProgramArguments,
+    bytes: &[u8],
+    (run, holes): (&Run, &HoleExtraction),
+) {
+    let control = &run.control;
+    let axes = &control.settings().axes;
+    let uncommanded = control.unknown_axes().uncommanded;
+    let is_rotary_used = (0..axes.len()).any(|axis| axes.is_rotary(axis) && uncommanded >> axis & 1 == 0);
+    let is_stated = arguments.conditions.machine.is_some() || head(bytes).is_some();
+    if is_stated || is_rotary_used || holes.holes.is_empty() {
+        return;
+    }
+    output::print_message(&format!(
+        "note: no machine file: the head and the rotary axes are unknown; gcode-sim new machine --kind 3-axis -o \
+         {MACHINE_FILE} writes one for a machine without rotary axes\n"
+    ));
 }
 
 /// Prints a note on the rotary axes that a program commands and that carry nothing, if no machine file is used.

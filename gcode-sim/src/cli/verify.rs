@@ -9,7 +9,7 @@ use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::FindingFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
-use super::{ExitStatus, UsageError, common, options, output, page, progress, render};
+use super::{ExitStatus, UsageError, common, options, output, page, progress, render, unused_machine};
 use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view, top};
@@ -155,14 +155,17 @@ fn holes(
     path_of_reference: &Path,
     criteria: Criteria<'_>,
 ) -> Result<ExitStatus, UsageError> {
-    let (machine, reference) = (request.machine.clone(), criteria.reference);
+    let (machine, reference, bytes) = (request.machine.clone(), criteria.reference, request.bytes.clone());
     let name = render::name(request);
     let print = |simulation: &Simulation, verdict: &Verdict| {
         let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
         let view = || top::of_verdict(&name, simulation, reference, verdict, &machine);
         let result = (verdict, verdict.conclusion(), verdict.diagnostics.as_slice());
         let picture = || gcode_draw::main_view(&view());
-        print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)
+        let status = print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)?;
+        let made = (&simulation.run, &simulation.extracted);
+        unused_machine::warn_missing_machine(&arguments.program, &bytes, made);
+        Ok(status)
     };
     if let Some(path) = &arguments.page {
         let traced = page::judge_traced(request, &mut folders, Some(criteria))?;

@@ -157,7 +157,9 @@ fn remarks_of(hole: &HoleVerdict) -> String {
 /// Returns the verdict with the first `most` of its kinds of faults, and the number of the others.
 fn with_faults(hole: &HoleVerdict, most: usize) -> String {
     if hole.ok {
-        return "pass".to_owned();
+        // A through hole may be deeper than nominal.
+        let is_deeper = hole.is_through && signed(hole.depth_error).starts_with('+');
+        return if is_deeper { "pass, through" } else { "pass" }.to_owned();
     }
     let names = fault_names(hole);
     let shown = names.len().min(most);
@@ -303,6 +305,7 @@ mod tests {
             depth_error: -0.00002,
             drilled_index: 0,
             far_side_index: None,
+            is_through: false,
             ok: error_codes.is_empty(),
             tilt: 0.0,
             out_of_tolerance: (phi - 0.1).max(0.0),

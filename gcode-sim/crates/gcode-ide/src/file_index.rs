@@ -105,11 +105,32 @@ impl FileIndex {
         );
         let edit = TextEdit { range, text: edit.text.clone() };
         let text = Bytes::from(apply_edits(&self.text, std::slice::from_ref(&edit)));
+        self.replaced(range, edit.text.len() as u32, text, settings)
+    }
+
+    /// Returns the index of another state of the text; only the chunks that differ are read.
+    #[must_use]
+    pub(crate) fn moved_to(self, text: Bytes, settings: &Settings) -> Self {
+        if std::ptr::eq(&self.text[..], &text[..]) {
+            return self;
+        }
+        let equal = |(one, other): &(&u8, &u8)| one == other;
+        let front = self.text.iter().zip(text.iter()).take_while(equal).count();
+        let (old, new) = (&self.text[front..], &text[front..]);
+        let back = old.iter().rev().zip(new.iter().rev()).take_while(equal).count();
+        let range = TextRange::new(front as u32, (self.text.len() - back) as u32);
+        let length = (new.len() - back) as u32;
+        self.replaced(range, length, text, settings)
+    }
+
+    /// Returns the index of a text in which `new_length` bytes stand in place of a range.
+    fn replaced(&self, range: TextRange, new_length: u32, text: Bytes, settings: &Settings) -> Self {
+        let length = self.text.len() as u32;
         let first = self.chunks.partition_point(|placed| placed.range.end < range.start);
         let last = self.chunks.partition_point(|placed| placed.range.start <= range.end);
         let start = self.chunks.get(first).map_or(0, |placed| placed.range.start).min(range.start);
         let old_end = self.chunks[..last].last().map_or(length, |placed| placed.range.end).max(range.end);
-        let shift = |offset: u32| offset - range.len() + edit.text.len() as u32;
+        let shift = |offset: u32| offset - range.len() + new_length;
         let mut chunks = self.chunks[..first].to_vec();
         chunks.extend(read_chunks(&text, TextRange::new(start, shift(old_end)), settings));
         chunks.extend(self.chunks[last..].iter().map(|placed| PlacedChunk {
@@ -255,6 +276,7 @@ fn programs(text: &[u8], chunks: &[PlacedChunk]) -> Vec<ProgramOutline> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::entries;
 
     fn labels(text: &[u8]) -> Vec<(String, u32, u32)> {
         let index = FileIndex::new(text, &Settings::default());
@@ -293,12 +315,6 @@ mod tests {
             let edited = index.edited(&edit, &settings);
             let fresh = FileIndex::new(edited.text().clone(), &settings);
             assert_eq!(edited.programs, fresh.programs, "{start} {stop}");
-            let entries = |index: &FileIndex| {
-                let shown = index
-                    .all_entries()
-                    .filter(|e| !matches!(e.kind, EntryKind::FirstBlock | EntryKind::FirstReadable));
-                shown.map(|e| (e.range, e.kind, e.call().map(|c| c.target_range()))).collect::<Vec<_>>()
-            };
             assert_eq!(entries(&edited), entries(&fresh), "{start} {stop}");
         }
     }

@@ -11,10 +11,16 @@ use crate::entry::EntryKind;
 use crate::file_index::{Call, FileIndex, ProgramOutline};
 use crate::text::{FileId, SOURCE, TextEdit, TextRange, line_range};
 
+/// Most controls whose indexes are kept: a project with documents of two controls is common, one with more is not.
+const MAX_CONTROLS: usize = 3;
+
 /// Files that an editor knows, read for one control.
 #[derive(Clone, Debug, Default)]
 pub struct Project {
     settings: Settings,
+    /// Number of the control in force, and the controls that were in force before, the last one at the end.
+    control: u32,
+    before: Vec<(u32, Settings)>,
     files: BTreeMap<FileId, ProjectFile>,
     /// Programs by the name that calls state.
     names: BTreeMap<ProgramName, BTreeSet<ProgramKey>>,
@@ -24,6 +30,8 @@ pub struct Project {
 struct ProjectFile {
     name: String,
     index: FileIndex,
+    /// Indexes for other controls, of this text or of an earlier state of it.
+    others: BTreeMap<u32, FileIndex>,
 }
 
 /// Program of a file of the project.
@@ -46,11 +54,30 @@ impl Project {
         &self.settings
     }
 
-    /// Changes the control; all files are read again.
+    /// Changes the control. Files are read for a new one; for one that was in force before, the lines that were edited since.
     pub fn set_settings(&mut self, settings: Settings) {
-        self.settings = settings;
+        if settings == self.settings {
+            return;
+        }
+        let known = self.before.iter().position(|(_, before)| *before == settings);
+        let newest = self.before.iter().map(|(number, _)| *number).max();
+        let number = match known {
+            Some(place) => self.before.remove(place).0,
+            None => newest.map_or(self.control, |newest| newest.max(self.control)) + 1,
+        };
+        let old = std::mem::replace(&mut self.control, number);
+        self.before.push((old, std::mem::replace(&mut self.settings, settings)));
+        let forgotten = (MAX_CONTROLS <= self.before.len()).then(|| self.before.remove(0).0);
         for file in self.files.values_mut() {
-            file.index = FileIndex::new(file.index.text().clone(), &self.settings);
+            let text = file.index.text().clone();
+            let index = match file.others.remove(&number) {
+                Some(known) => known.moved_to(text, &self.settings),
+                None => FileIndex::new(text, &self.settings),
+            };
+            file.others.insert(old, std::mem::replace(&mut file.index, index));
+            if let Some(forgotten) = forgotten {
+                file.others.remove(&forgotten);
+            }
         }
         // Where programs begin does not depend on the control.
     }
@@ -59,7 +86,7 @@ impl Project {
     pub fn set_file(&mut self, file: FileId, name: impl Into<String>, text: impl Into<Bytes>) {
         let index = FileIndex::new(text, &self.settings);
         self.remove_file(file);
-        self.files.insert(file, ProjectFile { name: name.into(), index });
+        self.files.insert(file, ProjectFile { name: name.into(), index, others: BTreeMap::new() });
         self.add_names(file);
     }
 
@@ -232,5 +259,47 @@ pub(crate) fn program_name(target: &CalledProgramName) -> Option<ProgramName> {
             Some(ProgramName::of(last.to_owned()))
         }
         CalledProgramName::Computed | CalledProgramName::Missing => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gcode_lang::control::Dialect;
+
+    use super::*;
+    use crate::testing::entries;
+
+    /// M96 P10 is a jump on a Haas, and calls O0010 at an interrupt on a Fanuc.
+    #[test]
+    fn a_control_that_comes_back_finds_the_edited_text() {
+        let line = "N10 G1 X#100 Y2.\nM96 P10\nGOTO 10\nG65 P9000 A1.\n";
+        let mut haas = Settings::default();
+        haas.apply_dialect(Dialect::HaasNgc);
+        let mut third = Settings::default();
+        third.apply_dialect(Dialect::Fanuc0iF);
+        let controls = [
+            Settings::default(),
+            haas,
+            third,
+            Settings { uses_calculator_input: true, ..Settings::default() },
+        ];
+        let (one, other) = (FileId(0), FileId(1));
+        let mut project = Project::new(controls[0].clone());
+        project.set_file(one, "O1.nc", line.repeat(500).into_bytes());
+        project.set_file(other, "O2.nc", *b"O2\nM96 P10\nM99\n");
+        let edits = [(0, 0, "O1\n"), (4000, 4003, ""), (20, 9000, "G3 X1.\n"), (0, 0, ""), (100, 101, "\n")];
+        let read = |which: usize| FileIndex::new(project.file(one).unwrap().text().clone(), &controls[which]);
+        assert_ne!(entries(&read(0)), entries(&read(1)));
+        // Each control comes back after others, the fourth has the first forgotten.
+        for (step, which) in [1, 0, 1, 2, 0, 3, 1, 2, 0, 0, 3].into_iter().enumerate() {
+            let (from, to, new) = edits[step % edits.len()];
+            project.edit_file(one, &TextEdit { range: TextRange::new(from, to), text: new.to_owned() });
+            project.set_settings(controls[which].clone());
+            for file in [one, other] {
+                let index = project.file(file).unwrap();
+                let fresh = FileIndex::new(index.text().clone(), &controls[which]);
+                assert_eq!(entries(index), entries(&fresh), "step {step}, control {which}");
+            }
+        }
     }
 }

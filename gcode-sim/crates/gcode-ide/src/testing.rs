@@ -1,6 +1,8 @@
 //! Projects of tests: texts with a cursor, `$0`.
 use gcode_lang::control::Settings;
 
+use crate::entry::EntryKind;
+use crate::file_index::FileIndex;
 use crate::project::Project;
 use crate::text::{FileEdit, FileId, TextRange};
 
@@ -29,6 +31,16 @@ pub(crate) fn fixture_on(text: &str, settings: Settings) -> Fixture {
         project.set_file(FileId(id), name, text.replace("$0", "").into_bytes());
     }
     Fixture { project, file, offset }
+}
+
+/// Entry of an index: its place, its kind, and the place of the program that a call names.
+pub(crate) type ShownEntry = (TextRange, EntryKind, Option<Option<TextRange>>);
+
+/// Returns the entries of an index. Those that open a chunk depend on where the text is cut.
+pub(crate) fn entries(index: &FileIndex) -> Vec<ShownEntry> {
+    let is_cut = |kind: EntryKind| matches!(kind, EntryKind::FirstBlock | EntryKind::FirstReadable);
+    let entries = index.all_entries().filter(|entry| !is_cut(entry.kind));
+    entries.map(|entry| (entry.range, entry.kind, entry.call().map(|call| call.target_range()))).collect()
 }
 
 impl Fixture {

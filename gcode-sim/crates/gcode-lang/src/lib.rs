@@ -28,6 +28,7 @@ pub mod diag;
 mod length_compensation;
 pub mod motion;
 pub mod program;
+mod shares;
 mod similar;
 pub mod source;
 pub mod syntax;

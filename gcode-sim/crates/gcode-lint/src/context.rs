@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
+use gcode_control::static_eval::VariableTable;
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
@@ -12,9 +13,10 @@ use gcode_lang::program::{
     CallCode, LoweredWord, Memory, Op, OpIndex, OpKind, Program, ProgramId, Statement, WordOperand, Words,
 };
 use gcode_lang::source::{SourceId, Span, Spanned};
-use gcode_lang::syntax::{KnownBlocks, ast};
+use gcode_lang::syntax::{BlockMarks, KnownBlocks, ast};
 
 use super::ControlKnowledge;
+use super::block_marks::READS_COMMONS_ALONE;
 use super::calls::{self, CallSite};
 use super::components::strongly_connected_components;
 use super::control_flow::ControlFlowGraph;
@@ -33,6 +35,7 @@ pub(crate) struct CheckContext<'a> {
     pub memory: &'a Memory,
     pub settings: &'a Settings,
     pub knowledge: ControlKnowledge,
+    pub variables: VariableTable<'a>,
     pub units: Vec<ProgramUnit<'a>>,
     /// Names of all rules, as valid in CHECK-OFF.
     pub rules: Vec<&'static str>,
@@ -53,6 +56,8 @@ pub(crate) struct LeftOutNumber {
 pub(crate) struct LoadedProgram {
     pub id: ProgramId,
     pub blocks: Vec<ast::Block>,
+    /// Marks of the blocks, see `block_marks`.
+    pub marks: Vec<BlockMarks>,
     pub calls: Vec<CallSite>,
 }
 
@@ -66,8 +71,10 @@ impl LoadedProgram {
     ) -> Self {
         let mut none = KnownBlocks::default();
         let is_first = memory.get(id).span.source == SourceId(0);
-        let blocks = memory.lower_with_trees(id, if is_first { known } else { &mut none });
-        Self { id, blocks, calls: calls::call_sites(memory.get(id), settings) }
+        let known = if is_first { known } else { &mut none };
+        let blocks = memory.lower_with_trees(id, known);
+        let marks = blocks.iter().map(|block| known.marks(block.span.start)).collect();
+        Self { id, blocks, marks, calls: calls::call_sites(memory.get(id), settings) }
     }
 }
 
@@ -92,8 +99,12 @@ pub(crate) struct ProgramUnit<'a> {
     pub role: Role,
     /// Modes before each block, see `modes`.
     pub modes: OnceLock<Vec<Option<PossibleModes>>>,
+    /// Marks of the blocks from the check before, see `block_marks`.
+    pub marks: Vec<BlockMarks>,
+    /// Marks of the blocks from this check.
+    pub new_marks: OnceLock<Vec<BlockMarks>>,
     /// Variables that each block reads, see `variables`.
-    reads: OnceLock<Vec<Vec<VariableRead>>>,
+    reads: Vec<OnceLock<Box<[VariableRead]>>>,
     components: OnceLock<Vec<usize>>,
     /// States without arguments, see `vacancy`.
     pub states_without_arguments: OnceLock<States>,
@@ -121,8 +132,10 @@ impl<'a> CheckContext<'a> {
     ) -> Self {
         let unit_indices = programs.iter().enumerate().map(|(unit, program)| (program.id, unit)).collect();
         let units = programs.into_iter().map(|program| ProgramUnit::new(memory, program)).collect();
+        let variables = VariableTable::new(settings);
         let calculator_files = OnceLock::new();
-        let mut context = Self { memory, settings, knowledge, units, rules, unit_indices, calculator_files };
+        let mut context =
+            Self { memory, settings, knowledge, variables, units, rules, unit_indices, calculator_files };
         context.link_calls();
         context
     }
@@ -130,7 +143,12 @@ impl<'a> CheckContext<'a> {
     /// Returns the programs again.
     pub(super) fn into_loaded(self) -> Vec<LoadedProgram> {
         let units = self.units.into_iter();
-        units.map(|ProgramUnit { id, blocks, calls, .. }| LoadedProgram { id, blocks, calls }).collect()
+        let loaded = |ProgramUnit { id, blocks, mut marks, new_marks, calls, .. }: ProgramUnit<'_>| {
+            let new = new_marks.into_inner().into_iter().flatten();
+            marks.iter_mut().zip(new).for_each(|(marks, new)| *marks |= new);
+            LoadedProgram { id, blocks, marks, calls }
+        };
+        units.map(loaded).collect()
     }
 
     /// Links callers and called programs, adds the return targets of calls and computes reachability.
@@ -265,11 +283,14 @@ fn written_alarm(kind: &OpKind) -> Option<&LocatedAlarm> {
 }
 
 impl<'a> ProgramUnit<'a> {
-    fn new(memory: &'a Memory, LoadedProgram { id, blocks, calls }: LoadedProgram) -> Self {
+    fn new(memory: &'a Memory, LoadedProgram { id, blocks, marks, calls }: LoadedProgram) -> Self {
         let program = memory.get(id);
         Self {
             id,
+            reads: blocks.iter().map(|_| OnceLock::new()).collect(),
             blocks,
+            marks,
+            new_marks: OnceLock::new(),
             flow: ControlFlowGraph::new(program),
             calls,
             callers: Vec::new(),
@@ -278,7 +299,6 @@ impl<'a> ProgramUnit<'a> {
             reaches_end: false,
             role: Role::Main,
             modes: OnceLock::new(),
-            reads: OnceLock::new(),
             components: OnceLock::new(),
             states_without_arguments: OnceLock::new(),
             left_out_numbers: Vec::new(),
@@ -303,10 +323,12 @@ impl<'a> ProgramUnit<'a> {
         if returns && !ends { Role::Resident } else { Role::Main }
     }
 
-    /// Returns the variables that a block reads.
+    /// Returns the variables that a block reads; none of a block that is known to read commons alone.
     pub(crate) fn reads(&self, block: OpIndex) -> &[VariableRead] {
-        let of_all = || self.blocks.iter().map(variables::block_reads).collect();
-        &self.reads.get_or_init(of_all)[block]
+        if self.marks[block] & READS_COMMONS_ALONE != 0 {
+            return &[];
+        }
+        self.reads[block].get_or_init(|| variables::block_reads(&self.blocks[block]).into())
     }
 
     /// Returns the component of each node of the control flow, see `components`.

@@ -173,20 +173,20 @@ impl ControlFlowGraph {
     /// Returns, for each block and the end of the program, whether it is reachable from one of `starts`.
     pub(crate) fn reachable(&self, starts: &[OpIndex]) -> Vec<bool> {
         let starts = starts.iter().map(|start| (*start, ()));
-        let next = |place, (): &()| self.successors(place).map(|to| (to, ())).collect();
+        let next = |place, (): &(), open: &mut Vec<_>| open.extend(self.successors(place).map(|to| (to, ())));
         let states = self.propagate(starts, |(), ()| (), next);
         states[..=self.block_successors.len()].iter().map(Option::is_some).collect()
     }
 
     /// Returns the state before each node, `None` for an unreachable one.
     ///
-    /// Starts with the states of some nodes. `next` gives the nodes that follow a node with their states; the
+    /// Starts with the states of some nodes. `next` adds the nodes that follow a node with their states; the
     /// states that meet at a node are joined until nothing changes.
     pub(crate) fn propagate<S: Clone + PartialEq>(
         &self,
         starts: impl IntoIterator<Item = (OpIndex, S)>,
         join: impl Fn(&mut S, S),
-        next: impl Fn(OpIndex, &S) -> Vec<(OpIndex, S)>,
+        next: impl Fn(OpIndex, &S, &mut Vec<(OpIndex, S)>),
     ) -> Vec<Option<S>> {
         let mut states: Vec<Option<S>> = vec![None; self.block_count()];
         let mut open: Vec<_> = starts.into_iter().collect();
@@ -198,7 +198,7 @@ impl ControlFlowGraph {
                 None => *known = Some(state),
             }
             if *known != before {
-                open.extend(known.iter().flat_map(|state| next(place, state)));
+                known.iter().for_each(|state| next(place, state, &mut open));
             }
         }
         states

@@ -81,17 +81,19 @@ impl<'a> FirstReach<'a> {
     /// node.
     fn trace(&self, component: usize, local: u32, ends: &BTreeSet<OpIndex>) -> Vec<Option<u8>> {
         let next_bits = |from: OpIndex, state: &Locals| {
-            steps(self.unit, from, state).into_iter().map(|(to, after)| (to, after.bits_of(local)))
+            let mut to = Vec::new();
+            steps(self.unit, from, state, &mut to);
+            to.into_iter().map(|(to, after)| (to, after.bits_of(local)))
         };
         let entries = self.entries.get(&component).into_iter().flatten();
         let entries = entries.filter_map(|entry| Some((*entry, self.states[*entry].as_ref()?)));
         let starts = self.unit.entry_blocks.iter().map(|start| (*start, self.bits(*start, local)));
         let starts = starts.chain(entries.flat_map(|(entry, state)| next_bits(entry, state)));
-        let next = |place: OpIndex, bits: &u8| {
+        let next = |place: OpIndex, bits: &u8, open: &mut Vec<_>| {
             let is_inside = self.component[place] == component && !ends.contains(&place);
-            let Some(mut state) = self.states[place].filter(|_| is_inside) else { return Vec::new() };
+            let Some(mut state) = self.states[place].filter(|_| is_inside) else { return };
             state.0[local as usize] = *bits;
-            next_bits(place, &state).collect()
+            open.extend(next_bits(place, &state));
         };
         self.unit.flow.propagate(starts, |known, other| *known |= other, next)
     }

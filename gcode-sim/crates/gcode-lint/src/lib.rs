@@ -19,7 +19,9 @@
 //! ```
 #![warn(missing_docs)]
 
+mod block_marks;
 mod calls;
+mod checked_blocks;
 mod components;
 mod context;
 mod control_flow;
@@ -45,6 +47,7 @@ mod variables;
 use std::collections::BTreeSet;
 
 pub use calls::{Argument, CallSite, CalledProgramName, call_site, called_programs};
+pub use checked_blocks::CheckedBlocks;
 pub use expressions::{UsedExpressions, ValueUse, block_expressions};
 pub use literal::{constant, variable};
 pub use main_programs::{main_programs, programs_called_by_others};
@@ -53,8 +56,8 @@ use context::{CheckContext, LoadedProgram};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::{Library, Memory, Program};
-use gcode_lang::source::{Bytes, SourceId, Span};
-use gcode_lang::syntax::{KnownBlocks, ReadBlocks};
+use gcode_lang::source::{Bytes, Span};
+use gcode_lang::syntax::KnownBlocks;
 use repetition::Repetitions;
 pub use variables::variables_read;
 
@@ -67,8 +70,8 @@ pub struct CheckResult {
     pub programs: usize,
     /// Findings in the order of the programs and their blocks.
     pub findings: Vec<Diagnostic>,
-    /// Blocks of the first text as far as they were read, for [`check_edited`].
-    pub read_blocks: ReadBlocks,
+    /// Blocks of the first text, for [`check_edited`].
+    pub blocks: CheckedBlocks,
 }
 
 /// Whether the settings of a check are those of the control that executes the programs.
@@ -106,14 +109,15 @@ pub fn check_loaded(
     check_known(memory, KnownBlocks::default(), (settings, knowledge), library)
 }
 
-/// Checks a file as [`check_loaded`] does. Blocks of an earlier state of its text are not read again where it is the same.
+/// Checks a file as [`check_loaded`] does. Blocks of an earlier state of its text are not read again where it is the same, and
+/// the rules about a block alone do not look at them again.
 pub fn check_edited(
     (name, bytes): (String, Bytes),
-    before: ReadBlocks,
+    before: CheckedBlocks,
     control: (&Settings, ControlKnowledge),
     library: &mut impl Library,
 ) -> CheckResult {
-    let known = before.moved_to(&bytes);
+    let known = before.moved_to(&bytes, control.0);
     let mut memory = Memory::default();
     memory.load_known(name, bytes, &known);
     check_known(memory, known, control, library)
@@ -143,11 +147,8 @@ fn check_known(
         units = context.into_loaded();
     }
     let programs = units.len();
-    let of_first = |unit: &LoadedProgram| memory.get(unit.id).span.source == SourceId(0);
-    let blocks = units.into_iter().filter(of_first).flat_map(|unit| unit.blocks).collect();
-    let text = memory.sources().iter().next().map(|(_, first)| first.bytes.clone());
-    let read_blocks = text.map(|text| ReadBlocks::new(text, blocks)).unwrap_or_default();
-    CheckResult { programs, memory, findings, read_blocks }
+    let blocks = CheckedBlocks::new(&memory, control.0, units);
+    CheckResult { programs, memory, findings, blocks }
 }
 
 /// Returns the programs in memory, followed by the programs that they call, as far as these are found.

@@ -23,10 +23,10 @@ fn propagated_modes(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<O
     let first = if unit.role == Role::Main { PossibleModes::POWER_ON } else { PossibleModes::ANYTHING };
     let entries = std::iter::once(first).chain(std::iter::repeat(PossibleModes::ANYTHING));
     let starts = unit.entry_blocks.iter().copied().zip(entries);
-    let next = |block: OpIndex, before: &PossibleModes| {
+    let next = |block: OpIndex, before: &PossibleModes, open: &mut Vec<_>| {
         let is_block = block < unit.program.ops().len();
         let after = if is_block { modes_after(context, unit, block, before) } else { *before };
-        unit.flow.successors(block).map(|to| (to, after)).collect()
+        open.extend(unit.flow.successors(block).map(|to| (to, after)));
     };
     unit.flow.propagate(starts, |known, other| *known = known.join(other), next)
 }

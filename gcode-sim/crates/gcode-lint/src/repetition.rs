@@ -141,7 +141,8 @@ impl Repetitions {
         for (id, whole) in self.programs {
             memory.replace(id, whole);
             for program in programs.iter_mut().filter(|program| program.id == id) {
-                let mut known = KnownBlocks::of(std::mem::take(&mut program.blocks));
+                let (blocks, marks) = (&mut program.blocks, &mut program.marks);
+                let mut known = KnownBlocks::of((std::mem::take(blocks), std::mem::take(marks)));
                 *program = LoadedProgram::new(memory, id, &mut known, settings);
             }
         }

@@ -3,7 +3,7 @@
 //! In the head of a program, before the first block with an operation, it turns the rule off for the whole
 //! program. A control treats it as a comment.
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::program::{OpIndex, OpKind};
+use gcode_lang::program::{Op, OpIndex, OpKind};
 use gcode_lang::source::Span;
 
 use super::context::ProgramUnit;
@@ -24,9 +24,11 @@ pub(super) struct Suppression {
 
 pub(super) fn suppressions(unit: &ProgramUnit<'_>) -> Vec<Suppression> {
     let mut found = Vec::new();
-    let mut is_in_head = true;
-    for (block, (written, op)) in unit.blocks.iter().zip(unit.program.ops()).enumerate() {
-        is_in_head &= matches!(op.kind(), OpKind::Empty) && op.number.is_none();
+    let ops = unit.program.ops();
+    let is_head = |op: &Op| matches!(op.kind(), OpKind::Empty) && op.number.is_none();
+    let head = ops.iter().position(|op| !is_head(op)).unwrap_or(ops.len());
+    for (block, written) in unit.blocks.iter().enumerate() {
+        let is_in_head = block < head;
         for comment in &written.comments {
             let text = String::from_utf8_lossy(&comment.text).to_ascii_uppercase();
             let Some(names) = text.trim().strip_prefix(KEYWORD) else { continue };
@@ -38,7 +40,7 @@ pub(super) fn suppressions(unit: &ProgramUnit<'_>) -> Vec<Suppression> {
                 name: name.to_owned(),
                 block,
                 comment: comment.span,
-                block_span: (!is_in_head).then_some(op.span),
+                block_span: (!is_in_head).then_some(ops[block].span),
             }));
         }
     }

@@ -28,12 +28,12 @@ pub(super) fn unset_reads(unit: &ProgramUnit<'_>, states: &States) -> Vec<UnsetR
     let first = FirstReach::new(unit, states);
     let mut found = Vec::new();
     for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some()) {
-        // `#1=#1` has no effect.
-        if variables::assignment(written).is_some_and(|(target, value)| same_variable(target, value)) {
-            continue;
-        }
         let reads = unit.reads(block);
         if !reads.iter().any(|read| (1..=33).contains(&read.number)) {
+            continue;
+        }
+        // `#1=#1` has no effect.
+        if variables::assignment(written).is_some_and(|(target, value)| same_variable(target, value)) {
             continue;
         }
         let guarded = guarded_locals(unit, block, reads);

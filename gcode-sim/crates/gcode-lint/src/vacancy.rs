@@ -6,8 +6,11 @@
 use std::collections::BTreeSet;
 
 use gcode_lang::program::{self, OpIndex, OpKind};
-use gcode_lang::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Relation, Statement};
+use gcode_lang::syntax::ast::{
+    BinaryOp, Block, CallForm, Condition, Expr, ExprKind, Function, Item, Relation, Statement,
+};
 
+use super::block_marks::KEEPS_LOCALS;
 use super::context::ProgramUnit;
 use super::control_flow::raises_alarm;
 pub(crate) use super::locals::{ANY_VALUE, Locals, NUMBER, States, UNSET, VACANT};
@@ -23,7 +26,7 @@ pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
     // A call that starts at another block brings its own locals.
     let entries = std::iter::once(entry).chain(std::iter::repeat(Locals::ANYTHING));
     let starts = unit.entry_blocks.iter().copied().zip(entries);
-    unit.flow.propagate(starts, Locals::join, |block, state| steps(unit, block, state))
+    unit.flow.propagate(starts, Locals::join, |block, state, open| steps(unit, block, state, open))
 }
 
 /// Returns true if a path leads from the first block to an end without an alarm and does not execute one of some blocks.
@@ -32,19 +35,21 @@ pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
 pub(super) fn can_avoid(unit: &ProgramUnit<'_>, entry: Locals, blocks: &BTreeSet<OpIndex>) -> bool {
     let starts = unit.entry_blocks.first().map(|start| (*start, entry));
     let ops = unit.program.ops();
-    let next = |block: OpIndex, state: &Locals| {
+    let next = |block: OpIndex, state: &Locals, open: &mut Vec<_>| {
         if blocks.contains(&block) {
-            return Vec::new();
+            return;
         }
         match ops.get(block).map(|op| op.kind()) {
             Some(OpKind::Statement(program::Statement::While { end, .. })) => {
-                let inside = |(to, _): &(OpIndex, Locals)| *to != end + 1;
-                steps(unit, block, state).into_iter().filter(inside).collect()
+                let mut to = Vec::new();
+                steps(unit, block, state, &mut to);
+                open.extend(to.into_iter().filter(|(to, _)| *to != end + 1));
             }
             Some(OpKind::Statement(program::Statement::End { start, .. })) => {
-                steps(unit, *start, state).into_iter().chain([(block + 1, *state)]).collect()
+                steps(unit, *start, state, open);
+                open.push((block + 1, *state));
             }
-            _ => steps(unit, block, state),
+            _ => steps(unit, block, state, open),
         }
     };
     let states = unit.flow.propagate(starts, Locals::join, next);
@@ -58,14 +63,20 @@ pub(super) fn can_avoid(unit: &ProgramUnit<'_>, entry: Locals, blocks: &BTreeSet
     states.iter().enumerate().any(|(block, state)| state.is_some() && is_end(block))
 }
 
-/// Returns the nodes that follow a node, each with its state.
-pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Locals)> {
-    let to = || unit.flow.successors(block);
-    let to_all = |state: Locals| to().map(|to| (to, state)).collect::<Vec<_>>();
+/// Adds the nodes that follow a node, each with its state.
+pub(super) fn steps(
+    unit: &ProgramUnit<'_>,
+    block: OpIndex,
+    state: &Locals,
+    steps: &mut Vec<(OpIndex, Locals)>,
+) {
+    let mut to_all = |state: Locals| steps.extend(unit.flow.successors(block).map(|to| (to, state)));
     let Some(op) = unit.program.ops().get(block) else { return to_all(*state) };
     let mut after = *state;
-    let statement = variables::statement(&unit.blocks, block);
-    let mut steps = match (op.kind(), statement) {
+    let keeps_locals = unit.marks[block] & KEEPS_LOCALS != 0;
+    let statement = if keeps_locals { None } else { variables::statement(&unit.blocks, block) };
+    match (op.kind(), statement) {
+        _ if keeps_locals => to_all(after),
         (
             OpKind::Statement(_),
             Some(Statement::IfGoto { condition, .. } | Statement::While { condition, .. }),
@@ -79,11 +90,10 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
                 let is_impossible = sure && on_true == Some(!taken);
                 (!is_impossible).then(|| (to, refined(condition, taken, state)))
             };
-            to().filter_map(split).collect()
+            steps.extend(unit.flow.successors(block).filter_map(split));
         }
         (OpKind::Statement(_), Some(Statement::IfThen { condition, then })) => {
             let answer = truth(condition, state);
-            let mut steps = Vec::new();
             if answer != Some(false) {
                 let mut state = refined(condition, true, state);
                 if let Some((target, value)) = variables::statement_assignment(then) {
@@ -97,36 +107,53 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             if answer != Some(true) {
                 steps.push((block + 1, refined(condition, false, state)));
             }
-            steps
         }
         (OpKind::Statement(gcode_lang::program::Statement::Assignments(_)), _) => {
             for (target, value) in unit.blocks[block].items.iter().filter_map(variables::item_assignment) {
                 assign(target, value, &mut after);
             }
-            to_all(after)
+            to_all(after);
         }
         (OpKind::Statement(_) | OpKind::AssignDirect(_), Some(Statement::Assign { target, value })) => {
             assign(target, value, &mut after);
-            to_all(after)
+            to_all(after);
         }
         (OpKind::If { .. }, _) => {
             // The conditional part may have set any local.
             after.add_bits(ANY_VALUE);
-            to_all(after)
+            to_all(after);
         }
         (OpKind::Words(_), _) => {
             // A subprogram uses the locals of its caller.
             if unit.call_in(block).is_some_and(|call| !call.has_own_locals) {
                 after.add_bits(ANY_VALUE);
             }
-            to_all(after)
+            to_all(after);
         }
         _ => to_all(after),
-    };
+    }
     if op.skip().is_some() {
         steps.push((block + 1, *state));
     }
-    steps
+}
+
+/// Returns true for a statement that reads commons alone, sets none of the locals and has a condition that may be true or
+/// false: [`steps`] leads on with the same states.
+pub(super) fn keeps_locals(block: &Block) -> bool {
+    let sets_none = |statement: &Statement| match variables::statement_assignment(statement) {
+        Some((target, _)) => literal::variable(target).is_some_and(|number| !(1..=33).contains(&number)),
+        None => true,
+    };
+    let [Item::Statement(statement)] = &block.items[..] else { return false };
+    match &statement.node {
+        Statement::IfGoto { condition, .. }
+        | Statement::While { condition, .. }
+        | Statement::IfThen { condition, .. } => {
+            truth(condition, &Locals::ANYTHING).is_none() && sets_none(&statement.node)
+        }
+        Statement::Assign { .. } => sets_none(&statement.node),
+        _ => false,
+    }
 }
 
 fn assign(target: &Expr, value: &Expr, state: &mut Locals) {

@@ -3,8 +3,7 @@ use std::collections::BTreeMap;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use gcode_ide::FileId;
-use gcode_lang::syntax::ReadBlocks;
-use gcode_lint::CheckResult;
+use gcode_lint::{CheckResult, CheckedBlocks};
 use lsp_types::Uri;
 
 use crate::findings::{self, CheckedDocument};
@@ -41,7 +40,7 @@ const MAX_KEPT_BLOCKS: usize = 100_000;
 fn work(receiver: &Receiver<CheckJob>, answers: impl Fn(CheckAnswer)) {
     let mut jobs: BTreeMap<FileId, CheckJob> = BTreeMap::new();
     // Blocks of the document that was checked last: most often it is the next one too.
-    let mut last: Option<(FileId, ReadBlocks)> = None;
+    let mut last: Option<(FileId, CheckedBlocks)> = None;
     loop {
         if jobs.is_empty() {
             let Ok(job) = receiver.recv() else { return };
@@ -56,14 +55,15 @@ fn work(receiver: &Receiver<CheckJob>, answers: impl Fn(CheckAnswer)) {
         let Some(file) = edited.map(|job| job.file) else { continue };
         let before = last.take().filter(|(checked, _)| *checked == file).map(|(_, blocks)| blocks);
         let answer = jobs.remove(&file).and_then(|job| check(&job, before.unwrap_or_default()));
-        let Some((answer, CheckResult { memory, findings, read_blocks, .. })) = answer else { continue };
+        let Some((answer, CheckResult { memory, findings, blocks, .. })) = answer else { continue };
         answers(answer);
-        drop((memory, findings));
-        last = (read_blocks.count() <= MAX_KEPT_BLOCKS).then_some((file, read_blocks));
+        // To release the operations of a long program takes as long as some rules: the next edit doesn't wait for it.
+        std::thread::spawn(move || drop((memory, findings)));
+        last = (blocks.count() <= MAX_KEPT_BLOCKS).then_some((file, blocks));
     }
 }
 
-fn check(job: &CheckJob, before: ReadBlocks) -> Option<(CheckAnswer, CheckResult)> {
+fn check(job: &CheckJob, before: CheckedBlocks) -> Option<(CheckAnswer, CheckResult)> {
     let CheckJob { snapshot, file, .. } = job;
     let (text, uri) = (snapshot.text(*file)?, snapshot.uri(*file)?);
     let check = || {

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use gcode_lang::diag::{Diagnostic as Finding, Severity};
 use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::source::{SourceId, Sources, Span};
-use gcode_lang::syntax::ReadBlocks;
-use gcode_lint::CheckResult;
+use gcode_lint::{CheckResult, CheckedBlocks};
 use lsp_types::{
     Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString,
     Range, Uri,
@@ -51,7 +50,7 @@ pub(crate) fn stamps(setup: &ProgramSetup, files: &Overlay) -> BTreeMap<PathBuf,
 pub(crate) fn check(
     uri: &Uri,
     document: &TextDocument,
-    before: ReadBlocks,
+    before: CheckedBlocks,
     (setup, mut stamps): (&ProgramSetup, BTreeMap<PathBuf, Option<u64>>),
     files: &Overlay,
     client: &Client,

@@ -250,7 +250,7 @@ class Side {
     }
   }
 
-  // Marks the start of the path by a ring and, unless an alarm ends it, its end by a square.
+  // Marks the start of the path by a triangle and, unless an alarm ends it, its end by a square: holes are rings.
   drawEnds(colours, hasAlarm) {
     if (this.moves.length === 0) return;
     const context = this.context;
@@ -260,14 +260,17 @@ class Side {
       Math.max(8, Math.min(this.view.width - 8, this.screen[at])),
       Math.max(8, Math.min(this.view.height - 8, this.screen[at + 1])),
     ];
-    Object.assign(context, { strokeStyle: colours.ink, fillStyle: colours.ink, lineWidth: 2 });
+    Object.assign(context, { strokeStyle: colours.paper, fillStyle: colours.ink, lineWidth: 1.5 });
     const [endX, endY] = inside(last);
-    if (!hasAlarm) context.fillRect(endX - 5, endY - 5, 10, 10);
+    const [startX, startY] = inside(0);
     context.beginPath();
-    context.arc(...inside(0), 6, 0, 2 * Math.PI);
-    context.fillStyle = colours.paper;
-    context.fill();
+    if (!hasAlarm) context.rect(endX - 5, endY - 5, 10, 10);
+    context.moveTo(startX - 5, startY - 7);
+    context.lineTo(startX + 8, startY);
+    context.lineTo(startX - 5, startY + 7);
+    context.closePath();
     context.stroke();
+    context.fill();
   }
 
   // Draws the whole part small in a corner, with a cross at the place that the drawing shows larger.

@@ -109,6 +109,9 @@ pub struct HoleVerdict {
     /// Index of the drilled hole from the far side of a through hole.
     #[serde(skip)]
     pub far_side_index: Option<usize>,
+    /// The hole goes through the part: it may be deeper than nominal.
+    #[serde(skip)]
+    pub is_through: bool,
 }
 
 /// A hole in inspection terms; the entry of the actual hole is where its axis crosses the plane of the nominal
@@ -254,6 +257,7 @@ fn hole_verdicts(
             neighbours: None,
             drilled_index: pair.actual,
             far_side_index: pair.from_far_side,
+            is_through: nominal.through,
         }
     };
     pairs.map(verdict).collect()

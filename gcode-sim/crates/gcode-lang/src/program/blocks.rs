@@ -8,6 +8,7 @@ use super::loops::Loops;
 use super::lowering::{Lowering, lower_case};
 use super::{Op, OpBody, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
+use crate::shares::{share_length, work_on};
 use crate::syntax::{KnownBlocks, ast, sequence_number_at};
 
 /// Number of operations kept. Most loops are shorter; the operations take a few megabytes at most.
@@ -134,26 +135,31 @@ impl Blocks {
     }
 
     /// Lowers all blocks and returns their trees. A block that is not known is read once.
+    ///
+    /// Blocks are lowered one apart from another, so that several threads share a long program.
     pub(super) fn lower_with_trees(&mut self, loops: &Loops, known: &mut KnownBlocks) -> Vec<ast::Block> {
         self.index_mask = usize::MAX;
-        self.ops = Vec::with_capacity(self.len());
-        let mut trees = Vec::with_capacity(self.len());
-        for index in 0..self.len() {
-            let start = self.texts.start(index);
-            let is_separate = self.texts.separate_trees.contains_key(&(index as u32));
-            let known = if is_separate { None } else { known.take(start) };
-            let Some(tree) = known.or_else(|| self.tree(index)) else { break };
-            let mut op = Op::default();
-            if is_separate || !op.refill(self.texts.text.source, self.texts.text.content(), start) {
-                let small = lower_case(&tree, &self.texts.text.bytes);
-                op = self.lowering.lower_block(&tree, small);
-                link_loop(&mut op, index, loops);
+        self.ops.clear();
+        self.ops.resize_with(self.len(), Op::default);
+        let texts = &self.texts;
+        let take = |index: OpIndex| {
+            let is_separate = texts.separate_trees.contains_key(&(index as u32));
+            if is_separate { None } else { known.take(texts.start(index)) }
+        };
+        let mut trees: Vec<Option<ast::Block>> = (0..texts.count()).map(take).collect();
+        let share = share_length(trees.len());
+        let shares = trees.chunks_mut(share).zip(self.ops.chunks_mut(share));
+        work_on((0..).step_by(share).zip(shares), |(first, (trees, ops))| {
+            let mut lowering = Lowering::default();
+            for (index, (tree, op)) in (first..).zip(trees.iter_mut().zip(ops)) {
+                if tree.is_none() {
+                    *tree = texts.tree(index);
+                }
+                let Some(tree) = tree else { break };
+                lower_into(op, (index, tree), (texts, loops), &mut lowering);
             }
-            op.ordinal = index as u32 + 1;
-            self.ops.push(op);
-            trees.push(tree);
-        }
-        trees
+        });
+        trees.into_iter().map(Option::unwrap_or_default).collect()
     }
 
     /// Lowers a block that has more than numbers.
@@ -165,6 +171,22 @@ impl Blocks {
         link_loop(&mut op, index, loops);
         Some(op)
     }
+}
+
+/// Lowers a block into its slot.
+fn lower_into(
+    op: &mut Op,
+    (index, tree): (OpIndex, &ast::Block),
+    (texts, loops): (&BlockTexts, &Loops),
+    lowering: &mut Lowering,
+) {
+    let is_separate = texts.separate_trees.contains_key(&(index as u32));
+    if is_separate || !op.refill(texts.text.source, texts.text.content(), texts.start(index)) {
+        let small = lower_case(tree, &texts.text.bytes);
+        *op = lowering.lower_block(tree, small);
+        link_loop(op, index, loops);
+    }
+    op.ordinal = index as u32 + 1;
 }
 
 /// Links a WHILE, DO or END with its partner.

@@ -31,4 +31,4 @@ pub(crate) use file_items::{end_without_spaces, without_trailer};
 pub use lines::{LineItem, first_line, line_items};
 pub(crate) use numbers::{NumberWord, NumberWords};
 pub use print::{print, print_decimal};
-pub use read_blocks::{KnownBlocks, ReadBlocks};
+pub use read_blocks::{BlockMarks, KnownBlocks, ReadBlocks};

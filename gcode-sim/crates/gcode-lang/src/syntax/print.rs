@@ -5,6 +5,7 @@ use super::ast::{
     BinaryOp, Block, CallForm, Comment, CommentMark, Condition, Decimal, Expr, ExprKind, Item,
     OperatorSpelling, PrintKind, PrintPart, Program, ProgramName, Relation, Statement, Word, WordValue,
 };
+use super::file_items::byte_order_marks;
 
 /// Prints a program, its O word first and a line feed after each block.
 pub fn print(program: &Program) -> Vec<u8> {
@@ -26,6 +27,10 @@ pub fn print(program: &Program) -> Vec<u8> {
     }
     if program.blocks.is_empty() && program.name == ProgramName::Unnamed {
         out.clear();
+    }
+    // At the start of a text a byte order mark is none of it; behind a leader it is unreadable.
+    if byte_order_marks(&out) != 0 {
+        out.insert(0, b'\n');
     }
     out
 }

@@ -310,6 +310,14 @@ proptest! {
     }
 }
 
+#[test]
+fn a_byte_order_mark_behind_a_leader_is_printed_as_unreadable() {
+    let text = "\0\0\u{feff}?%\r\n]]\n";
+    let printed = print(&parse(SourceId(0), text.as_bytes())[0]);
+    assert_eq!(String::from_utf8_lossy(&printed), "\n\u{feff}?%\n]]\n");
+    assert_eq!(print(&parse(SourceId(0), &printed)[0]), printed);
+}
+
 /// Each piece takes hours if the reader examines any byte again for each other byte.
 #[test]
 fn long_lines_are_read_in_linear_time() {

@@ -3,13 +3,18 @@ use std::cell::Cell;
 
 use super::ast::Block;
 use super::token::is_space;
+use crate::shares::{share_length, work_on};
 use crate::source::Bytes;
+
+/// Bits that a user of blocks keeps with each: what holds of a block wherever an edit moves it.
+pub type BlockMarks = u8;
 
 /// Blocks of one state of a text, in order.
 #[derive(Debug, Default)]
 pub struct ReadBlocks {
     text: Option<Bytes>,
     blocks: Vec<Block>,
+    marks: Vec<BlockMarks>,
 }
 
 /// Blocks of a text that were read in an earlier state of it, by their offsets in this one.
@@ -17,14 +22,20 @@ pub struct ReadBlocks {
 pub struct KnownBlocks {
     starts: Vec<u32>,
     blocks: Vec<Option<Block>>,
+    marks: Vec<BlockMarks>,
     /// Place behind the block that was found last: most are asked for in order.
     next: Cell<usize>,
 }
 
 impl ReadBlocks {
-    /// Takes the blocks of a text, in order.
-    pub fn new(text: Bytes, blocks: Vec<Block>) -> Self {
-        Self { text: Some(text), blocks }
+    /// Takes the blocks of a text, in order, each with its marks.
+    pub fn new(text: Bytes, (blocks, marks): (Vec<Block>, Vec<BlockMarks>)) -> Self {
+        Self { text: Some(text), blocks, marks }
+    }
+
+    /// Removes the marks of all blocks.
+    pub fn clear_marks(&mut self) {
+        self.marks.fill(0);
     }
 
     /// Returns the number of blocks.
@@ -43,28 +54,39 @@ impl ReadBlocks {
         let back = &before[before.len() - same_back..];
         let back_start = before.len() - same_back + back.iter().position(is_line_end).unwrap_or(same_back);
         let delta = text.len() as i64 - before.len() as i64;
-        let mut known = KnownBlocks::default();
-        for mut block in self.blocks {
+        let mut blocks = self.blocks;
+        let first_behind = blocks.partition_point(|block| block.span.start as usize <= back_start);
+        let is_known = |(index, block): (usize, &Block)| {
             let (start, end) = (block.span.start as usize, block.span.end as usize);
-            let is_behind = back_start < start;
-            if !is_behind && front_end < end || !fills_its_line(&before, start, end) {
-                continue;
-            }
-            if is_behind && delta != 0 {
-                block.shift(delta);
-            }
+            (first_behind <= index || end <= front_end) && fills_its_line(&before, start, end)
+        };
+        let is_known: Vec<bool> = blocks.iter().enumerate().map(is_known).collect();
+        if delta != 0 {
+            let behind = &mut blocks[first_behind..];
+            let share = share_length(behind.len());
+            work_on(behind.chunks_mut(share), |share| share.iter_mut().for_each(|block| block.shift(delta)));
+        }
+        let mut known = KnownBlocks::default();
+        let all = blocks.into_iter().zip(self.marks).zip(is_known);
+        for ((block, marks), _) in all.filter(|(_, is_known)| *is_known) {
             known.starts.push(block.span.start);
             known.blocks.push(Some(block));
+            known.marks.push(marks);
         }
         known
     }
 }
 
 impl KnownBlocks {
-    /// Takes blocks of the same state of the text, in order.
-    pub fn of(blocks: Vec<Block>) -> Self {
+    /// Takes blocks of the same state of the text, in order, each with its marks.
+    pub fn of((blocks, marks): (Vec<Block>, Vec<BlockMarks>)) -> Self {
         let starts = blocks.iter().map(|block| block.span.start).collect();
-        Self { starts, blocks: blocks.into_iter().map(Some).collect(), next: Cell::default() }
+        Self { starts, blocks: blocks.into_iter().map(Some).collect(), marks, next: Cell::default() }
+    }
+
+    /// Returns the marks of the block that begins its line at an offset, also if it was taken; none of an unknown block.
+    pub fn marks(&self, start: u32) -> BlockMarks {
+        self.place(start).map_or(0, |place| self.marks[place])
     }
 
     /// Returns the block that begins its line at an offset.
@@ -118,23 +140,32 @@ mod tests {
         parse(SourceId(0), text).into_iter().flat_map(|program| program.blocks).collect()
     }
 
+    /// Returns the blocks of a text, each marked with its number of items.
+    fn read(text: &[u8]) -> ReadBlocks {
+        let blocks = blocks(text);
+        let marks = blocks.iter().map(|block| block.items.len() as BlockMarks).collect();
+        ReadBlocks::new(Bytes::from(text), (blocks, marks))
+    }
+
     #[test]
     fn blocks_beside_the_edited_line_are_kept() {
         let before = b"O1\nG0 X1. (A)\n#1=SIN[#2]\nG1 X2.\n/2IF[#1 GT 3]THEN #2=1\nM30\n";
         let after = b"O1\nG0 X1. (A)\n#1=SIN[#2]\nG1 X2. Y5. F100.\n/2IF[#1 GT 3]THEN #2=1\nM30\n";
-        let known = ReadBlocks::new(Bytes::from(&before[..]), blocks(before)).moved_to(after);
-        let read = blocks(after);
-        let found: Vec<_> = read.iter().map(|block| known.find(block.span.start)).collect();
+        let known = read(before).moved_to(after);
+        let blocks = blocks(after);
+        let found: Vec<_> = blocks.iter().map(|block| known.find(block.span.start)).collect();
         assert_eq!(found[2], None, "the edited block");
         for at in [0, 1, 3, 4] {
-            assert_eq!(found[at], Some(&read[at]));
+            assert_eq!(found[at], Some(&blocks[at]));
         }
+        let marks: Vec<_> = blocks.iter().map(|block| known.marks(block.span.start)).collect();
+        assert_eq!(marks, [2, 1, 0, 1, 1], "the words and statements of each known block");
     }
 
     #[test]
     fn a_line_of_several_items_is_read_again() {
         let text = b"O1 G0 X1.\nM99 O2\nM98 P1\nM99\n";
-        let known = ReadBlocks::new(Bytes::from(&text[..]), blocks(text)).moved_to(text);
+        let known = read(text).moved_to(text);
         let found = |start| known.find(start).is_some();
         assert!(!found(3) && !found(10), "behind O1, before O2");
         assert!(found(17) && found(24));
@@ -156,12 +187,14 @@ mod tests {
             let (one, other) = (cut.0.index(before.len() + 1), cut.1.index(before.len() + 1));
             let (from, to) = (one.min(other), one.max(other));
             let after = [&before[..from], new.as_bytes(), &before[to..]].concat();
-            let known = ReadBlocks::new(Bytes::from(&before[..]), blocks(&before)).moved_to(&after);
+            let known = read(&before).moved_to(&after);
             for start in known.starts.clone() {
                 let content = without_trailer(&after);
                 prop_assert!((start as usize) < content.len());
                 let read = block_at(SourceId(0), content, start);
                 prop_assert_eq!(known.find(start), read.as_ref(), "{:?}", String::from_utf8_lossy(&after));
+                let items = read.map_or(0, |block| block.items.len());
+                prop_assert_eq!(usize::from(known.marks(start)), items, "{:?}", String::from_utf8_lossy(&after));
             }
         }
     }

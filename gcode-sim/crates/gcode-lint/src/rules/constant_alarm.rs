@@ -7,20 +7,19 @@ use gcode_lang::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind, Function};
 use crate::expressions;
 use crate::prelude::*;
 
-pub(super) static RULE: Rule =
-    Rule::new("constant-alarm", Severity::Error, "arithmetic on constants that always raises an alarm", find);
+pub(super) static RULE: Rule = Rule::of_block(
+    "constant-alarm",
+    Severity::Error,
+    "arithmetic on constants that always raises an alarm",
+    find,
+);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    for (index, block) in unit.reached_blocks() {
-        let mut numbers = ConstantEvaluator { settings: context.settings, alarms: Vec::new() };
-        for (expr, _) in expressions::block_expressions(block) {
-            numbers.value(expr);
-        }
-        found
-            .extend(numbers.alarms.iter().map(|alarm| context.alarm_finding(unit, &RULE.kind, index, alarm)));
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> Vec<Diagnostic> {
+    let mut numbers = ConstantEvaluator { settings: context.settings, alarms: Vec::new() };
+    for (expr, _) in expressions::block_expressions(&unit.blocks[block]) {
+        numbers.value(expr);
     }
-    found
+    numbers.alarms.iter().map(|alarm| context.alarm_finding(unit, &RULE.kind, block, alarm)).collect()
 }
 
 /// Evaluates constant expressions and collects their alarms.

@@ -74,7 +74,7 @@ const HELP: &str = "insert a block before it that waits for the move: G53, M00 o
 /// Returns, for each block, a move that may still be in progress before it; the outer `None` is an unreachable
 /// block.
 fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<Option<OpIndex>>> {
-    let next = |block: OpIndex, before: &Option<OpIndex>| {
+    let next = |block: OpIndex, before: &Option<OpIndex>, open: &mut Vec<_>| {
         let op = unit.program.ops().get(block);
         let called = unit.call_in(block);
         let after = match called {
@@ -90,7 +90,7 @@ fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Opti
             None => *before,
         };
         let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, *before));
-        unit.flow.successors(block).map(|to| (to, after)).chain(skipped).collect()
+        open.extend(unit.flow.successors(block).map(|to| (to, after)).chain(skipped));
     };
     unit.flow.propagate([(0, None)], |known, other| *known = known.or(other), next)
 }

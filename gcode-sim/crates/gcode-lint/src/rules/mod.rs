@@ -33,10 +33,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use gcode_lang::diag::{Diagnostic, FindingKind};
+use gcode_lang::program::Slot;
+use gcode_lang::syntax::BlockMarks;
 
+use super::block_marks::{FAULTLESS, KEEPS_LOCALS, READS_COMMONS_ALONE};
 use super::context::{CheckContext, ProgramUnit};
+use super::rule::Find;
 pub use super::rule::Rule;
 use super::suppression::suppressions;
+use super::vacancy::keeps_locals;
 
 /// All rules, in the order of their findings about one block.
 pub static ALL: &[&Rule] = &[
@@ -100,25 +105,84 @@ pub(super) fn findings(context: &CheckContext<'_>) -> Vec<Diagnostic> {
 /// Number of blocks from which several threads share the rules: fewer are checked sooner than a thread starts.
 const MIN_BLOCKS_TO_SHARE: usize = 2000;
 
+/// Number of blocks that one thread checks at a time by the rules about a block alone.
+const SHARE: usize = 5000;
+
+/// Findings with the place of their rule among all, and marks of some blocks.
+type Found = (Vec<(usize, Vec<Diagnostic>)>, Option<(usize, Vec<BlockMarks>)>);
+
 /// Returns the findings in one program, rule by rule.
 fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    let shares = unit.blocks.len().div_ceil(SHARE);
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let threads = if unit.blocks.len() < MIN_BLOCKS_TO_SHARE { 1 } else { cores.min(ALL.len()) };
     let next = AtomicUsize::new(0);
-    let find_next = || {
+    let find_next = || -> Option<Found> {
         let place = next.fetch_add(1, Ordering::Relaxed);
-        ALL.get(place).map(|rule| (place, (rule.find)(context, unit)))
+        let Some(rule) = ALL.get(place) else {
+            let share = place - ALL.len();
+            return (share < shares).then(|| findings_about_blocks(context, unit, share));
+        };
+        let found = match rule.find {
+            Find::InProgram(find) => vec![(place, find(context, unit))],
+            Find::InBlock(_) => Vec::new(),
+        };
+        Some((found, None))
     };
     let find_rest = || std::iter::from_fn(find_next).collect::<Vec<_>>();
-    let mut found = thread::scope(|scope| {
+    let all = thread::scope(|scope| {
         let others: Vec<_> = (1..threads).map(|_| scope.spawn(find_rest)).collect();
         let own = find_rest();
         let joined =
             others.into_iter().map(|other| other.join().unwrap_or_else(|e| std::panic::resume_unwind(e)));
         own.into_iter().chain(joined.flatten()).collect::<Vec<_>>()
     });
+    let (mut found, mut marks) = (Vec::new(), vec![0; unit.blocks.len()]);
+    for (findings, share) in all {
+        found.extend(findings);
+        if let Some((first, share)) = share {
+            marks[first..first + share.len()].copy_from_slice(&share);
+        }
+    }
+    _ = unit.new_marks.set(marks);
     found.sort_by_key(|(place, _)| *place);
     found.into_iter().flat_map(|(_, findings)| findings).collect()
+}
+
+/// Returns the findings of the rules about a block alone in one share of a program, and the marks of its blocks.
+///
+/// A block in which the check before found nothing has nothing now.
+fn findings_about_blocks(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, share: usize) -> Found {
+    let mut found: Vec<_> = (0..ALL.len()).map(|place| (place, Vec::new())).collect();
+    let first = share * SHARE;
+    let blocks = first..unit.blocks.len().min(first + SHARE);
+    let marks = blocks.map(|block| {
+        if unit.marks[block] & FAULTLESS != 0 || !unit.is_reached[block] {
+            return 0;
+        }
+        let mut marks = FAULTLESS;
+        for (rule, (_, all)) in ALL.iter().zip(&mut found) {
+            let Find::InBlock(find) = rule.find else { continue };
+            let findings = find(context, unit, block);
+            if !findings.is_empty() {
+                marks = 0;
+                all.extend(findings);
+            }
+        }
+        if unit.reads(block).iter().all(|read| is_common(read.number)) {
+            marks |= READS_COMMONS_ALONE;
+            marks |= if keeps_locals(&unit.blocks[block]) { KEEPS_LOCALS } else { 0 };
+        }
+        marks
+    });
+    let marks = marks.collect();
+    found.retain(|(_, findings)| !findings.is_empty());
+    (found, Some((first, marks)))
+}
+
+/// Returns true for a common variable of every control.
+fn is_common(number: u32) -> bool {
+    (100..=999).contains(&number) && matches!(Slot::of(number), Slot::Free(_))
 }
 
 #[cfg(test)]

@@ -1,13 +1,12 @@
 //! Rule: a variable that does not exist (PS0115) or that cannot be written (PS0116) or read (PS1115).
 use std::ops::RangeInclusive;
 
-use gcode_control::static_eval::VariableTable;
 use gcode_lang::alarm::LocatedAlarm;
 
 use crate::prelude::*;
 use crate::{literal, variables};
 
-pub(super) static RULE: Rule = Rule::new(
+pub(super) static RULE: Rule = Rule::of_block(
     "no-such-variable",
     Severity::Error,
     "a variable that does not exist, or cannot be read or written",
@@ -17,31 +16,26 @@ pub(super) static RULE: Rule = Rule::new(
 /// Numbers that no option and no machine builder gives.
 const NEVER: RangeInclusive<i64> = 34..=99;
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    let known = VariableTable::new(context.settings);
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for (index, block) in unit.reached_blocks() {
-        let mut report = |alarm: LocatedAlarm| {
-            let finding = context.alarm_finding(unit, &RULE.kind, index, &alarm);
-            found.push(match alarm.node {
-                // No control has a variable between its locals and its common variables.
-                Alarm::NoSuchVariable { number } if !NEVER.contains(&number) => {
-                    context.unless_optional(finding)
-                }
-                _ => finding,
-            });
-        };
-        for read in unit.reads(index) {
-            if let Err(alarm) = known.read(read.number) {
-                report(alarm.located_at(read.span));
-            }
+    let mut report = |alarm: LocatedAlarm| {
+        let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
+        found.push(match alarm.node {
+            // No control has a variable between its locals and its common variables.
+            Alarm::NoSuchVariable { number } if !NEVER.contains(&number) => context.unless_optional(finding),
+            _ => finding,
+        });
+    };
+    for read in unit.reads(block) {
+        if let Err(alarm) = context.variables.read(read.number) {
+            report(alarm.located_at(read.span));
         }
-        for (target, _) in block.items.iter().filter_map(variables::item_assignment) {
-            if let Some(number) = literal::variable(target)
-                && let Err(alarm) = known.write(number)
-            {
-                report(alarm.located_at(target.span));
-            }
+    }
+    for (target, _) in unit.blocks[block].items.iter().filter_map(variables::item_assignment) {
+        if let Some(number) = literal::variable(target)
+            && let Err(alarm) = context.variables.write(number)
+        {
+            report(alarm.located_at(target.span));
         }
     }
     found

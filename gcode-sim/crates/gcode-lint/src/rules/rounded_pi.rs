@@ -10,34 +10,32 @@ use crate::expressions;
 use crate::literal::constant;
 use crate::prelude::*;
 
-pub(super) static RULE: Rule = Rule::new("rounded-pi", Severity::Warning, "a rounded π as a factor", find);
+pub(super) static RULE: Rule =
+    Rule::of_block("rounded-pi", Severity::Warning, "a rounded π as a factor", find);
 
 /// Largest deviation of a rounded π; 22/7 differs by 0.0013.
 const PI_TOLERANCE: f64 = 0.002;
 /// Six decimals are exact enough: 1 µm on a diameter of 1 m.
 const PI_PRECISION: f64 = 1e-6;
 
-fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    for (index, block) in unit.reached_blocks() {
-        let mut factors = Vec::new();
-        for (expr, _) in expressions::block_expressions(block) {
-            collect_factors(expr, false, &mut factors);
-        }
-        for (pi, span) in factors {
-            let deviation = (pi - PI) / PI * 100.0;
-            let written = format!("{pi:.7}");
-            let message = format!(
-                "{} is used for π: {:.4} % too {}, an error of {:.3} mm round a diameter of 500 mm",
-                written.trim_end_matches('0'),
-                deviation.abs(),
-                if deviation < 0.0 { "small" } else { "large" },
-                (pi - PI).abs() * 500.0
-            );
-            found.push(unit.finding(&RULE.kind, index, message).with_span(span).help("write 3.14159265"));
-        }
+fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> Vec<Diagnostic> {
+    let mut factors = Vec::new();
+    for (expr, _) in expressions::block_expressions(&unit.blocks[block]) {
+        collect_factors(expr, false, &mut factors);
     }
-    found
+    let finding = |(pi, span): (f64, Span)| {
+        let deviation = (pi - PI) / PI * 100.0;
+        let written = format!("{pi:.7}");
+        let message = format!(
+            "{} is used for π: {:.4} % too {}, an error of {:.3} mm round a diameter of 500 mm",
+            written.trim_end_matches('0'),
+            deviation.abs(),
+            if deviation < 0.0 { "small" } else { "large" },
+            (pi - PI).abs() * 500.0
+        );
+        unit.finding(&RULE.kind, block, message).with_span(span).help("write 3.14159265")
+    };
+    factors.into_iter().map(finding).collect()
 }
 
 /// Collects the factors and divisors that are a rounded π.
