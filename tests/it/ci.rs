@@ -119,7 +119,8 @@ fn the_hook_needs_no_folder_of_macros_and_names_a_case_that_fails_its_reference(
     std::fs::remove_file(place.join("parts/flange/reference.csv")).unwrap();
     git(place, &["add", "--all"]);
     let messages = refused(git(place, &COMMIT), place);
-    let accept = "commit refused: where the change is meant, gcode-sim test parts --accept, then git add parts";
+    let accept =
+        "commit refused: where the change is meant, gcode-sim test parts --accept, then git add parts";
     assert_eq!(messages.lines().last(), Some(accept), "{messages}");
 }
 

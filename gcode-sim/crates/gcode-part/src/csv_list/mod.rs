@@ -209,7 +209,9 @@ impl Cells<'_> {
         let unit = self.columns.length_of_unit("features");
         let in_column = cell.split(';').map(str::trim).filter(|text| !text.is_empty());
         let mut features = in_column
-            .map(|text| Feature::parse_in(unit, text).map_err(|message| format!("column 'features': {message}")))
+            .map(|text| {
+                Feature::parse_in(unit, text).map_err(|message| format!("column 'features': {message}"))
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let columns = self.columns;
         for kind in &columns.feature_kinds {

@@ -49,7 +49,8 @@ fn a_header_with_inch_makes_all_lengths_inches() {
         {"kind": "countersink", "diameter": 0.75, "angle": 90}]}]}"#;
     let list = read(csv);
     let hole = &list.holes.holes[0];
-    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
+    let near =
+        |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
     near(hole.entry[0], 38.1);
     near(hole.entry[1], -50.8);
     near(hole.depth, 12.7);
@@ -100,8 +101,14 @@ fn an_error_shows_a_line_that_is_right() {
             "x;z;depth\n1;2;3\n",
             "line 1: column 'y' is missing; a list begins with its columns, for example: id;x;y;depth",
         ),
-        ("x [cm],y,depth\n1,2,3\n", "line 1: column 'x [cm]': lengths are in mm, or in inches: [mm] or [inch]; "),
-        ("x [in],y [mm],depth\n1,2,3\n", "line 1: columns are in mm and in inches: give all lengths in one unit; "),
+        (
+            "x [cm],y,depth\n1,2,3\n",
+            "line 1: column 'x [cm]': lengths are in mm, or in inches: [mm] or [inch]; ",
+        ),
+        (
+            "x [in],y [mm],depth\n1,2,3\n",
+            "line 1: columns are in mm and in inches: give all lengths in one unit; ",
+        ),
         ("x,y,i,j,depth\n1,2,0,0,5\n", "line 1: column 'k' is missing: i, j and k together are the axis; "),
         ("id,x,y,depth\n1,2\n", "line 2: 2 columns, the header has 4; a right line: 1,30.5,10,15"),
         ("id,x,y,depth\n1,2,3,4,5\n", "line 2: 5 columns, the header has 4; a right line: 1,30.5,10,15"),
