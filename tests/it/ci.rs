@@ -89,6 +89,41 @@ fn the_hook_refuses_a_commit_that_it_cannot_test() {
     );
 }
 
+/// The flange of the tutorial in a repository of its own: no macros/, for the macro is in the dump.
+#[cfg(unix)]
+#[test]
+fn the_hook_needs_no_folder_of_macros_and_names_a_case_that_fails_its_reference() {
+    let repository = tempfile::tempdir().unwrap();
+    let place = repository.path();
+    copy_folder(&example().join("hooks"), &place.join("hooks"));
+    copy_folder(&workspace().join("examples/first-hour/parts/flange"), &place.join("parts/flange"));
+    run_line("gcode-sim test parts --accept", place);
+    assert!(git(place, &["init", "--quiet"]).status.success());
+    git(place, &["add", "--all"]);
+    let first = git(place, &["commit", "--quiet", "-m", "Programs"]);
+    assert!(first.status.success(), "{first:?}");
+
+    // Hole 1 of the program is at x 30: the list has it at 31.
+    let list = "id,x,y,depth\n1,31,0,22\n";
+    std::fs::write(place.join("parts/flange/reference.csv"), list).unwrap();
+    git(place, &["add", "--all"]);
+    let messages = refused(git(place, &COMMIT), place);
+    let last: Vec<&str> = messages.lines().filter(|line| line.starts_with("commit refused")).collect();
+    let reason = "commit refused: a case fails its reference: correct the program or the reference; --accept does not help";
+    assert_eq!(last, [reason], "{messages}");
+
+    let program = place.join("parts/flange/DUMP.TXT");
+    let text = std::fs::read_to_string(&program).unwrap();
+    assert!(text.contains("30."));
+    std::fs::write(&program, text.replacen("30.", "30.5", 1)).unwrap();
+    std::fs::remove_file(place.join("parts/flange/reference.csv")).unwrap();
+    git(place, &["add", "--all"]);
+    let messages = refused(git(place, &COMMIT), place);
+    let accept =
+        "commit refused: where the change is meant, gcode-sim test parts --accept, then git add parts";
+    assert_eq!(messages.lines().last(), Some(accept), "{messages}");
+}
+
 #[cfg(unix)]
 #[test]
 fn the_hook_refuses_a_changed_macro_with_the_message_of_the_page() {

@@ -7,7 +7,7 @@ use super::{UsageError, input, output, progress};
 use crate::report::page::{Document, ObservedProgram, Page};
 use gcode_part::Reference;
 use gcode_review::Revision;
-use gcode_session::{Criteria, Request, Trace};
+use gcode_session::{Criteria, Request, Simulation, Trace};
 
 /// Runs and judges a program, and records the trace that the page shows.
 pub(super) fn judge_traced(
@@ -50,6 +50,15 @@ pub(super) fn alone(
         documents: &documents(conditions, reference.map(|(path, _)| path))?,
     };
     html(&page)
+}
+
+/// Refuses a program without a move, whose page or sheet would be empty; a run that stops has its alarm to show.
+pub(super) fn check_has_moves(what: &str, simulation: &Simulation) -> Result<(), UsageError> {
+    let run = &simulation.run;
+    if run.control.moves() == 0 && run.stop_finding().is_none() {
+        return Err(UsageError::new(format!("no {what} is written: the program makes no move")));
+    }
+    Ok(())
 }
 
 /// Refuses a file name with another extension than .html or .htm: it could be that of a program.

@@ -41,6 +41,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     }
     let nominal = nominal.and_then(NominalPart::into_holes);
     let traced = page::judge_traced(&mut request, &mut folders, nominal.as_ref().map(Criteria::of))?;
+    page::check_has_moves("page", &traced.0.simulation)?;
     let judged = reference.as_deref().zip(nominal.as_ref());
     page::write_alone(&request, &traced, judged, &program.conditions, &arguments.output)?;
     output::written("page", &arguments.output, true)?;

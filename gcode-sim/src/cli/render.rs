@@ -237,7 +237,14 @@ fn of_path(
             let holes = top::of_holes(&name(request), &simulation, &machine, &assumed);
             let denial = (!denied.is_empty()).then(|| denied_words(denied.len()));
             let faults: Vec<String> = simulation.run.stop_sentence().into_iter().chain(denial).collect();
-            let findings = simulation.run.findings().chain(denied).collect();
+            let of_run: Vec<Diagnostic> = simulation.run.findings().collect();
+            // An error in the motion fails a picture as it fails a page; warnings are about holes.
+            let is_known = |error: &Diagnostic| {
+                of_run.iter().any(|one| one.kind == error.kind && one.message == error.message)
+            };
+            let found = simulation.extracted.findings.iter();
+            let errors = found.filter(|one| one.severity == Severity::Error && !is_known(one)).cloned();
+            let findings = errors.chain(of_run.iter().cloned()).chain(denied).collect();
             (holes, (!faults.is_empty()).then(|| (Answer::Fail, faults.join("; "))), None, findings)
         }
     };
@@ -300,6 +307,9 @@ fn hole_picture(
     let is_empty = !tool_path::is_drawable(&path, &holes);
     if is_empty && simulation.run.stop_finding().is_none() {
         return Err(UsageError::new("nothing to draw: the program makes no move between known positions"));
+    }
+    if is_empty {
+        holes.lines.push("nothing is drawn: the run stops before a move between known positions".to_owned());
     }
     let has_stock = !matches!(stock, None | Some(Stock::Surface { .. }));
     let is_part_known = holes.outline.is_some() || holes.cylinder.is_some();

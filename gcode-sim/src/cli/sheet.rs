@@ -44,6 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let sink = &mut (&mut recorder, &mut uses);
         gcode_session::simulate_judged(request, &mut folders, criteria, sink, &mut offsets)
     })?;
+    page::check_has_moves("sheet", &simulation)?;
     let tool_path = recorder.finish();
     let name = render::name(&request);
     let (holes, findings, assumptions) = match (&reference, &verdict) {

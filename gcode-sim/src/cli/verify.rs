@@ -9,11 +9,13 @@ use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::FindingFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
+use super::render::Style;
 use super::{ExitStatus, UsageError, common, options, output, page, progress, render, unused_machine};
 use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view, top};
 use gcode_draw::Picture;
+use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_inspect::verify::{Conclusion, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Flutes;
@@ -116,7 +118,7 @@ fn flutes(
     let judge = |request: &Request| gcode_session::judge_flutes(request, &mut folders, nominal);
     let (grinding, verdict) = progress::of_run(request, judge)?;
     let table = || flute_table::table(&verdict);
-    let picture = || gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
+    let picture = || Ok(gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict)));
     let result = (&verdict, verdict.conclusion(), verdict.diagnostics.as_slice());
     print_verdict(arguments, result, &grinding.run, table, picture)
 }
@@ -127,10 +129,10 @@ fn print_verdict(
     (verdict, conclusion, findings): (&impl Serialize, Conclusion<'_>, &[Diagnostic]),
     run: &Run,
     table: impl Fn() -> String,
-    picture: impl Fn() -> Picture,
+    picture: impl FnOnce() -> Result<Picture, UsageError>,
 ) -> Result<ExitStatus, UsageError> {
     if let Some(file) = &arguments.picture {
-        file.draw(&picture(), gcode_draw::Size::default())?;
+        file.draw(&picture()?, gcode_draw::Size::default())?;
     }
     let sources = run.control.memory().sources();
     match arguments.format {
@@ -155,33 +157,48 @@ fn holes(
     path_of_reference: &Path,
     criteria: Criteria<'_>,
 ) -> Result<ExitStatus, UsageError> {
-    let (machine, reference, bytes) = (request.machine.clone(), criteria.reference, request.bytes.clone());
+    let (machine, reference) = (request.machine.clone(), criteria.reference);
     let name = render::name(request);
-    let print = |simulation: &Simulation, verdict: &Verdict| {
+    // A part of a family is drawn by its own view, any other with its path, as `render` draws it.
+    let is_path_drawn =
+        arguments.picture.is_some() && reference.surface.is_none() && reference.pattern.is_none();
+    let print = |request: &Request, simulation: &Simulation, verdict: &Verdict, path: Option<ToolPath>| {
         let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
         let view = || top::of_verdict(&name, simulation, reference, verdict, &machine);
         let result = (verdict, verdict.conclusion(), verdict.diagnostics.as_slice());
-        let picture = || gcode_draw::main_view(&view());
+        let picture = || match path {
+            Some(path) => {
+                let findings = &verdict.diagnostics;
+                let style = Style::default();
+                render::path_picture(&style, request, simulation, path, view(), findings, Some(reference))
+            }
+            None => Ok(gcode_draw::main_view(&view())),
+        };
         let status = print_verdict(arguments, result, &simulation.run, || table(verdict, layout), picture)?;
         let made = (&simulation.run, &simulation.extracted);
-        unused_machine::warn_missing_machine(&arguments.program, &bytes, made);
+        unused_machine::warn_missing_machine(&arguments.program, &request.bytes, made);
         Ok(status)
     };
+    let mut recorder = PathRecorder::new(&machine);
     if let Some(path) = &arguments.page {
         let traced = page::judge_traced(request, &mut folders, Some(criteria))?;
+        if is_path_drawn {
+            gcode_session::judge_holes(request, &mut folders, criteria, &mut recorder, &mut ())?;
+        }
+        let path_drawn = is_path_drawn.then(|| recorder.finish());
         let judged = Some((path_of_reference, reference));
         page::write_alone(request, &traced, judged, &arguments.program.conditions, path)?;
-        let status = traced
-            .0
-            .verdict
-            .as_ref()
-            .map_or(Ok(ExitStatus::Failed), |verdict| print(&traced.0.simulation, verdict))?;
+        let status = traced.0.verdict.as_ref().map_or(Ok(ExitStatus::Failed), |verdict| {
+            print(request, &traced.0.simulation, verdict, path_drawn)
+        })?;
         output::written("page", path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let judge =
-        |request: &Request| gcode_session::judge_holes(request, &mut folders, criteria, &mut (), &mut ());
+    let judge = |request: &Request| match is_path_drawn {
+        true => gcode_session::judge_holes(request, &mut folders, criteria, &mut recorder, &mut ()),
+        false => gcode_session::judge_holes(request, &mut folders, criteria, &mut (), &mut ()),
+    };
     // The process ends with the result: the system takes its memory back as a whole.
     let judgement = ManuallyDrop::new(progress::of_run(request, judge)?);
-    print(&judgement.0, &judgement.1)
+    print(request, &judgement.0, &judgement.1, is_path_drawn.then(|| recorder.finish()))
 }

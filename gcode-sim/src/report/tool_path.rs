@@ -3,9 +3,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::count;
 use super::top::side_along_holes;
-use gcode_draw::{DrawnTool, PathPlace, PathRun, PathView, RunKind, Side, Sign, TopView, TravelLimit};
+use gcode_draw::{
+    DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, Side, Sign, TopView, TravelLimit,
+};
 use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool};
-use gcode_inspect::tool_path::{PathKind, ToolPath};
+use gcode_inspect::tool_path::{PathKind, StretchAxis, ToolPath};
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Position;
@@ -69,7 +71,12 @@ pub(crate) fn of_path(
             PathKind::Feed => RunKind::Feed,
             PathKind::Probe => RunKind::Probe,
         };
-        runs.push(PathRun { kind, tool, program, feed: stretch.feed, points: stretch.points.clone() });
+        let axis = match stretch.axis {
+            StretchAxis::Unknown => RunAxis::Unknown,
+            StretchAxis::Along(axis, _) => RunAxis::Along(axis),
+            StretchAxis::Oblique => RunAxis::Oblique,
+        };
+        runs.push(PathRun { kind, tool, program, feed: stretch.feed, axis, points: stretch.points.clone() });
     }
     let mut programs: Vec<(String, usize)> = programs.into_iter().collect();
     programs.sort_by_key(|(_, number)| *number);

@@ -77,7 +77,8 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
         let [x, y, z] = hole.nominal.entry.map(|v| rounded(v, 3));
         let [dx, dy, dz] = off(hole).map(signed);
         let [bottom, tilt, phi] = [hole.at_bottom, hole.tilt, hole.position_deviation].map(|v| rounded(v, 4));
-        [x, y, z, dx, dy, dz, bottom, tilt, signed(hole.depth_error), phi]
+        let depth = if hole.is_breakthrough() { "through".to_owned() } else { signed(hole.depth_error) };
+        [x, y, z, dx, dy, dz, bottom, tilt, depth, phi]
     };
     let rows: Vec<[String; 10]> =
         [COLUMNS.map(str::to_owned)].into_iter().chain(holes.iter().map(cells)).collect();

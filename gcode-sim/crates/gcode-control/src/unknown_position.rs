@@ -16,7 +16,8 @@ impl State {
 
     /// Returns the axes, as bits, of which an absolute command changes what is unknown.
     pub(super) fn learnable_axes(&self) -> u8 {
-        let UnknownAxes { uncommanded, at_machine_position, shifted, at_known_machine_position } = self.unknown;
+        let UnknownAxes { uncommanded, at_machine_position, shifted, at_known_machine_position } =
+            self.unknown;
         let remains = self.unknown_g92_shift | self.transform.unknown_centre;
         uncommanded | at_machine_position | at_known_machine_position | shifted & !remains
     }

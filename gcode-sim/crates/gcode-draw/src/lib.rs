@@ -107,7 +107,8 @@ pub use views::flutes::{side_view, tip_view};
 pub use views::helix::helix_graph;
 pub use views::path_picture::path_picture;
 pub use views::path_view::{
-    Arrangement, ColorBy, DrawnTool, PathPlace, PathRun, PathView, RunKind, StandardView, TravelLimit,
+    Arrangement, ColorBy, DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, StandardView,
+    TravelLimit,
 };
 pub use views::purpose::PicturePurpose;
 pub use views::top::{Cylinder, DrawnHole, TopView, top_view};

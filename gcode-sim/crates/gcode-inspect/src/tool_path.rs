@@ -41,7 +41,7 @@ pub struct ToolPath {
     pub unplaced_feeds: u64,
     /// Moves beyond [`MAX_POINTS`], not recorded.
     pub omitted_moves: u64,
-    /// Number of moves that indicate each axis of the part as the tool's, with its sign.
+    /// Number of stretches of feeds with the tool along each axis of the part, with its sign.
     tool_axes: BTreeMap<(usize, bool), u64>,
     /// The same, of moves of a tool whose direction is unknown.
     supposed_axes: BTreeMap<usize, u64>,
@@ -58,6 +58,18 @@ pub enum PathKind {
     Probe,
 }
 
+/// Direction of the tool on the part in a stretch of feeds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StretchAxis {
+    /// Unknown, or not that of a feed.
+    #[default]
+    Unknown,
+    /// Along an axis of the part, 0 to 2, to its positive end or to its negative one.
+    Along(usize, bool),
+    /// Along no axis, or changing.
+    Oblique,
+}
+
 /// Successive moves of one kind by one tool, at one feed, in one program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stretch {
@@ -67,6 +79,8 @@ pub struct Stretch {
     pub tool: Option<u32>,
     /// Feed along the path, mm/min; 0 of a rapid.
     pub feed: f64,
+    /// Direction of the tool.
+    pub axis: StretchAxis,
     /// Block of its first move.
     pub block: Span,
     /// Its points in [`ToolPath::points`].
@@ -98,7 +112,7 @@ pub struct PathStop {
 }
 
 impl ToolPath {
-    /// Returns the axis of the part, 0 to 2, along which the tool is in most feeds, and whether it points to the positive
+    /// Returns the axis of the part, 0 to 2, along which the tool is in most stretches of feeds, and whether it points to the positive
     /// end; `None` if the direction of the tool is unknown or along none.
     pub fn tool_axis(&self) -> Option<(usize, bool)> {
         most(&self.tool_axes)
@@ -245,19 +259,21 @@ impl<'m> PathRecorder<'m> {
         let feed = event.kind.rate().map_or(0.0, |rate| rate.0);
         let path = &mut self.path;
         let first = path.points.len();
-        let mut axis = None;
+        let mut axes = [None; 2];
         let tolerance = (travel.radius() * ARC_TOLERANCE).clamp(0.1 * CHORD_TOLERANCE, CHORD_TOLERANCE);
         let tolerance = if arc.is_some() { tolerance } else { CHORD_TOLERANCE };
         for_each_drawn_pose(self.machine, &self.setup, &travel, tolerance, |pose| {
             path.points.push(pose.tip.coords.into());
-            axis = pose.axis;
+            axes = [axes[0].or(pose.axis), pose.axis];
         });
         path.end = path.points.last().copied();
-        if kind == PathKind::Feed
-            && let Some(along) = axis.as_ref().and_then(axis_of)
-        {
-            *path.tool_axes.entry(along).or_default() += 1;
-        }
+        let axis = match axes {
+            [Some(from), Some(to)] if kind == PathKind::Feed => match (axis_of(&from), axis_of(&to)) {
+                (Some(from), Some(to)) if from == to => StretchAxis::Along(to.0, to.1),
+                _ => StretchAxis::Oblique,
+            },
+            _ => StretchAxis::Unknown,
+        };
         let is_same_program = match (&self.calls, event.calls) {
             (None, None) => true,
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
@@ -271,6 +287,7 @@ impl<'m> PathRecorder<'m> {
             stretch.kind == kind
                 && stretch.tool == self.setup.tool
                 && stretch.feed == feed
+                && stretch.axis == axis
                 && is_same_program
                 && stretch.block.source == event.block.source
                 && stretch.points.end == first
@@ -281,10 +298,14 @@ impl<'m> PathRecorder<'m> {
             stretch.points.end = path.points.len();
             stretch.moves.end = moves + 1;
         } else {
+            if let StretchAxis::Along(along, is_positive) = axis {
+                *path.tool_axes.entry((along, is_positive)).or_default() += 1;
+            }
             path.stretches.push(Stretch {
                 kind,
                 tool: self.setup.tool,
                 feed,
+                axis,
                 block: event.block,
                 points: first..path.points.len(),
                 moves: moves..moves + 1,
@@ -390,6 +411,21 @@ mod tests {
         assert_eq!(stretches, expected);
         assert_eq!((path.moves.len(), path.end), (5, Some([30.0, 0.0, -1.0])));
         assert_eq!(path.points.last(), Some(&[30.0, 0.0, -1.0]));
+        assert_eq!(path.tool_axis(), Some((2, true)));
+    }
+
+    /// Two holes from above, then a contour of five feeds with the table at B90: three stretches, two of them along z.
+    #[test]
+    fn a_contour_counts_once_for_the_axis_of_the_tool() {
+        let script = EventScript::new().then(
+            "tool 1; rapid Z2; feed Z-1; rapid Z2; rapid X10; feed Z-1; rapid Z50; rapid B90; feed Z40; feed X20; \
+             feed Y5; feed X0; feed Y0",
+        );
+        let path = path(&upright(), &script);
+        let feeds = path.stretches.iter().filter(|of| of.kind == PathKind::Feed);
+        let axes: Vec<StretchAxis> = feeds.map(|of| of.axis).collect();
+        let down = StretchAxis::Along(2, true);
+        assert!(axes[..2] == [down, down] && matches!(axes[2..], [StretchAxis::Along(0, _)]), "{axes:?}");
         assert_eq!(path.tool_axis(), Some((2, true)));
     }
 

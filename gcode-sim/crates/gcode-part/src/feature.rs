@@ -151,9 +151,11 @@ impl Feature {
     /// `hand=`:
     /// `tap 10 22 pitch=1.5`, `tap M10 22`, `countersink 12 angle=90`.
     ///
+    /// `unit` is the length of the numbers' unit, mm; a designation such as M10 has its own.
+    ///
     /// # Errors
     /// The part that is not understood, in words.
-    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+    pub(crate) fn parse_in(unit: f64, text: &str) -> Result<Self, String> {
         let mut words = text.split_whitespace();
         let name = words.next().unwrap_or_default();
         let kind = FeatureKind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
@@ -161,17 +163,18 @@ impl Feature {
             format!("'{name}' is no kind of feature: one of {names}")
         })?;
         let number = |word: &str| word.parse::<f64>().map_err(|_| format!("'{word}' is not a number"));
+        let length = |word: &str| number(word).map(|value| value * unit);
         let size = words.next().ok_or("a feature needs its diameter behind its kind")?;
         let (diameter, pitch) = match thread_size::parse(size).filter(|_| kind == FeatureKind::Tap) {
             Some(size) => size.map(|(diameter, pitch)| (diameter, Some(pitch)))?,
-            None => (number(size)?, None),
+            None => (length(size)?, None),
         };
         let mut feature = Self { diameter, pitch, ..Self::of(kind) };
         for word in words {
             match word.split_once('=') {
-                None if feature.depth.is_none() => feature.depth = Some(number(word)?),
+                None if feature.depth.is_none() => feature.depth = Some(length(word)?),
                 Some(("angle", value)) => feature.angle = Some(number(value)?),
-                Some(("pitch", value)) => feature.pitch = Some(number(value)?),
+                Some(("pitch", value)) => feature.pitch = Some(length(value)?),
                 Some(("hand", "right")) => feature.hand = Hand::Right,
                 Some(("hand", "left")) => feature.hand = Hand::Left,
                 Some(("to", "full")) => feature.to = DepthTo::Full,
@@ -185,6 +188,19 @@ impl Feature {
             }
         }
         Ok(feature)
+    }
+
+    /// Multiplies all lengths by a factor.
+    pub(super) fn scale(&mut self, by: f64) {
+        self.diameter *= by;
+        self.depth = self.depth.map(|depth| depth * by);
+        self.pitch = self.pitch.map(|pitch| pitch * by);
+    }
+
+    /// Parses the notation of a CSV cell in mm.
+    #[cfg(test)]
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        Self::parse_in(1.0, text)
     }
 
     /// Checks the values; `walls` are the diameters below a countersink.

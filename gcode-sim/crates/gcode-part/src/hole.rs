@@ -70,7 +70,13 @@ pub enum Unit {
     /// Millimetres.
     #[serde(rename = "mm")]
     Mm,
+    /// Inches, in a list that is read; a reader makes millimetres of them.
+    #[serde(rename = "inch")]
+    Inch,
 }
+
+/// Millimetres in an inch.
+pub(super) const MM_PER_INCH: f64 = 25.4;
 
 /// The document that `holes` and `reference` write and `verify` reads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -92,6 +98,22 @@ pub struct HoleList {
 }
 
 impl HoleList {
+    /// Returns the list in millimetres.
+    #[must_use]
+    pub(super) fn in_mm(mut self) -> Self {
+        if self.unit == Unit::Inch {
+            self.unit = Unit::Mm;
+            for hole in &mut self.holes {
+                hole.entry = hole.entry.map(|value| value * MM_PER_INCH);
+                hole.depth *= MM_PER_INCH;
+                hole.diameter = hole.diameter.map(|diameter| diameter * MM_PER_INCH);
+                hole.features.iter_mut().for_each(|feature| feature.scale(MM_PER_INCH));
+            }
+            self.stock = self.stock.map(|stock| stock.scaled(MM_PER_INCH));
+        }
+        self
+    }
+
     /// Moves the entry of each hole to the point where its axis leaves the surface; its bottom stays. A hole above the
     /// surface or beside it stays as it is.
     pub fn enter_at(&mut self, surface: &Surface) {

@@ -41,6 +41,7 @@ impl Reference {
     /// # Errors
     /// A list without holes, values that are not finite or not positive, axes that are not unit vectors, and duplicate ids.
     pub fn of_list(list: HoleList) -> Result<Self, FileError> {
+        let list = list.in_mm();
         if let Some(stopped) = list.stopped {
             let message = format!("the list is of a run that stopped: {stopped}");
             return Err(FileError { line: None, message });

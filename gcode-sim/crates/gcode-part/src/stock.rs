@@ -163,6 +163,25 @@ impl Stock {
         }
     }
 
+    /// Returns the stock with all lengths multiplied by a factor.
+    #[must_use]
+    pub(super) fn scaled(self, by: f64) -> Self {
+        let all = |pocket: Vec<Pocket>| pocket.into_iter().map(|pocket| pocket.scaled(by)).collect();
+        match self {
+            Self::Box { min, max, pocket } => {
+                Self::Box { min: min.map(|v| v * by), max: max.map(|v| v * by), pocket: all(pocket) }
+            }
+            Self::Cylinder { axis, diameter, from, to, pocket } => Self::Cylinder {
+                axis,
+                diameter: diameter * by,
+                from: from * by,
+                to: to * by,
+                pocket: all(pocket),
+            },
+            Self::Surface { pocket } => Self::Surface { pocket: all(pocket) },
+        }
+    }
+
     /// Returns the reason why no body can have these numbers; `None` if one can.
     pub fn fault(&self) -> Option<String> {
         let own = match *self {
@@ -182,6 +201,20 @@ impl Stock {
 }
 
 impl Pocket {
+    fn scaled(self, by: f64) -> Self {
+        let point = |point: [f64; 3]| point.map(|value| value * by);
+        match self {
+            Self::Box { min, max } => Self::Box { min: point(min), max: point(max) },
+            Self::Cylinder { axis, centre, diameter, from, to } => Self::Cylinder {
+                axis,
+                centre: point(centre),
+                diameter: diameter * by,
+                from: from * by,
+                to: to * by,
+            },
+        }
+    }
+
     fn body(&self) -> Surface {
         match *self {
             Self::Box { min, max } => block(min, max),

@@ -8,7 +8,9 @@ use super::{ExitStatus, OutputFile, UsageError};
 use crate::cli::conditions::{ProgramArguments, RunConditions};
 use crate::cli::{common, options, output, progress};
 use crate::report::holes as report;
+use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
 use gcode_inspect::holes::DrilledHole;
+use gcode_lang::diag::Diagnostic;
 use gcode_part::{Hole, HoleList};
 use gcode_session::{Request, Simulation};
 
@@ -59,6 +61,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     if list.holes.iter().any(|hole| hole.diameter.is_none() && hole.features.is_empty()) {
         output::print_message(
             "note: without a diameter: holes whose tool is not in the machine file; write those of the drawing\n",
+        );
+    }
+    let is_in_no_hole =
+        |finding: &&Diagnostic| [&FEED_NO_HOLE, &FEED_WITHOUT_RETRACT].contains(&finding.kind);
+    let beside: Vec<&Diagnostic> = simulation.extracted.findings.iter().filter(is_in_no_hole).collect();
+    if !beside.is_empty() {
+        super::super::findings(beside, &simulation.run);
+        output::print_message(
+            "note: not in the list: feeds that are in no hole; write the threads and bores that they mill, and state \
+             pockets in [[stock.pocket]]\n",
         );
     }
     Ok(ExitStatus::Passed)

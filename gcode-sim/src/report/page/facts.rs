@@ -41,7 +41,7 @@ pub(super) fn answer(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
                     }
                 }
                 @if page.old.is_none() && let Some(worst) = messages::worst_findings(side) {
-                    p.answer.no { a href="#messages" { (worst) } }
+                    p.answer.no[messages::has_errors(side)] { a href="#messages" { (worst) } }
                 }
             }
         }

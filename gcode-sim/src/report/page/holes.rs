@@ -82,7 +82,7 @@ impl HoleTable {
                         } }
                         tbody {
                             @for (number, row) in self.rows.iter().enumerate() {
-                                (row.markup(number, hidden.contains(&number)))
+                                (row.markup(number, &self.columns, hidden.contains(&number)))
                             }
                         }
                     }
@@ -99,7 +99,7 @@ impl HoleTable {
 }
 
 impl HoleTableRow {
-    fn markup(&self, number: usize, more: bool) -> Markup {
+    fn markup(&self, number: usize, columns: &[String], more: bool) -> Markup {
         let to = self.cells.iter().rev().find_map(|cell| cell.links.first()).map(|(anchor, _)| anchor);
         html! {
             tr id={ "hole-" (number) } class=(self.state.class()) data-row=(number) hidden[more] {
@@ -107,8 +107,8 @@ impl HoleTableRow {
                     @match to { Some(to) => a.go href={ "#" (to) } { (self.id) }, None => (self.id) }
                 }
                 td.state { (self.words) }
-                @for cell in &self.cells {
-                    td.number[cell.value.is_some()].block[!cell.links.is_empty()] data-value=[cell.value] {
+                @for (cell, name) in self.cells.iter().zip(columns) {
+                    td.number[cell.value.is_some()].block[!cell.links.is_empty()] data-value=[cell.value] data-name=(name) {
                         (cell.text)
                         @for (index, (anchor, name)) in cell.links.iter().enumerate() {
                             @if index > 0 { " ← " }

@@ -50,6 +50,11 @@ pub(super) fn worst_findings(side: &ReviewSide<'_>) -> Option<String> {
     figures::finding_counts(findings_of(side).into_iter())
 }
 
+/// Returns true if a run has an error; warnings and notes, as on ordinary milling, are no fault.
+pub(super) fn has_errors(side: &ReviewSide<'_>) -> bool {
+    findings_of(side).first().is_some_and(|worst| Severity::Error <= worst.severity)
+}
+
 fn findings(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let all = findings_of(side);
     let other = sides.iter().find(|other| other.word != side.word);

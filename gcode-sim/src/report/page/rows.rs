@@ -6,8 +6,9 @@ use super::{ReviewSide, heading};
 use crate::report::figures::{rounded, signed};
 use crate::report::hole_changes::{self, remarks};
 use gcode_draw::HoleStatus;
+use gcode_inspect::findings::{FEATURE_DEPTH, HOLE_DEPTH};
 use gcode_inspect::holes::DrilledHole;
-use gcode_inspect::verify::{ExtraHole, HoleVerdict, Verdict};
+use gcode_inspect::verify::{ExtraHole, Finding, HoleVerdict, Verdict};
 use gcode_part::Reference;
 use gcode_review::Paired;
 
@@ -250,7 +251,12 @@ pub(super) fn judged_rows(
         cells.extend([
             Cell::optional(is.map(|hole| hole.at_entry), 4),
             Cell::optional(is.map(|hole| hole.at_bottom), 4),
-            Cell::signed(is.map(|hole| hole.depth_error)),
+            match is {
+                Some(hole) if hole.is_breakthrough() => {
+                    Cell { text: "through".to_owned(), ..Cell::default() }
+                }
+                _ => Cell::signed(is.map(|hole| hole.depth_error)),
+            },
             Cell::optional(is.map(|hole| hole.tilt), 4),
         ]);
         cells.extend(judged.iter().zip(&found_by).map(|((side, _), hole)| {
@@ -261,10 +267,12 @@ pub(super) fn judged_rows(
             (Some(hole), Some(words)) if hole.ok => {
                 (HoleRowState::Altered, format!("in tolerance, but: {}", words.join("; ")))
             }
-            (Some(hole), None) if hole.ok => (HoleRowState::Good, "in tolerance".to_owned()),
-            (Some(hole), _) => {
-                (HoleRowState::Bad, faults(&hole.error_codes, judged.last().map(|(_, verdict)| *verdict)))
+            (Some(hole), None) if hole.ok => {
+                let is_again = |(_, verdict): &(_, &Verdict)| verdict.repeated.iter().any(|(_, of)| of == id);
+                let again = if judged.last().is_some_and(is_again) { "; drilled a second time" } else { "" };
+                (HoleRowState::Good, format!("in tolerance{again}"))
             }
+            (Some(hole), _) => (HoleRowState::Bad, faults(hole, judged.last().map(|(_, verdict)| *verdict))),
         };
         let holes = found_by.iter().map(|hole| hole.map(|hole| hole.drilled_index)).collect();
         HoleTableRow { id: shown(id), state, words, cells, holes }
@@ -305,15 +313,22 @@ fn extra_rows(
     };
     verdict.extra.iter().enumerate().map(row).collect()
 }
-/// Returns the faults of a hole in words, each once.
-fn faults(codes: &[&'static str], verdict: Option<&Verdict>) -> String {
+/// Returns the faults of a hole in words, each once. Its depth error is that of the whole hole: a wrong depth has the
+/// words of its finding, which may be about one of its features.
+fn faults(hole: &HoleVerdict, verdict: Option<&Verdict>) -> String {
     let title = |code: &&'static str| {
         let finding = verdict?.diagnostics.iter().find(|finding| finding.kind.code == *code)?;
         Some(finding.kind.title)
     };
+    let own = |code: &&'static str| {
+        let of_depth = [HOLE_DEPTH.code, FEATURE_DEPTH.code].contains(code);
+        let is_own = |one: &&Finding| one.code == *code && one.hole.as_deref() == Some(hole.id.as_str());
+        let finding = verdict?.findings.iter().filter(|_| of_depth).find(is_own)?;
+        Some(finding.message.as_str())
+    };
     let mut words: Vec<&str> = Vec::new();
-    for code in codes {
-        let word = title(code).unwrap_or(code);
+    for code in &hole.error_codes {
+        let word = own(code).or_else(|| title(code)).unwrap_or(code);
         if !words.contains(&word) {
             words.push(word);
         }

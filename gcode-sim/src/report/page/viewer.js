@@ -195,9 +195,12 @@ class Side {
     this.drawStock(colours);
     const { upTo } = options;
     if (upTo !== null) {
-      // The moves that follow are faint.
-      context.globalAlpha = 0.18;
-      this.strokeMoves(colours.feed, 1, [], (move) => move >= upTo && (options.rapids || this.moves[move].pen !== "rapid"));
+      // The moves that follow are faint, each in the pen of its kind.
+      const follows = (pen) => (move) => move >= upTo && this.moves[move].pen === pen;
+      context.globalAlpha = 0.3;
+      if (options.rapids) this.strokeMoves(colours.rapid, 1, few ? [5, 4] : [], follows("rapid"));
+      this.strokeMoves(colours.feed, 1, [], follows("feed"));
+      this.strokeMoves(colours.probe, 1, [2, 3], follows("probe"));
       context.globalAlpha = 1;
     }
     const shown = (move) => (!options.changedOnly || this.isChanged.has(move)) && (upTo === null || move < upTo);

@@ -270,14 +270,21 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::path_view::{DrawnTool, PathPlace, PathRun, TravelLimit};
+    use super::super::path_view::{DrawnTool, PathPlace, PathRun, RunAxis, TravelLimit};
     use super::*;
     use crate::scene::Point;
     use crate::side::Side;
 
     /// A slot of 10 mm along x at z −2 from (0, 0) to (100, 40), reached by a rapid from z 300.
     fn slot() -> PathView {
-        let run = |kind, points| PathRun { kind, tool: 0, program: 0, feed: 100.0, points };
+        let run = |kind, points| PathRun {
+            kind,
+            tool: 0,
+            program: 0,
+            feed: 100.0,
+            axis: RunAxis::Along(2),
+            points,
+        };
         PathView {
             points: vec![
                 [0.0, 0.0, 300.0],
@@ -317,6 +324,31 @@ mod tests {
             picture.scene.strokes.iter().filter_map(|stroke| stroke.style?.width).collect::<Vec<_>>()
         };
         assert_eq!((widths(StandardView::Top), widths(StandardView::Front)), (vec![10.0], vec![]));
+    }
+
+    /// A tool along y cuts no band of its width as seen along z; one of unknown direction does.
+    #[test]
+    fn a_tool_across_the_line_of_sight_sweeps_no_band() {
+        let bands = |axis: RunAxis| {
+            let mut path = slot();
+            path.runs.iter_mut().for_each(|run| run.axis = axis);
+            let picture = picture(&path, &[StandardView::Top], Projection::Third);
+            picture.scene.strokes.iter().filter_map(|stroke| stroke.style?.width).count()
+        };
+        let axes = [RunAxis::Along(2), RunAxis::Unknown, RunAxis::Along(1), RunAxis::Oblique];
+        assert_eq!(axes.map(bands), [1, 1, 0, 0]);
+    }
+
+    /// A probing move along the slot and a feed over it: the probing move is drawn last.
+    #[test]
+    fn a_probing_move_lies_on_the_feeds() {
+        let mut path = slot();
+        path.runs.insert(1, PathRun { kind: RunKind::Probe, points: 2..4, ..path.runs[1].clone() });
+        let picture = picture(&path, &[StandardView::Top], Projection::Third);
+        let is_cut = |stroke: &&Stroke| stroke.style.is_none_or(|style| style.width.is_none());
+        let pens = picture.scene.strokes.iter().filter(is_cut).map(|stroke| stroke.pen);
+        let pens: Vec<Pen> = pens.filter(|pen| matches!(pen, Pen::Feed | Pen::Probe)).collect();
+        assert_eq!(pens.last(), Some(&Pen::Probe), "{pens:?}");
     }
 
     /// The limit x 104 lies inside the frame, which reaches to 105 + 8.8, and y −20 outside; the limit of x is a point in the

@@ -2,7 +2,7 @@
 use std::collections::BTreeMap;
 
 use super::drawn_lines::{DrawnCells, DrawnSegments, SAME_LINE, distance};
-use super::path_view::{ColorBy, PathRun, PathView, RunKind, StandardView};
+use super::path_view::{ColorBy, PathRun, PathView, RunAxis, RunKind, StandardView};
 use super::view_frames::{PlacedView, axis_index};
 use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint, arc};
 use gcode_part::Stock;
@@ -95,9 +95,15 @@ impl PathDrawer<'_> {
         Style { tint, pattern: (order % 6) as u8, ..Style::default() }
     }
 
-    /// Draws the areas that the cutters sweep along the feeds.
+    /// Draws the areas that the cutters sweep along the feeds, where the tool is along the line of sight.
     pub(super) fn swept(&self, view: &PlacedView) -> Vec<Stroke> {
-        let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed);
+        let towards = view.side.towards();
+        let is_along_sight = |run: &&PathRun| match run.axis {
+            RunAxis::Unknown => true,
+            RunAxis::Along(axis) => 0.5 < towards[axis].abs(),
+            RunAxis::Oblique => false,
+        };
+        let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed).filter(is_along_sight);
         let swept = feeds.filter_map(|run| {
             let width = self.path.tools.get(run.tool)?.diameter?;
             let points = self.sparse(view, run);
@@ -156,8 +162,13 @@ impl PathDrawer<'_> {
         let all = self.path.runs.iter().filter(|run| run.kind != RunKind::Rapid);
         let is_dashed = |run: &PathRun| run.kind == RunKind::Feed && self.style(run).pattern != 0;
         let points: usize = all.clone().filter(|run| is_dashed(run)).map(|run| run.points.len()).sum();
+        // A probing move is seen on the feed that it follows.
+        let probes_on_top = |mut strokes: Vec<Stroke>| {
+            strokes.sort_by_key(|stroke| stroke.pen == Pen::Probe);
+            strokes
+        };
         if MAX_SWEPT_POINTS < points {
-            return all.flat_map(|run| self.feed(view, run)).collect();
+            return probes_on_top(all.flat_map(|run| self.feed(view, run)).collect());
         }
         let mut drawn: BTreeMap<usize, DrawnSegments> = BTreeMap::new();
         let mut strokes = Vec::new();
@@ -172,7 +183,7 @@ impl PathDrawer<'_> {
             strokes.extend(lines.into_iter().rev().flat_map(|stroke| of_tool.without_repeats(stroke)));
         }
         strokes.reverse();
-        strokes
+        probes_on_top(strokes)
     }
 
     /// Draws a feed or a probing move.

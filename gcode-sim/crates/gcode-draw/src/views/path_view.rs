@@ -39,8 +39,22 @@ pub struct PathRun {
     pub program: usize,
     /// Feed along the path, mm/min.
     pub feed: f64,
+    /// Direction of the tool.
+    pub axis: RunAxis,
     /// Its points.
     pub points: Range<usize>,
+}
+
+/// Direction of the tool on the part in a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RunAxis {
+    /// Unknown: the tool is taken to be along the line of sight of the top view.
+    #[default]
+    Unknown,
+    /// Along an axis of the part, 0 to 2.
+    Along(usize),
+    /// Along no axis, or changing.
+    Oblique,
 }
 
 /// Kind of a run.

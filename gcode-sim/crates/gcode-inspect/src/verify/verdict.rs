@@ -106,12 +106,19 @@ pub struct HoleVerdict {
     /// Index among the drilled holes.
     #[serde(skip)]
     pub drilled_index: usize,
+    /// True if the hole goes through the part: a tool may go further.
+    #[serde(skip)]
+    pub is_through: bool,
     /// Index of the drilled hole from the far side of a through hole.
     #[serde(skip)]
     pub far_side_index: Option<usize>,
-    /// The hole goes through the part: it may be deeper than nominal.
-    #[serde(skip)]
-    pub is_through: bool,
+}
+
+impl HoleVerdict {
+    /// Returns true if the depth error is the tolerated breakthrough of a through hole.
+    pub fn is_breakthrough(&self) -> bool {
+        self.is_through && self.ok && 0.0 <= self.depth_error
+    }
 }
 
 /// A hole in inspection terms; the entry of the actual hole is where its axis crosses the plane of the nominal
@@ -239,6 +246,7 @@ fn hole_verdicts(
                 phi - comparison.tolerances.position
             },
             rounding: *rounding,
+            is_through: nominal.through,
             nominal: HoleGeometry {
                 entry: nominal.entry,
                 axis: nominal.axis,
@@ -257,7 +265,6 @@ fn hole_verdicts(
             neighbours: None,
             drilled_index: pair.actual,
             far_side_index: pair.from_far_side,
-            is_through: nominal.through,
         }
     };
     pairs.map(verdict).collect()

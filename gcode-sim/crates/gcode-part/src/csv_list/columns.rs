@@ -1,5 +1,6 @@
 //! The columns of a list: the separator, their names, and what a list without some of them means.
 use crate::feature::FeatureKind;
+use crate::hole::{MM_PER_INCH, Unit};
 use gcode_lang::similar;
 
 /// Columns of a list, with other names of each; a feature's own columns are beside them.
@@ -72,11 +73,32 @@ pub(super) fn separator(header: &str) -> char {
     [',', ';', '\t'].into_iter().rev().max_by_key(|separator| count(*separator)).unwrap_or(',')
 }
 
-/// Returns the name of a column in lower case, without quotes and a unit in brackets; another unit than mm stays.
+/// Returns the name of a column in lower case, without quotes and a unit in brackets; an unknown unit stays.
 pub(super) fn column_name(cell: &str) -> String {
+    name_and_unit(cell).0
+}
+
+/// Returns the name of a column, and its unit of length if brackets behind it have one.
+fn name_and_unit(cell: &str) -> (String, Option<Unit>) {
     let name = cell.trim().trim_matches('"').trim().to_lowercase().replace(['_', '-'], " ");
-    let bracket = name.find(['[', '(']).filter(|at| matches!(&name[at + 1..], "mm]" | "mm)" | "°]" | "°)"));
-    name[..bracket.unwrap_or(name.len())].trim().to_owned()
+    let Some(at) = name.find(['[', '(']) else { return (name, None) };
+    let unit = match name[at + 1..].trim_end_matches([']', ')']) {
+        "mm" => Some(Unit::Mm),
+        "in" | "inch" | "inches" | "in." => Some(Unit::Inch),
+        "°" => None,
+        _ => return (name, None),
+    };
+    (name[..at].trim().to_owned(), unit)
+}
+
+/// Returns the unit of all lengths of a list by the units in its header; mm without one.
+pub(super) fn unit<'c>(header: impl Iterator<Item = &'c str>) -> Result<Unit, String> {
+    let mut units = header.filter_map(|cell| name_and_unit(cell).1);
+    let first = units.next().unwrap_or_default();
+    match units.all(|unit| unit == first) {
+        true => Ok(first),
+        false => Err("columns are in mm and in inches: give all lengths in one unit".to_owned()),
+    }
 }
 
 /// Returns a line that would be right below these columns; without columns, a short list.
@@ -112,11 +134,13 @@ pub(super) struct Columns {
     /// Kinds of features with columns of their own.
     pub(super) feature_kinds: Vec<FeatureKind>,
     pub(super) separator: char,
+    /// Unit of all lengths.
+    pub(super) unit: Unit,
 }
 
 impl Columns {
     /// Returns the columns; refuses a list without x and y, one with a column twice, and misspelt names.
-    pub(super) fn new(mut names: Vec<String>, separator: char) -> Result<Self, String> {
+    pub(super) fn new(mut names: Vec<String>, separator: char, unit: Unit) -> Result<Self, String> {
         for (name, others) in COLUMNS {
             if !names.iter().any(|other| other == name)
                 && let Some(place) = names.iter().position(|other| others.contains(&other.as_str()))
@@ -152,7 +176,7 @@ impl Columns {
                 continue;
             }
             if name.contains(['(', '[']) && known.iter().any(|known| name.starts_with(known.as_str())) {
-                return Err(format!("column '{name}': lengths are in mm"));
+                return Err(format!("column '{name}': lengths are in mm, or in inches: [mm] or [inch]"));
             }
             match similar(name, known.iter().map(String::as_str))
                 .filter(|known| !names.iter().any(|name| name == known))
@@ -167,7 +191,7 @@ impl Columns {
         };
         let has_columns = |kind: &FeatureKind| names.iter().any(|name| is_of(name, *kind));
         let feature_kinds = FeatureKind::ALL.into_iter().filter(has_columns).collect();
-        let columns = Self { names, unused, feature_kinds, separator };
+        let columns = Self { names, unused, feature_kinds, separator, unit };
         if let Some(missing) = ["x", "y"].into_iter().find(|name| !columns.has(name)) {
             return Err(format!("column '{missing}' is missing"));
         }
@@ -184,6 +208,12 @@ impl Columns {
         self.place(name).is_some()
     }
 
+    /// Returns the length of the unit of a column's numbers, mm; 1 for a column without lengths.
+    pub(super) fn length_of_unit(&self, column: &str) -> f64 {
+        let is_length = !matches!(column, "i" | "j" | "k") && !column.ends_with(" angle");
+        if is_length && self.unit == Unit::Inch { MM_PER_INCH } else { 1.0 }
+    }
+
     pub(super) fn place(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|other| other == name)
     }
@@ -191,6 +221,9 @@ impl Columns {
     /// Returns what the reader takes for granted.
     pub(super) fn note(&self, has_open_depths: bool, has_comma: bool) -> Option<String> {
         let mut facts = Vec::new();
+        if self.unit == Unit::Inch {
+            facts.push("lengths are in inches".to_owned());
+        }
         if !self.has("z") {
             facts.push("z is 0: no column z".to_owned());
         }

@@ -5,7 +5,7 @@ mod tests;
 
 pub(super) use columns::is_csv;
 pub(super) use columns::lacking_header;
-use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator};
+use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator, unit};
 
 use std::collections::HashMap;
 
@@ -57,8 +57,10 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
     };
     let line_of = |position: Option<&csv::Position>| Some(line_at(position?.byte()));
     let wrong = |e: &csv::Error| error(line_of(e.position()), e.to_string());
-    let names = reader.headers().map_err(|e| wrong(&e))?.iter().map(column_name).collect();
-    let columns = Columns::new(names, separator).map_err(|message| {
+    let header = reader.headers().map_err(|e| wrong(&e))?;
+    let names = header.iter().map(column_name).collect();
+    let columns = unit(header.iter()).and_then(|unit| Columns::new(names, separator, unit));
+    let columns = columns.map_err(|message| {
         error(line_of(Some(&csv::Position::new())), format!("{message}; {}", example(&[], separator)))
     })?;
     let mut list = CsvList {
@@ -152,6 +154,7 @@ impl Cells<'_> {
             ));
         }
         let number = if has_comma { text.replacen(',', ".", 1).parse() } else { text.parse() };
+        let number: Result<f64, _> = number.map(|number: f64| number * self.columns.length_of_unit(column));
         number.map_err(|_| format!("column '{column}' is '{text}': a number is required"))
     }
 
@@ -203,9 +206,12 @@ impl Cells<'_> {
             self.has_comma |= cell.contains(',');
             cell = cell.replace(',', ".");
         }
+        let unit = self.columns.length_of_unit("features");
         let in_column = cell.split(';').map(str::trim).filter(|text| !text.is_empty());
         let mut features = in_column
-            .map(|text| Feature::parse(text).map_err(|message| format!("column 'features': {message}")))
+            .map(|text| {
+                Feature::parse_in(unit, text).map_err(|message| format!("column 'features': {message}"))
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let columns = self.columns;
         for kind in &columns.feature_kinds {

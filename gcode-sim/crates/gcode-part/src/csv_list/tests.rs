@@ -39,6 +39,35 @@ fn separators_decimal_commas_case_units_and_a_line_with_the_separator_are_read()
     assert_eq!(list.note.as_deref(), Some("commas in numbers are decimal commas; unused: remark"));
 }
 
+/// 1.5 inch is 38.1 mm, 0.25 inch 6.35; an axis and an angle have no length, and M10x1.5 is metric everywhere.
+#[test]
+fn a_header_with_inch_makes_all_lengths_inches() {
+    let csv = "id,x [inch],y,depth,tap,tap depth,countersink,countersink angle,features\n\
+               1,1.5,-2,.5,M10x1.5,.5,.75,90,drill .25 .5\n";
+    let json = r#"{"unit": "inch", "holes": [{"id": "1", "entry": [1.5, -2, 0], "axis": [0, 0, 1], "depth": 0.5,
+        "features": [{"kind": "drill", "diameter": 0.25, "depth": 0.5},
+        {"kind": "countersink", "diameter": 0.75, "angle": 90}]}]}"#;
+    let list = read(csv);
+    let hole = &list.holes.holes[0];
+    let near =
+        |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
+    near(hole.entry[0], 38.1);
+    near(hole.entry[1], -50.8);
+    near(hole.depth, 12.7);
+    let of = |kind: FeatureKind| hole.features.iter().find(|one| one.kind == kind).unwrap();
+    assert_eq!((of(FeatureKind::Tap).diameter, of(FeatureKind::Tap).pitch), (10.0, Some(1.5)));
+    near(of(FeatureKind::Tap).depth.unwrap(), 12.7);
+    near(of(FeatureKind::Drill).diameter, 6.35);
+    near(of(FeatureKind::Countersink).diameter, 19.05);
+    assert_eq!((of(FeatureKind::Countersink).angle, hole.axis), (Some(90.0), [0.0, 0.0, 1.0]));
+    assert!(list.note.unwrap().starts_with("lengths are in inches; "));
+
+    let reference = crate::NominalPart::parse(json).unwrap().into_holes().unwrap();
+    near(reference.holes[0].entry[0], 38.1);
+    near(reference.holes[0].features[1].diameter, 19.05);
+    assert_eq!(reference.list().unit, Unit::Mm);
+}
+
 #[test]
 fn features_have_columns_of_their_own() {
     let cell = read(
@@ -72,7 +101,14 @@ fn an_error_shows_a_line_that_is_right() {
             "x;z;depth\n1;2;3\n",
             "line 1: column 'y' is missing; a list begins with its columns, for example: id;x;y;depth",
         ),
-        ("x [in],y,depth\n1,2,3\n", "line 1: column 'x [in]': lengths are in mm; "),
+        (
+            "x [cm],y,depth\n1,2,3\n",
+            "line 1: column 'x [cm]': lengths are in mm, or in inches: [mm] or [inch]; ",
+        ),
+        (
+            "x [in],y [mm],depth\n1,2,3\n",
+            "line 1: columns are in mm and in inches: give all lengths in one unit; ",
+        ),
         ("x,y,i,j,depth\n1,2,0,0,5\n", "line 1: column 'k' is missing: i, j and k together are the axis; "),
         ("id,x,y,depth\n1,2\n", "line 2: 2 columns, the header has 4; a right line: 1,30.5,10,15"),
         ("id,x,y,depth\n1,2,3,4,5\n", "line 2: 5 columns, the header has 4; a right line: 1,30.5,10,15"),

@@ -9,7 +9,10 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     for index in left_over {
         let finding = match comparison.nominal_on_line_of(index) {
             Some(_) => Diagnostic::new(&HOLE_TWICE, explain(comparison, index))
-                .help("remove the second call: the same tool drills this hole twice"),
+                .help(
+                    "remove the second call or block: the same tool drills this hole twice; a cycle's block that only \
+                     prepares the points below it has K0 (L0 on a Haas)",
+                ),
             None => Diagnostic::new(&HOLE_EXTRA, explain(comparison, index))
                 .help("remove it from the program, or correct its position"),
         };

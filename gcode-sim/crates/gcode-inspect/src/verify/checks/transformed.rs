@@ -28,7 +28,7 @@ fn describe(mistake: &Mistake, machine: &Machine) -> (String, String, String) {
         Mistake::MillimetresAsInches => words(
             "the coordinates are 25.4 times too large",
             "read in mm",
-            "the numbers are mm and count as inches (G20, or the unit at power-on): command G21 before the first motion",
+            "if the list is in inches, say so in it: `x (inch)` in the header of a CSV list, \"unit\": \"inch\" in JSON; else the numbers of the program are mm and count as inches (G20, or the unit at power-on): command G21 before the first motion",
         ),
         Mistake::InchesAsMillimetres => words(
             "the coordinates are 25.4 times too small",
