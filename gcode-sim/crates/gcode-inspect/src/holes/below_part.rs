@@ -9,7 +9,7 @@ use crate::findings::BELOW_PART;
 use crate::machine::{TOUCH_DEPTH, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event};
-use gcode_part::{MAX_BREAK_THROUGH, Surface, exceeds};
+use gcode_part::{MAX_BREAK_THROUGH, NOISE, Surface, exceeds};
 
 /// Lowest place of each tool that comes too far below the part.
 #[derive(Debug, Default)]
@@ -40,7 +40,9 @@ impl HoleExtractor<'_> {
     /// floor that a pocket states.
     pub(super) fn follow_below_part(&mut self, event: &Event<'_>) {
         let body = self.surface.filter(|_| self.metal.holes.is_some() && self.has_left_start);
-        let (Some(body), Some(axis)) = (body, self.pose.axis) else { return };
+        // Oblique to the part's axes the bounds of the body say nothing of what is below it.
+        let axis = self.pose.axis.filter(|axis| 1.0 - NOISE <= axis.amax());
+        let (Some(body), Some(axis)) = (body, axis) else { return };
         let (underside, height) = (lowest(&body, &axis), self.pose.tip.coords.dot(&axis));
         if !exceeds(underside - height, MAX_BREAK_THROUGH) {
             return;
