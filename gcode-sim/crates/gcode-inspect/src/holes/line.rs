@@ -27,9 +27,6 @@ pub(super) enum ToolExit {
     Sideways { back: f64 },
 }
 
-/// Feed a revolution, as a share of the diameter, from which on a tool may enter a hole that is cut.
-const ENTRY_FEED_SHARE: f64 = 0.05;
-
 /// The current line. Depths count from `start`, positive into the part, mm.
 #[derive(Debug)]
 pub(super) struct CuttingLine {
@@ -458,50 +455,5 @@ impl HoleExtractor<'_> {
             self.record_line_feed(event, &mut line, &start);
             line
         });
-    }
-
-    /// Records rate and modal state of a feed inwards from `from` if it cuts; the approach may be faster.
-    pub(super) fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine, from: &Point3<f64>) {
-        let EventKind::Feed { rate, .. } = event.kind else { return };
-        let tip = self.pose.tip;
-        let is_in_air = match (&self.surface, &self.metal.holes) {
-            // A feed through the part ends in the air.
-            (Some(surface), _) => {
-                !surface.is_deeper(&tip, TOUCH_DEPTH)
-                    && surface.depth(&surface.deepest_between(from, &tip)) <= TOUCH_DEPTH
-            }
-            (None, Some(holes)) => holes.is_above_all(&tip, &tip),
-            (None, None) => false,
-        };
-        // A tool may enter a hole that is cut with the spindle stopped or turning backwards.
-        // One of unknown diameter may be a tap of the other hand.
-        let may_turn_idle = match self.cutting_state.spindle_direction {
-            SpindleDirection::Clockwise => false,
-            SpindleDirection::Counterclockwise => self.machine.diameter_of(self.setup.tool).is_some(),
-            SpindleDirection::Off => true,
-        };
-        // A gun drill enters its pilot hole slowly turning.
-        let is_steep = || {
-            let diameter = self.machine.diameter_of(self.setup.tool);
-            diameter.is_some_and(|own| ENTRY_FEED_SHARE * own * self.cutting_state.speed.0 < rate.0)
-        };
-        let cuts_nothing = || self.cuts_known_metal(from, &tip) == Some(false);
-        if is_in_air || may_turn_idle && cuts_nothing() {
-            return;
-        }
-        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
-        let is_entry = (is_steep() || self.is_entry_told(&state)) && cuts_nothing();
-        let origin = self.offset_origin.as_ref();
-        let first = || StateCut::new(state, *rate, !is_entry, event.backtrace(), origin);
-        line.record_feed(*rate, state, !is_entry, first);
-    }
-
-    /// Returns true if the feed of a tool that cuts nothing yet is judged otherwise than one that cuts: its pitch, or a speed that the
-    /// job specifies.
-    fn is_entry_told(&self, state: &CuttingState) -> bool {
-        let is_sized_tap = self.machine.kind_of(state.tool) == Some(ToolKind::Tap)
-            && self.machine.diameter_of(state.tool).is_some();
-        let specified = self.process_limits.tool_process(state.tool).and_then(|tool| tool.speed);
-        is_sized_tap || specified.is_some_and(|speed| speed != state.speed.0)
     }
 }

@@ -1,0 +1,64 @@
+//! The end of a run: its holes and findings.
+use std::collections::BTreeSet;
+
+use super::strokes::MilledStrokes;
+use super::{HoleExtraction, HoleExtractor, MAX_PASSES, group, unknown_axes};
+use gcode_lang::alarm::kinds::LIMIT;
+use gcode_lang::diag::Diagnostic;
+
+impl HoleExtractor<'_> {
+    /// Ends the run and returns its holes and findings.
+    pub fn finish(mut self) -> HoleExtraction {
+        let last_block = self.last_block.clone();
+        self.report_low_rapid();
+        self.end_in_metal();
+        self.end_line(None);
+        let unsearched = last_block.filter(|_| self.is_feed_unsearched.get());
+        unsearched.into_iter().for_each(|block| self.unsearched_feeds.count(|| block));
+        self.end_engagement();
+        self.report_idle_mills();
+        self.report_low_places();
+        let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
+        let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
+        self.find_cores(&mut holes);
+        let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
+        unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
+        self.report_unknown_positions(&holes);
+        let covered_entries = self.covered_entries();
+        let milled_strokes = milled.as_ref().map_or(0, MilledStrokes::count);
+        let mut findings = self.findings.finish();
+        findings.extend(milled.map(MilledStrokes::finding));
+        findings.extend(first_excess.map(|backtrace| {
+            let message =
+                format!("more than {MAX_PASSES} feeds into the part: nothing after this is checked");
+            let finding = Diagnostic::new(&LIMIT, message).with_backtrace(backtrace);
+            finding.help("check for a loop that never ends; otherwise split the program")
+        }));
+        HoleExtraction {
+            holes,
+            findings,
+            close_motions: self.close_motions.finish(),
+            cut_conditions: self.cut_conditions.finish(),
+            length_mismatches: self.length_mismatches,
+            offset_tools: self.offset_tools,
+            program_lengths: BTreeSet::new(),
+            unknown_rapids: self.positions.finish(self.machine),
+            assumed_axes,
+            process_limits: self.process_limits,
+            is_metal_known: self.surface.is_some(),
+            unsearched_rapids: self.unsearched_rapids,
+            rapids_of_unknown_tip: self.rapids_of_unknown_tip,
+            rapids_behind_change: self.change_retract.rapids,
+            unsearched_feeds: self.unsearched_feeds,
+            probes_in_metal: self.probes_in_metal,
+            probes_without_signal: self.probes_without_signal,
+            unsized_mills: self.unsized_mills,
+            covered_entries,
+            milled_strokes,
+            milled_blocks: self.milled_blocks.finish(),
+            feeds_in_air: self.feeds_in_air,
+            cycles_in_air: self.cycles_in_air.finish(),
+            is_removal_cut_short: self.metal.removed.is_full,
+        }
+    }
+}
