@@ -5,8 +5,7 @@ use super::cut_states::{CutStates, StateCut};
 use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent};
 use super::drill_pass::{DrillPass, PITCH_TOLERANCE, PassCut, TapRetract};
 use super::{HoleExtractor, MotionKind};
-use crate::machine::{TOUCH_DEPTH, ToolKind};
-use gcode_lang::motion::{Backtrace, Event, EventKind, Position, SpindleDirection, UnknownAxes};
+use gcode_lang::motion::{Backtrace, Event, Position, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
@@ -153,7 +152,7 @@ impl CuttingLine {
 
     /// Records rate and modal state of a feed inwards that cuts, or enters a hole that is cut. A reversal before it taps no
     /// thread.
-    fn record_feed(
+    pub(super) fn record_feed(
         &mut self,
         feed: MmPerMin,
         state: CuttingState,

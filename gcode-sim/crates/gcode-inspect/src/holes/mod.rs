@@ -90,12 +90,10 @@ use self::milled_blocks::MilledBlocks;
 use self::milling::Milling;
 use self::per_block::Findings;
 use self::profile::Profile;
-use self::strokes::{MilledStrokes, Strokes};
+use self::strokes::Strokes;
 use self::tool_change::ChangeRetract;
 use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
-use gcode_lang::alarm::kinds::LIMIT;
-use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{
     Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
     StopKind,
