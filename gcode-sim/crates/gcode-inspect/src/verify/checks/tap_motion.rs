@@ -1,11 +1,13 @@
 //! Taps: they leave their thread as they came, at its pitch, and the hole before them is wide enough.
 use super::features::Judgement;
-use super::threads::MAX_STEP;
 use super::*;
 use crate::findings::{TAP_DRILL, TAP_PITCH};
 use crate::verify::hole_cuts::Cut;
 use crate::verify::matching::{is_one_run, step_off};
 use gcode_part::{Feature, NOISE};
+
+/// Largest distance along the axis between two passes of one thread, mm.
+pub(super) const MAX_STEP: f64 = 0.05;
 
 /// Depth of an internal thread by its pitch, in diameter (ISO 724).
 pub(super) const THREAD_DEPTH: f64 = 1.082_532;

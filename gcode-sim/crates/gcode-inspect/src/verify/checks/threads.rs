@@ -1,7 +1,12 @@
 //! Threads: the hole is drilled deeper than its thread, before it, and no wider than the thread leaves metal; feed and speed
 //! give the pitch, and the spindle the hand.
+<<<<<<< ours
 use super::features::{Judgement, ShapeGap, drilled_depths};
 use super::tap_motion::{self, CORE_SHARE, THREAD_DEPTH};
+=======
+use super::features::{Judgement, ShapeGap};
+use super::tap_motion::{self, CORE_SHARE, MAX_STEP, THREAD_DEPTH};
+>>>>>>> theirs
 use super::*;
 use crate::findings::{FEATURE_DEPTH, HOLE_ROUNDNESS, TAP_DRILL, TAP_HAND, TAP_PITCH};
 use crate::holes::{Helix, PITCH_TOLERANCE};
@@ -13,9 +18,6 @@ use gcode_part::{Feature, FeatureKind, Hand, NOISE, POINT_LENGTH};
 
 /// Largest deviation of a milled turn from the pitch, mm.
 const LEAD_TOLERANCE: f64 = 1e-3;
-
-/// Largest distance along the axis between two passes of one thread, mm.
-pub(super) const MAX_STEP: f64 = 0.05;
 
 /// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
