@@ -4,6 +4,7 @@
 mod accepted;
 mod alignment;
 mod alignment_state;
+mod any_program;
 mod arithmetic;
 mod assumptions;
 mod blocks;

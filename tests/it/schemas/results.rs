@@ -180,7 +180,7 @@ fn lists_of_holes_are_refused_alike() {
     };
     assert_eq!(both(&text), (true, true));
     for (from, to) in [
-        ("\"unit\": \"mm\"", "\"unit\": \"inch\""),
+        ("\"unit\": \"mm\"", "\"unit\": \"cm\""),
         ("\"unit\": \"mm\", ", ""),
         ("\"depth\": 15.0", "\"depth\": 0"),
         ("\"depth\": 15.0", "\"depth\": -1"),
