@@ -1,12 +1,7 @@
 //! Threads: the hole is drilled deeper than its thread, before it, and no wider than the thread leaves metal; feed and speed
 //! give the pitch, and the spindle the hand.
-<<<<<<< ours
 use super::features::{Judgement, ShapeGap, drilled_depths};
-use super::tap_motion::{self, CORE_SHARE, THREAD_DEPTH};
-=======
-use super::features::{Judgement, ShapeGap};
 use super::tap_motion::{self, CORE_SHARE, MAX_STEP, THREAD_DEPTH};
->>>>>>> theirs
 use super::*;
 use crate::findings::{FEATURE_DEPTH, HOLE_ROUNDNESS, TAP_DRILL, TAP_HAND, TAP_PITCH};
 use crate::holes::{Helix, PITCH_TOLERANCE};
