@@ -213,8 +213,7 @@ fn verify(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Resul
     let part = |key: &str| report.get(key).map(plain).unwrap_or_default();
     let is_pass = part("verdict") == "pass";
     let kind = if is_pass { MessageType::INFO } else { MessageType::ERROR };
-    let worst = report.get("worst").and_then(Value::as_f64).map(|worst| format!(", worst Φ{worst:.4}"));
-    let text = format!("{}{} of Φ{}", part("verdict"), worst.unwrap_or_default(), part("tolerance"));
+    let text = format!("{}: {}", part("verdict").to_uppercase(), part("summary"));
     Ok(CommandResult { message: Some((kind, text)), ..CommandResult::new(report) })
 }
 
