@@ -158,9 +158,7 @@ fn remarks_of(hole: &HoleVerdict) -> String {
 /// Returns the verdict with the first `most` of its kinds of faults, and the number of the others.
 fn with_faults(hole: &HoleVerdict, most: usize) -> String {
     if hole.ok {
-        // A through hole may be deeper than nominal.
-        let is_deeper = hole.is_through && signed(hole.depth_error).starts_with('+');
-        return if is_deeper { "pass, through" } else { "pass" }.to_owned();
+        return "pass".to_owned();
     }
     let names = fault_names(hole);
     let shown = names.len().min(most);

@@ -1,12 +1,18 @@
 //! Motion near the part without contact: its clearance, for comparison with the job's.
-use nalgebra::Point3;
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::per_block::PerBlock;
+use super::strip::Line;
+use super::swept_tool::ring;
 use crate::machine::{AxisMotion, LinkMotion, Pose, TOUCH_DEPTH};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event};
 use gcode_lang::units::Deg;
 use gcode_part::{NearestPoint, Surface};
+
+/// Number of points round a tool at which the metal below it is looked for, and their distance from it, mm.
+const RING_POINTS: u32 = 8;
+const WALL_DISTANCE: f64 = 0.5;
 
 /// Clearance below which a small error of tool length or part position makes contact, mm.
 pub(crate) const CONTACT_CLEARANCE: f64 = 0.1;
@@ -104,9 +110,8 @@ impl HoleExtractor<'_> {
         }
         let is_towards = steepness < -STEEP_COSINE;
         if nearest.distance < CONTACT_CLEARANCE {
-            // Where it is milled the blank has lost its surface.
-            let down = nearest.normal.into_inner() * (nearest.distance + CONTACT_CLEARANCE + TOUCH_DEPTH);
-            if self.metal.uncut(&[from - down, to - down]).is_none() {
+            let depth = nearest.distance + CONTACT_CLEARANCE + TOUCH_DEPTH;
+            if self.is_milled_away(&[*from, *to], &nearest.normal, depth) {
                 return;
             }
             let kind = if is_towards { CloseMotionKind::RapidTowards } else { CloseMotionKind::RapidPast };
@@ -117,6 +122,17 @@ impl HoleExtractor<'_> {
                 self.close_motions.add(event, CloseMotionKind::RapidTowards, above, None);
             }
         }
+    }
+
+    /// Returns true if the blank has lost its metal at a depth below a travel, and round it as far as the tool reaches.
+    fn is_milled_away(&self, travel: &Line, normal: &Unit<Vector3<f64>>, depth: f64) -> bool {
+        let shifted = |by: Vector3<f64>| travel.map(|point| point - normal.into_inner() * depth + by);
+        let below = shifted(Vector3::zeros());
+        let radius = self.body_radius() + WALL_DISTANCE;
+        let round = || ring(normal, &Vector3::zeros(), radius, RING_POINTS).into_iter().map(shifted);
+        self.metal.is_solid(&below)
+            && self.metal.uncut(&below).is_none()
+            && round().all(|line| self.metal.uncut(&line).is_none())
     }
 
     /// Records a motion outside the part during which the table or the head rotates too close to it.

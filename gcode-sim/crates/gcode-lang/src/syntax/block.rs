@@ -31,7 +31,8 @@ pub(super) fn read_block<'a>(line: LineInput, input: Input<'a>, block: &mut Bloc
 
 fn ends_block(rest: Input<'_>, block: &Block) -> bool {
     match rest.first() {
-        Some(b'%' | b';') => true,
+        Some(b'%') => true,
+        Some(b';') => !block.items.is_empty(),
         Some(b'O' | b'o') => begins_program(rest) && block.items.last().is_some_and(ends_program),
         _ => false,
     }
@@ -134,6 +135,7 @@ fn read_item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> ReadResul
             }
         },
         [b']', ..] => return fail(at, Alarm::MissingOpenBracket),
+        [b';', ..] => return fail(at, Alarm::TwoBlocksInOneLine),
         _ => return no_match(at),
     };
     block.items.push(item);

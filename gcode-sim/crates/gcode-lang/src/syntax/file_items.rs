@@ -151,7 +151,8 @@ impl<'a> FileItems<'a> {
         };
         let line = LineInput { source: self.source, end: self.code_end as u32 };
         let left = |rest: Input<'_>| self.code_end - rest.len();
-        let (text, semicolon) = behind_semicolons(line, text);
+        // At the start of a line `;` ends no block: the text behind it may as well be a comment.
+        let (text, semicolon) = if self.begins_line() { (text, None) } else { behind_semicolons(line, text) };
         let from = left(text);
         let at = spaces(text);
         if at.is_empty() && self.comments.is_empty() {
