@@ -124,11 +124,13 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Returns true if the blank has lost its metal at a depth below a travel, and round it as far as the tool reaches.
+    /// Returns true if the blank has lost its metal at a depth below a travel, and round it as far as the tool reaches; false for a
+    /// tool of unknown diameter.
     fn is_milled_away(&self, travel: &Line, normal: &Unit<Vector3<f64>>, depth: f64) -> bool {
         let shifted = |by: Vector3<f64>| travel.map(|point| point - normal.into_inner() * depth + by);
         let below = shifted(Vector3::zeros());
-        let radius = self.body_radius() + WALL_DISTANCE;
+        let Some(own) = self.tool_radius() else { return false };
+        let radius = own.max(self.body_radius()) + WALL_DISTANCE;
         let round = || ring(normal, &Vector3::zeros(), radius, RING_POINTS).into_iter().map(shifted);
         self.metal.is_solid(&below)
             && self.metal.uncut(&below).is_none()
