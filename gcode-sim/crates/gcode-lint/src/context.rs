@@ -264,6 +264,11 @@ impl<'a> CheckContext<'a> {
     pub(crate) fn has_effect(&self, words: &Words, is_effect: impl Fn(Effect) -> bool) -> bool {
         self.g_code_rows(words).any(|row| is_effect(row.effect))
     }
+
+    /// Returns true if a block has a word of one of the control's axes.
+    pub(crate) fn names_axis(&self, words: &Words) -> bool {
+        words.list.iter().any(|word| self.settings.axes.find(word.letter).is_some())
+    }
 }
 
 /// Returns true if a block commands F, beside the arguments of a call.

@@ -152,9 +152,8 @@ fn modes_without_feed_word(
     words: &Words,
     before: &PossibleModes,
 ) -> Option<PossibleModes> {
-    let names_axis = words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
     let lacks_feed = !has_feed_word(words)
-        && names_axis
+        && context.names_axis(words)
         // The words may be arguments of a code that calls a program.
         && words.call().is_none()
         && unit.call_in(block).is_none();

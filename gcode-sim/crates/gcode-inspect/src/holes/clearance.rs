@@ -5,14 +5,11 @@ use super::HoleExtractor;
 use super::per_block::PerBlock;
 use super::strip::Line;
 use super::swept_tool::ring;
+use super::tool_change::{RING_POINTS, WALL_DISTANCE};
 use crate::machine::{AxisMotion, LinkMotion, Pose, TOUCH_DEPTH};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event};
 use gcode_lang::units::Deg;
 use gcode_part::{NearestPoint, Surface};
-
-/// Number of points round a tool at which the metal below it is looked for, and their distance from it, mm.
-const RING_POINTS: u32 = 8;
-const WALL_DISTANCE: f64 = 0.5;
 
 /// Clearance below which a small error of tool length or part position makes contact, mm.
 pub(crate) const CONTACT_CLEARANCE: f64 = 0.1;

@@ -111,9 +111,7 @@ impl HoleExtractor<'_> {
         let pose = self.machine.forward(at, &self.setup);
         let Some(out) = pose.axis else { return 0 };
         let is_along = |axis: &AxisIndex| {
-            let mut beside = *at;
-            beside[*axis] += 1.0;
-            let by = self.machine.forward(&beside, &self.setup).tip - pose.tip;
+            let by = self.displacement_by(*axis, at, &pose.tip);
             !self.machine.axes.is_rotary(*axis) && MAX_SINE < by.dot(&out).abs()
         };
         (0..self.machine.axes.len()).filter(is_along).fold(0, |axes, axis| axes | 1 << axis)

@@ -13,10 +13,10 @@ use gcode_lang::motion::{Event, Position};
 
 /// Least radius at which metal round a tool is looked for, mm, and its distance from the tool.
 const MIN_RADIUS: f64 = 0.5;
-const WALL_DISTANCE: f64 = 0.5;
+pub(super) const WALL_DISTANCE: f64 = 0.5;
 
 /// Number of points round a tool.
-const RING_POINTS: u32 = 8;
+pub(super) const RING_POINTS: u32 = 8;
 
 /// Rapids that are free only if the tool change has retracted the tool.
 #[derive(Debug, Default)]

@@ -1,6 +1,6 @@
 //! Axes whose position on the part is unknown: not commanded since the start, sent to machine coordinates without a known
 //! work offset, or counted from a G92 at an unknown position.
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use super::group::DrilledHole;
 use super::line::{CuttingLine, ToolExit};
@@ -254,6 +254,13 @@ impl HoleExtractor<'_> {
         })
     }
 
+    /// Returns the displacement of the tip on the part by 1 mm or 1 degree of an axis, mm; with the axes at `at` the tip is at `tip`.
+    pub(super) fn displacement_by(&self, axis: AxisIndex, at: &Position, tip: &Point3<f64>) -> Vector3<f64> {
+        let mut beside = *at;
+        beside[axis] += 1.0;
+        self.machine.forward(&beside, &self.setup).tip - tip
+    }
+
     /// Returns the distance of the tip below the top of the body, seen along the tool, with the axes at a position; `None` if it is
     /// beside the body, or if its height is unknown. Linear axes in `unknown` may be anywhere; without any it is the depth.
     pub(super) fn depth_below_top(&self, surface: &Surface, at: &Position, unknown: u8) -> Option<f64> {
@@ -264,9 +271,7 @@ impl HoleExtractor<'_> {
             if self.machine.axes.is_rotary(axis) {
                 continue;
             }
-            let mut beside = *at;
-            beside[axis] += 1.0;
-            let by = self.machine.forward(&beside, &self.setup).tip - tip;
+            let by = self.displacement_by(axis, at, &tip);
             if MAX_SINE < by.dot(&out).abs() {
                 return None;
             }
@@ -298,9 +303,7 @@ impl HoleExtractor<'_> {
         }
         // Along the tool the way from any place is the one that is checked.
         let is_across = |axis: &AxisIndex| {
-            let mut beside = self.axis_position;
-            beside[*axis] += 1.0;
-            let by = self.machine.forward(&beside, &self.setup).tip - tip;
+            let by = self.displacement_by(*axis, &self.axis_position, &tip);
             !self.machine.axes.is_rotary(*axis) && MAX_SINE < by.cross(&out).norm()
         };
         let opened = (0..self.machine.axes.len()).filter(|axis| was.uncommanded >> axis & 1 == 1);
@@ -333,9 +336,7 @@ impl HoleExtractor<'_> {
     /// part.
     fn is_out_along(&self, line: &CuttingLine, axes: u8) -> bool {
         let is_along = |axis: AxisIndex| {
-            let mut beside = self.axis_position;
-            beside[axis] += 1.0;
-            let by = self.machine.forward(&beside, &self.setup).tip - self.pose.tip;
+            let by = self.displacement_by(axis, &self.axis_position, &self.pose.tip);
             by.cross(&line.out).norm() <= MAX_SINE * by.norm()
         };
         self.machine.axes.iter().filter(|(axis, _)| axes >> axis & 1 == 1).all(|(axis, _)| is_along(axis))

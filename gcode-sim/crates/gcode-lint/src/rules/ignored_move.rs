@@ -11,8 +11,7 @@ pub(super) static RULE: Rule =
     Rule::new("ignored-move", Severity::Warning, "G53 in G91, which moves nothing", find);
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
-    let settings = context.settings;
-    if settings.undocumented.g53_moves_in_g91 {
+    if context.settings.undocumented.g53_moves_in_g91 {
         return Vec::new();
     }
     let mut found = Vec::new();
@@ -21,8 +20,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             context.has_effect(words, |effect| effect == Effect::OneShot(OneShot::MachineCoordinateSystem));
         // A skip in machine coordinates moves by the increment.
         let is_skip = context.has_effect(words, |effect| effect == Effect::OneShot(OneShot::Skip));
-        let names_axis = || words.list.iter().any(|word| settings.axes.find(word.letter).is_some());
-        if !is_machine_move || is_skip || !names_axis() || unit.call_in(block).is_some() {
+        if !is_machine_move || is_skip || !context.names_axis(words) || unit.call_in(block).is_some() {
             continue;
         }
         let Some(before) = modes_before(context, unit)[block] else { continue };

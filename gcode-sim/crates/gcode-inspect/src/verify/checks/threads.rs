@@ -20,11 +20,10 @@ const MAX_COMB_TURNS: f64 = 2.0;
 /// Adds the findings on the threads of a hole.
 pub(super) fn judge(judged: &mut Judgement<'_>) {
     let (nominal, id) = (judged.nominal, judged.id);
-    let sides = [(&judged.near, &judged.far), (&judged.far, &judged.near)];
-    let drilled = sides.into_iter().flat_map(|(cuts, others)| {
-        cuts.iter().filter_map(|cut| drilled_depth(judged, cut, cuts, others)).collect::<Vec<_>>()
-    });
-    let mut findings: Vec<_> = drilled.collect();
+    let mut findings = Vec::new();
+    for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
+        findings.extend(cuts.iter().filter_map(|cut| drilled_depth(judged, cut, cuts, others)));
+    }
     if !judged.near.iter().any(Cut::is_thread) {
         judged.findings.extend(findings);
         return;
