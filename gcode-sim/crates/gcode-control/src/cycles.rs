@@ -2,11 +2,12 @@
 use super::cycle_expansion::{CyclePlan, has_too_many_pecks};
 use super::functions::ExecResult;
 use super::linear_motion::Endpoint;
+use super::move_repeats::MOST_REPEATS;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::{CycleLevel, PeckSchedule, RigidTapping, State};
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::{Alarm, DigitLimit};
 use gcode_lang::control::Dialect;
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::code_facts::Letters;
@@ -188,8 +189,8 @@ impl Planner<'_> {
             Some(pattern) => pattern.count,
             None => self.words.count(letter)?.unwrap_or(1),
         };
-        if repeats > 9999 {
-            return Err(Alarm::TooManyDigits.located_at(self.words.span(letter)));
+        if repeats > MOST_REPEATS {
+            return Err(Alarm::TooManyDigits(DigitLimit::Written(4)).located_at(self.words.span(letter)));
         }
         Ok(repeats)
     }

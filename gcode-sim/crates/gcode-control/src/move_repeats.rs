@@ -5,8 +5,8 @@ use super::planner::Planner;
 use super::state::State;
 use gcode_lang::program::modes::{CutterSide, Distance, Motion};
 
-/// Most moves of one block.
-const MOST_MOVE_REPEATS: u32 = 9999;
+/// Most repeats of a cycle or of a move: K and L have four digits.
+pub(super) const MOST_REPEATS: u32 = 9999;
 
 impl Planner<'_> {
     /// Returns true for a straight move, which L may repeat.
@@ -33,7 +33,7 @@ impl Planner<'_> {
     fn move_repeats(&self, plan: &BlockPlan) -> ExecResult<u32> {
         let repeats = self.words.count(b'L')?.unwrap_or(1);
         let is_lookahead = plan.state.modal.cutter != CutterSide::Off || self.words.corner.is_some();
-        if repeats == 0 || repeats > MOST_MOVE_REPEATS || is_lookahead && repeats > 1 {
+        if repeats == 0 || repeats > MOST_REPEATS || is_lookahead && repeats > 1 {
             return Err(self.not_simulated(format!("L{repeats} of a move")));
         }
         // An absolute move repeated goes nowhere.

@@ -4,7 +4,7 @@ use std::hint::cold_path;
 use super::data::ControlData;
 use super::state::State;
 use super::words::WordNumber;
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::{Alarm, DigitLimit};
 use gcode_lang::control::Increment;
 use gcode_lang::program::modes::{FeedMode, Unit};
 use gcode_lang::syntax::ast::Decimal;
@@ -69,7 +69,7 @@ impl ControlData {
             WordNumber::Computed(value) => computed_increments(*value, POWERS[decimals]),
             WordNumber::Literal(number) => self.literal_increments(number, decimals),
         };
-        number.ok_or(Alarm::TooManyDigits)
+        number.ok_or(Alarm::TooManyDigits(DigitLimit::Increments))
     }
 
     /// Returns the increments of a literal, truncated or rounded by setting; `None` if too many digits.
@@ -117,7 +117,7 @@ impl ControlData {
             WordNumber::Literal(number) => self.literal_dimension(number, letter, measure),
             WordNumber::Computed(value) => self.computed_dimension(*value, letter, measure),
         };
-        value.ok_or(Alarm::TooManyDigits)
+        value.ok_or(Alarm::TooManyDigits(DigitLimit::Increments))
     }
 
     /// Converts a literal to mm or degrees; `None` if it has too many digits.

@@ -131,7 +131,7 @@ fn depends_on_words_alone(alarm: &Alarm) -> bool {
             Alarm::IllegalPoint { .. }
                 | Alarm::IllegalMinus { .. }
                 | Alarm::TwoSigns { .. }
-                | Alarm::TooManyDigits
+                | Alarm::TooManyDigits(_)
                 | Alarm::ImproperAddress { .. }
                 | Alarm::MissingWord { .. }
                 | Alarm::NoPeckDepth

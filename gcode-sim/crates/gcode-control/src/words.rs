@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::functions::{ExecResult, integer, locate};
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::{Alarm, DigitLimit};
 use gcode_lang::control::Settings;
 use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
@@ -193,15 +193,18 @@ pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
         WordNumber::Literal(number) if number.negative && number.digits > 0 => {
             return Err(Alarm::IllegalMinus { letter });
         }
-        WordNumber::Literal(number) => i64::try_from(number.digits).map_err(|_| Alarm::TooManyDigits)?,
+        WordNumber::Literal(number) => i64::try_from(number.digits).unwrap_or(i64::MAX),
         WordNumber::Computed(value) => integer(value)?,
     };
     if number < 0 {
         return Err(Alarm::IllegalMinus { letter });
     }
     // Operator's manual, range of command values: eight digits, S five.
-    let max = if letter == 'S' { 99_999 } else { 99_999_999 };
-    if number > max { Err(Alarm::TooManyDigits) } else { Ok(number as u32) }
+    let digits: u8 = if letter == 'S' { 5 } else { 8 };
+    if number >= 10_i64.pow(digits.into()) {
+        return Err(Alarm::TooManyDigits(DigitLimit::Written(digits)));
+    }
+    Ok(number as u32)
 }
 
 /// Returns the row of a computed G code.

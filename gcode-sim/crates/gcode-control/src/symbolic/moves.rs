@@ -12,7 +12,7 @@ use super::oracle::{Halt, Oracle, Symbolic};
 use super::statements::Place;
 use super::term::{Term, TermOperation, Terms, Test, UNFOLLOWED};
 use super::words::BlockTerms;
-use gcode_lang::alarm::Alarm;
+use gcode_lang::alarm::{Alarm, DigitLimit};
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Motion, Polar};
@@ -372,12 +372,12 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         let scale = POWERS[self.registers.data.decimals(letter, self.plan.state.modal.unit)];
         let magnitude = self.node(TermOperation::Function(Function::Abs), term, term);
         if self.oracle.ask(Test::Compare(Relation::Gt, magnitude, Term::Number(SURELY_TOO_LARGE)))? {
-            return self.alarm(Alarm::TooManyDigits, letter);
+            return self.alarm(Alarm::TooManyDigits(DigitLimit::Increments), letter);
         }
         let whole = self.node(TermOperation::Scaled(scale), term, term);
         let magnitude = self.node(TermOperation::Function(Function::Abs), whole, whole);
         if self.oracle.ask(Test::Compare(Relation::Gt, magnitude, Term::Number(MAX_INCREMENTS)))? {
-            return self.alarm(Alarm::TooManyDigits, letter);
+            return self.alarm(Alarm::TooManyDigits(DigitLimit::Increments), letter);
         }
         Ok(self.node(TermOperation::Divide, whole, Term::Number(scale)))
     }

@@ -2,20 +2,21 @@
 //!
 //! Numbers and triggers follow the alarm list of the 30i / 0i-F class; the wording is this project's own.
 mod code;
+mod digit_limit;
 pub mod kinds;
 mod table;
 mod typos;
 
 use crate::source::{Span, Spanned};
-
 pub use code::AlarmCode;
+pub use digit_limit::DigitLimit;
 pub use typos::{missing_macro_help, remedy, repeats_in_p_help};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Alarm {
     /// A number has too many digits.
-    TooManyDigits,
+    TooManyDigits(DigitLimit),
     /// Text is neither a word nor a macro statement.
     NotAWord {
         /// First characters of the text.

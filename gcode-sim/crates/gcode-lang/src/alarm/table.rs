@@ -18,7 +18,7 @@ impl Alarm {
     #[rustfmt::skip]
     fn parts(&self) -> (&'static FindingKind, String, Option<&'static str>) {
         match self {
-            Self::TooManyDigits => (&PS0003, "too many digits".into(), Some("write at most 9 digits; 12 in a macro expression")),
+            Self::TooManyDigits(limit) => (&PS0003, limit.message(), Some(limit.help())),
             Self::Overtravel { letter, is_plus: true, value, limit } => (&OT0500, format!("{letter} would go to machine position {value}, beyond its stroke limit {limit} on the plus side"), Some("check the work offset, the tool length and the target")),
             Self::Overtravel { letter, is_plus: false, value, limit } => (&OT0501, format!("{letter} would go to machine position {value}, beyond its stroke limit {limit} on the minus side"), Some("check the work offset, the tool length and the target")),
             Self::NotAWord { text } => (&PS0004, format!("'{text}' is neither a word nor a macro statement"), Some("write a letter followed by a number, #variable or [expression]")),

@@ -7,7 +7,7 @@ use super::numbers::{MAX_SEQUENCE_NUMBER, continues_number, number_word, window}
 use super::statement::{assignment, keyword, statement};
 use super::token::{Input, LineInput, ReadFailure, ReadResult, fail, is_space, next, no_match, spaces};
 use super::word::{name_word, word};
-use crate::alarm::Alarm;
+use crate::alarm::{Alarm, DigitLimit};
 use crate::source::Spanned;
 
 /// Reads one line without its end into an empty block; an unreadable rest becomes the last item.
@@ -64,7 +64,7 @@ fn unreadable(line: LineInput, from: Input<'_>, error: Err<ReadFailure>) -> Unre
     let end = &from[from.len()..];
     let behind = match alarm {
         // The words behind the number are none of its fault.
-        Alarm::IllegalPoint { .. } | Alarm::TooManyDigits => behind_number(at),
+        Alarm::IllegalPoint { .. } | Alarm::TooManyDigits(_) => behind_number(at),
         _ => end,
     };
     Unreadable { alarm: line.spanned(alarm, at, behind), span: line.span(from, end), text: Vec::new() }
@@ -170,6 +170,6 @@ pub(super) fn sequence_number(line: LineInput, at: Input<'_>) -> ReadResult<'_, 
     };
     match u32::try_from(number) {
         Ok(number) if number <= MAX_SEQUENCE_NUMBER => Ok((rest, line.spanned(number, at, rest))),
-        _ => fail(at, Alarm::TooManyDigits),
+        _ => fail(at, Alarm::TooManyDigits(DigitLimit::Written(8))),
     }
 }

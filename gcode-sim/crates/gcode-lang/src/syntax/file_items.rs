@@ -294,7 +294,7 @@ fn fill_alarm_text(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
     let of_rest = span.end.max(alarm.span.start);
     alarm.span.end = match alarm.node {
         // Their spans are those of the number.
-        Alarm::IllegalPoint { .. } | Alarm::TooManyDigits => alarm.span.end.min(of_rest),
+        Alarm::IllegalPoint { .. } | Alarm::TooManyDigits(_) => alarm.span.end.min(of_rest),
         _ => of_rest,
     };
     if let Alarm::NotAWord { text } | Alarm::Expression { text } | Alarm::AxisAddress { text } =

@@ -1,7 +1,7 @@
 //! Reader of literal numbers: digits with at most one decimal point, with spaces anywhere between them.
 use super::ast::Decimal;
 use super::token::{Input, ReadResult, fail, is_space, no_match, unspaced};
-use crate::alarm::Alarm;
+use crate::alarm::{Alarm, DigitLimit};
 
 /// First number with too many digits: a literal in a macro expression has at most twelve.
 pub(super) const EXPRESSION_LIMIT: u64 = 1_000_000_000_000;
@@ -24,7 +24,7 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> ReadResul
             }
             digits = digits * 10 + u64::from(digit);
             if digits >= limit {
-                return fail(input, Alarm::TooManyDigits);
+                return fail(input, Alarm::TooManyDigits(DigitLimit::Written(limit.ilog10() as u8)));
             }
             length += 1;
         }
@@ -44,7 +44,7 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> ReadResul
     }
     let places = before_point.map(|before| count - before);
     if places > Some(MAX_DECIMAL_PLACES) {
-        return fail(input, Alarm::TooManyDigits);
+        return fail(input, Alarm::TooManyDigits(DigitLimit::Written(MAX_DECIMAL_PLACES as u8)));
     }
     let places = places.map(|places| places as u8);
     if count > 0 { Ok((rest, Decimal { negative, digits, places })) } else { no_match(input) }
