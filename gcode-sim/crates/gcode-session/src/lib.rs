@@ -390,18 +390,18 @@ impl Simulation {
     /// Verifies the holes against a reference, and completes the verdict by the request of the run.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, request: &Request) -> Verdict {
         let (machine, locate) = (&request.machine, |span| self.run.locate(span));
-        let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
+        let judge = || verify(&self.extracted, reference, tolerances, machine, &locate);
+        let (mut verdict, dependencies) = assumptions::beside(self, request, judge);
         let offsets = causes::unset_work_offsets(&self.run, machine, "holes").collect();
         let names = verdict.hole_names();
-        let assumptions =
-            || self.dependencies(request).assumptions(&self.run, |hole| names.get(&hole).cloned());
+        let assumptions = || dependencies.assumptions(&self.run, |hole| names.get(&hole).cloned());
         completion::complete(&mut verdict, request, &self.run, offsets, assumptions);
         verdict
     }
 
     /// Follows the values that the run read and nothing in its program set to the holes, in a second run on the same metal.
     pub fn dependencies(&self, request: &Request) -> Dependencies {
-        assumptions::of_known_holes(request, &self.run, &self.metal, &self.extracted.holes)
+        assumptions::beside(self, request, || ()).1
     }
 
     /// Returns the list of holes, the JSON document of `gcode-sim holes`.

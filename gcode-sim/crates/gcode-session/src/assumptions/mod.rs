@@ -2,15 +2,17 @@
 mod pass_strokes;
 
 use std::collections::BTreeSet;
+use std::panic::resume_unwind;
 use std::sync::Arc;
+use std::thread;
 
 use self::pass_strokes::PassStrokes;
 use super::causes::work_offset_name;
 use super::marked_events::{MarkedEvents, marks_of};
 use super::outside_text::names_outside;
-use super::{Request, Run, set_up_control};
-use gcode_control::OperatorStop;
+use super::{Request, Run, Simulation, set_up_control};
 use gcode_control::slice::{KEPT_GROUPS, Marks, OutsideRead, OutsideValue, Slice, StatedValues};
+use gcode_control::{Control, OperatorStop};
 use gcode_inspect::flutes::FluteTracker;
 use gcode_inspect::holes::DrilledHole;
 use gcode_lang::motion::{Backtrace, EventSink, StopKind};
@@ -26,71 +28,96 @@ pub struct Dependencies {
     marks: Vec<Marks>,
 }
 
+/// Second run of a program, which follows the values from outside to the events.
+#[derive(Debug)]
+struct SecondRun<'r> {
+    control: Control,
+    request: &'r Request,
+}
+
+/// What a second run finds: the outside values that it reads, and the values of each stroke.
+struct Followed {
+    reads: Vec<OutsideRead>,
+    strokes: Vec<Marks>,
+}
+
+impl<'r> SecondRun<'r> {
+    /// Sets the second run up; `None` if the first one can't have read a value from outside. `makes_any` states that there
+    /// are holes or flutes.
+    fn new(request: &'r Request, run: &Run, makes_any: bool) -> Option<Self> {
+        if run.control.is_cancelled() || !may_read_outside(request, run, makes_any) {
+            return None;
+        }
+        let mut control = set_up_control(request, run.control.memory().reload()).ok()?;
+        if let Some(progress) = &request.progress {
+            control.set_progress(Arc::clone(progress));
+        }
+        Some(Self { control, request })
+    }
+
+    /// Runs the program again into a sink.
+    fn follow<S: EventSink>(mut self, sink: S) -> (Followed, S) {
+        let request = self.request;
+        let mut slice = Slice::new(stated_values(request), &request.settings, &request.variables);
+        let mut events = MarkedEvents::new(sink, slice.motion());
+        self.control.run_observed(request.limits, &mut NoLibrary, &mut events, &mut slice);
+        // What mills decides as much as what makes a hole.
+        let fed: Marks = events.strokes.iter().copied().collect();
+        let mut reads = slice.into_reads();
+        reads
+            .iter_mut()
+            .enumerate()
+            .for_each(|(index, read)| read.decides_further_cuts |= fed.contains(index));
+        (Followed { reads, strokes: events.strokes }, events.sink)
+    }
+}
+
 /// Follows the outside values to the holes through a second run, if the first one can have read any. `metal` is that of the
 /// first run.
 pub(super) fn of_holes(request: &Request, run: &Run, metal: &Metal, has_holes: bool) -> Dependencies {
-    let Some((reads, extractor, strokes)) =
-        follow(request, run, has_holes, || super::extractor(request, metal.clone()).without_rapids())
-    else {
-        return Dependencies::default();
-    };
+    let Some(second) = SecondRun::new(request, run, has_holes) else { return Dependencies::default() };
+    let (followed, extractor) = second.follow(super::extractor(request, metal.clone()).without_rapids());
     let marks_of = |hole: &DrilledHole| {
         let passes = hole.earlier_passes.iter().map(|pass| &pass.backtrace);
-        marks_of(passes.chain([&hole.backtrace]), &strokes)
+        marks_of(passes.chain([&hole.backtrace]), &followed.strokes)
     };
-    Dependencies { reads, marks: extractor.finish().holes.iter().map(marks_of).collect() }
+    let marks = extractor.finish().holes.iter().map(marks_of).collect();
+    Dependencies { reads: followed.reads, marks }
 }
 
-/// Follows the outside values to the holes of the first run, which are found by their blocks and ends: the second run extracts
-/// holes only where these are not enough.
-pub(super) fn of_known_holes(
+/// Follows the outside values to the holes of the first run, which are found by their blocks and ends; `None` if these are not
+/// enough to find a hole.
+fn of_known_holes(second: SecondRun<'_>, holes: &[DrilledHole]) -> Option<Dependencies> {
+    let (followed, passes) = second.follow(PassStrokes::new(holes));
+    let marks = passes.marks_of(holes, &followed.strokes)?;
+    Some(Dependencies { reads: followed.reads, marks })
+}
+
+/// Follows the outside values to the holes of a simulation, while `work` is done beside it.
+pub(super) fn beside<T>(
+    simulation: &Simulation,
     request: &Request,
-    run: &Run,
-    metal: &Metal,
-    holes: &[DrilledHole],
-) -> Dependencies {
-    let Some((reads, passes, strokes)) = follow(request, run, !holes.is_empty(), || PassStrokes::new(holes))
-    else {
-        return Dependencies::default();
+    work: impl FnOnce() -> T,
+) -> (T, Dependencies) {
+    let Simulation { run, metal, extracted } = simulation;
+    let holes = &extracted.holes;
+    let Some(second) = SecondRun::new(request, run, !holes.is_empty()) else {
+        return (work(), Dependencies::default());
     };
-    match passes.marks_of(holes, &strokes) {
-        Some(marks) => Dependencies { reads, marks },
-        None => of_holes(request, run, metal, !holes.is_empty()),
-    }
+    let (done, known) = thread::scope(|scope| {
+        let known = scope.spawn(|| of_known_holes(second, holes));
+        (work(), known.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    });
+    (done, known.unwrap_or_else(|| of_holes(request, run, metal, !holes.is_empty())))
 }
 
 /// Follows the outside values to the passes over flutes.
 pub(super) fn of_flutes(request: &Request, run: &Run, tracker: FluteTracker<'_>) -> Dependencies {
-    let Some((reads, tracker, strokes)) = follow(request, run, true, || tracker) else {
-        return Dependencies::default();
-    };
+    let Some(second) = SecondRun::new(request, run, true) else { return Dependencies::default() };
+    let (followed, tracker) = second.follow(tracker);
     let passes = tracker.finish().passes;
-    Dependencies { reads, marks: passes.iter().map(|pass| marks_of([&pass.backtrace], &strokes)).collect() }
-}
-
-/// Runs the program again into a sink, and returns the outside values, the sink, and the values of each stroke; `None` if the
-/// first run can't have read any. `makes_any` states that there are holes or flutes.
-fn follow<S: EventSink>(
-    request: &Request,
-    run: &Run,
-    makes_any: bool,
-    sink: impl FnOnce() -> S,
-) -> Option<(Vec<OutsideRead>, S, Vec<Marks>)> {
-    if run.control.is_cancelled() || !may_read_outside(request, run, makes_any) {
-        return None;
-    }
-    let mut control = set_up_control(request, run.control.memory().reload()).ok()?;
-    if let Some(progress) = &request.progress {
-        control.set_progress(Arc::clone(progress));
-    }
-    let mut slice = Slice::new(stated_values(request), &request.settings, &request.variables);
-    let mut events = MarkedEvents::new(sink(), slice.motion());
-    control.run_observed(request.limits, &mut NoLibrary, &mut events, &mut slice);
-    // What mills decides as much as what makes a hole.
-    let fed: Marks = events.strokes.iter().copied().collect();
-    let mut reads = slice.into_reads();
-    reads.iter_mut().enumerate().for_each(|(index, read)| read.decides_further_cuts |= fed.contains(index));
-    Some((reads, events.sink, events.strokes))
+    let marks = passes.iter().map(|pass| marks_of([&pass.backtrace], &followed.strokes)).collect();
+    Dependencies { reads: followed.reads, marks }
 }
 
 /// Returns the name of an outside value on the control of a run.
