@@ -86,7 +86,9 @@ impl Repetitions {
             self.has_numbers |= form.has_number && run.is_numbered;
             run.is_numbered = form.has_number;
             let first = *run.first.entry((run.modes, form)).or_insert(start);
-            is_left_out[block] = first != start;
+            // A block that changes the mode stays: the rest would be judged in another one.
+            let keeps_mode = form.code.is_none() || form.code == run.modes.code;
+            is_left_out[block] = keeps_mode && first != start;
             run.last_left_out = None;
             if is_left_out[block] {
                 self.stand_ins.insert((source, first));
@@ -250,9 +252,10 @@ mod tests {
 
     fn block() -> impl Strategy<Value = String> {
         let number = "-?[0-9]{1,2}\\.?[0-9]?";
-        let moves = format!("(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(F[0-9]0\\.?)?");
+        let moves =
+            format!("(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(R{number})?(F[0-9]0\\.?)?");
         let others = "N9999 M9|M30|M99|G81Z-1\\.R1\\.|G80|#1=#2|IF\\[#1EQ#0\\]GOTO[1-4]0|GOTO[1-4]0|M98P2|M98P2Q20|WHILE\\[#1LT2\\]DO1|END1\
-            |G10L52|G11|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|U5\\.|O2|M3M4|M99P20|X#1";
+            |G10L52|G11|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|G40 X1\\.|U5\\.|O2|M3M4|M99P20|X#1";
         let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();
         prop_oneof![6 => of(&moves), 1 => of(others)]
     }

@@ -24,10 +24,19 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
         let calls_by_code = words.call().is_none() && unit.call_in(block).is_some();
-        if calls_by_code || is_plain(context, words) {
+        if calls_by_code {
+            continue;
+        }
+        let motion = motion_of_plain_words(context, words);
+        if matches!(motion, Some(Some(motion)) if !is_arc(motion)) {
             continue;
         }
         let Some(modes) = modes_before(context, unit)[block] else { continue };
+        // Axis words without a code move as the block before them, and an arc needs its radius or centre.
+        if motion.is_some() && modes.in_force().any(|modes| !is_arc(motion.flatten().unwrap_or(modes.motion)))
+        {
+            continue;
+        }
         let alarm = planner.certain_alarm(words, unit.op(block).span, modes.in_force());
         if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node, words)) {
             let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
@@ -59,14 +68,15 @@ fn has_builder_code(context: &CheckContext<'_>, words: &Words) -> bool {
     codes.into_iter().any(|code| m_codes::find(code, context.settings.codes).is_none())
 }
 
-/// Returns true for a block of axis words with the words of a move, which raises no alarm of this rule.
-fn is_plain(context: &CheckContext<'_>, words: &Words) -> bool {
-    let mut is_arc = false;
+/// Returns the motion code, if there is one, of a block of axis words that raises no alarm of this rule unless it is an arc;
+/// `None` for any other block.
+fn motion_of_plain_words(context: &CheckContext<'_>, words: &Words) -> Option<Option<Motion>> {
+    let mut motion = None;
     let mut has_centre = false;
     let is_plain = words.list.iter().all(|word| match word.letter {
         b'G' => context.g_code_row(word).is_some_and(|row| match row.effect {
-            Effect::Motion(motion) => {
-                is_arc = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
+            Effect::Motion(commanded) => {
+                motion = Some(commanded);
                 true
             }
             _ => false,
@@ -77,7 +87,11 @@ fn is_plain(context: &CheckContext<'_>, words: &Words) -> bool {
         }
         letter => !word.comma && (letter == b'F' || context.settings.axes.find(letter).is_some()),
     });
-    is_plain && (!is_arc || has_centre) && words.call().is_none()
+    (is_plain && words.call().is_none()).then_some(if has_centre { Some(Motion::Linear) } else { motion })
+}
+
+fn is_arc(motion: Motion) -> bool {
+    matches!(motion, Motion::Clockwise | Motion::Counterclockwise)
 }
 
 #[cfg(test)]
@@ -114,6 +128,8 @@ mod tests {
     fn modes_of_earlier_blocks_count() {
         assert_eq!(lines(&RULE, "O1\nG81 Z-5. R1. F9.\nX1. K2\nX2. L2\nG80\nM30\n"), [4]);
         assert_eq!(lines(&RULE, "O1\nG81 Z-5. R1. F9.\nG28 Z5.\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\nG2 X5. R5. F9.\nX7.\nG1 X9.\nY3.\nG40 X1.\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\nG2 X5. R5. F9.\nIF[#500 EQ 1]GOTO 5\nG0 Z9.\nN5 X7.\nM30\n"), NOWHERE);
         assert_eq!(
             lines(&RULE, "O1\nG83 Z-5. R1. Q1. F9.\nX1.\nG83 X2.\nM30\n"),
             NOWHERE,
