@@ -124,11 +124,11 @@ impl Planner<'_> {
         match (uses.first, uses.second) {
             (first, None) => Ok(first),
             _ if uses.has_third => self.several_uses(),
-            // G53 is ignored in G91.
+            // G53 is ignored in G91, or its increment is that of the skip move: where no axis is turned, scaled or mirrored.
             (Some(first), Some(second))
                 if first.is_pair_with(second, [skip, machine])
                     && state.modal.distance == Distance::Incremental
-                    && !self.data.settings.undocumented.g53_moves_in_g91 =>
+                    && (!self.data.settings.undocumented.g53_moves_in_g91 || state.transform.is_identity()) =>
             {
                 Ok(Some(skip))
             }

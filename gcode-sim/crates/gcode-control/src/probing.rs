@@ -31,6 +31,10 @@ impl Planner<'_> {
         if self.words.has(b'Q') && !skips_by_torque {
             return Err(self.not_simulated("G31 (torque limit skip)"));
         }
+        if !self.names_axis() {
+            plan.state.skip_position = plan.state.machine_position;
+            return Ok(());
+        }
         let endpoint = self.resolve_endpoint(plan)?;
         self.push_skip(plan, endpoint.machine, None)?;
         plan.state.programmed_position = endpoint.programmed;

@@ -139,6 +139,12 @@ impl FileHead {
         Ok(Head::new(kind, pivot))
     }
 
+    /// Returns true if an axis of the head has a letter.
+    pub(super) fn has_letter(&self, letter: &str) -> bool {
+        let links = self.axis.iter().flatten().map(FileLink::letter);
+        self.letter.iter().chain(links).any(|one| one.as_ref() == letter)
+    }
+
     /// Returns the key `direction` with length 1.
     fn direction(&self, reader: &Reader<'_>) -> Result<Option<Unit<Vector3<f64>>>, FileError> {
         let Some(direction) = &self.direction else { return Ok(None) };

@@ -82,6 +82,10 @@ impl FileLink {
         self.letter.span().start
     }
 
+    pub(super) fn letter(&self) -> &Located<String> {
+        &self.letter
+    }
+
     pub(super) fn check(
         &self,
         reader: &Reader<'_>,

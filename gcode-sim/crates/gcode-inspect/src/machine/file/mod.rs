@@ -130,6 +130,7 @@ impl Machine {
                 }
                 table
             }
+            None if file.head.as_ref().is_some_and(|head| head.has_letter("B")) => Chain::default(),
             None => Chain::default_table(&axes, part.origin),
         };
         let head = match &file.head {
@@ -228,6 +229,15 @@ mod tests {
     fn the_shortest_file_is_the_machine_of_the_paper() {
         let paper = Machine { has_default_table: false, ..Machine::default() };
         assert_eq!(Machine::parse(PAPER).unwrap(), paper);
+    }
+
+    #[test]
+    fn a_head_that_has_b_stands_on_a_machine_without_a_table() {
+        let file = |head: &str| Machine::parse(&format!("[head]\nkind = {head}")).unwrap();
+        let fork = file("\"axes\"\n[[head.axis]]\nletter = \"B\"\nturns = \"y\"\nsign = 1\n");
+        assert!(fork.table.0.is_empty());
+        assert!(file("\"axis\"\nletter = \"B\"\n").table.0.is_empty());
+        assert_eq!(file("\"axis\"\nletter = \"C\"\n").table.0.len(), 1);
     }
 
     #[test]
