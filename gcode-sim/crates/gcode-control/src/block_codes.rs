@@ -128,7 +128,8 @@ impl Planner<'_> {
             (Some(first), Some(second))
                 if first.is_pair_with(second, [skip, machine])
                     && state.modal.distance == Distance::Incremental
-                    && (!self.data.settings.undocumented.g53_moves_in_g91 || state.transform.is_identity()) =>
+                    && (!self.data.settings.undocumented.g53_moves_in_g91
+                        || state.transform.is_identity()) =>
             {
                 Ok(Some(skip))
             }

@@ -4,6 +4,7 @@ use super::super::words::{computed_row, count};
 use super::possible_motion::PossibleMotion;
 use super::{Block, LOCALS, Marks, OutsideValue, Slice};
 use crate::registers::Registers;
+use gcode_lang::motion::SpindleDirection;
 use gcode_lang::program::g_codes::{self, Effect, GCodeRow, OneShot};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::modes::{
@@ -220,11 +221,15 @@ impl Slice {
     fn follow_m_codes(&mut self, block: &Block<'_>, words: &Words, list: &[MarkedWord]) {
         let settings = &block.registers.data.settings;
         let control = self.branches.marks();
+        let mut turns = block.registers.state.spindle != SpindleDirection::Off;
+        let mut stop = None;
         for (word, marked) in words.list.iter().zip(list).filter(|(word, _)| word.letter == b'M') {
             self.follow_other_code(marked.marks);
             let raw = block.registers.without_side_effects(|registers| registers.evaluate_word(words, word));
             let Some(code) = raw.ok().flatten().and_then(|raw| count(raw, b'M').ok()) else { continue };
-            match m_codes::find(code, settings.codes) {
+            let effect = m_codes::find(code, settings.codes);
+            turns |= matches!(effect, Some(MCodeEffect::SpindleForward | MCodeEffect::SpindleReverse));
+            match effect {
                 Some(
                     MCodeEffect::SpindleForward
                     | MCodeEffect::SpindleReverse
@@ -233,14 +238,9 @@ impl Slice {
                 ) => {
                     self.machine.spindle = control | marked.marks;
                 }
-                // The machine builder decides whether the spindle goes on behind a stop.
                 Some(effect @ (MCodeEffect::Stop | MCodeEffect::OptionalStop)) => {
                     let stops = effect == MCodeEffect::Stop || settings.stops_at_m01;
-                    if stops && !settings.undocumented.stop_stops_spindle {
-                        let source = OutsideValue::Auxiliary(code);
-                        let marks = self.outside(source, None, block.flow, block.op);
-                        self.machine.spindle |= marks;
-                    }
+                    stop = stops.then_some(code).or(stop);
                 }
                 Some(MCodeEffect::RigidTapping) => self.machine.spindle |= control | marked.marks,
                 Some(MCodeEffect::ToolChange) => self.machine.tool = self.machine.code(b'T') | control,
@@ -269,6 +269,11 @@ impl Slice {
                 }
                 _ => {}
             }
+        }
+        // The machine builder decides whether a spindle that turns goes on behind a stop.
+        if let Some(code) = stop.filter(|_| turns && !settings.undocumented.stop_stops_spindle) {
+            let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
+            self.machine.spindle |= marks;
         }
     }
 

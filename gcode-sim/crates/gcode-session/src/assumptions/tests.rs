@@ -162,6 +162,13 @@ fn switches_signals_lengths_and_codes_of_the_builder_are_assumptions() {
     // Whether the spindle goes on behind a stop.
     assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM00\nX20.", 2, &["M00=vacant@5: 2"]);
     assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM01\nM03\nX20.", 2, &[]);
+    // Rigid tapping turns the spindle itself; one that stands still before the stop stands still behind it.
+    let tapped =
+        |stop| format!("G81 X10. Y10. Z-5. R2. F100.\nG80\n{stop}\nM29 S500\nG84 X20. Z-5. R2. F500.");
+    assert_assumptions(&tapped("M05\nM01"), 2, &[]);
+    assert_assumptions(&tapped("M09\nM01"), 2, &["M01=vacant@7: 2"]);
+    let restarted = "G81 X10. Y10. Z-5. R2. F100.\nG80\nM05\nM03 M01\nG81 X20. Z-5. R2.";
+    assert_assumptions(restarted, 2, &["M01=vacant@7: 2"]);
     assert_assumptions(
         "G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.",
         2,

@@ -11,8 +11,9 @@ use crate::verify::outline::{CutShape, Outline};
 use gcode_lang::motion::SpindleDirection;
 use gcode_part::{Feature, FeatureKind, Hand, NOISE, POINT_LENGTH};
 
-/// Largest deviation of a milled turn from the pitch, mm.
-const LEAD_TOLERANCE: f64 = 1e-3;
+/// Largest deviation of a milled turn from the pitch, mm: half the least increment in inches, for 1/18 in is commanded as
+/// .0556.
+const LEAD_TOLERANCE: f64 = 0.00127;
 
 /// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
