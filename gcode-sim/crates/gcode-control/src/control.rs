@@ -386,6 +386,11 @@ impl Control {
         self.executor.log.placed_axes
     }
 
+    /// Returns true if a length offset counts behind G53 although a parameter may have cancelled it.
+    pub fn assumes_restored_length(&self) -> bool {
+        self.executor.log.restores_length
+    }
+
     /// Returns the work offsets other than G54 that the run has used before anything set them.
     pub fn unset_work_offsets(&self) -> &[UnsetWorkOffset] {
         &self.executor.log.unset_systems

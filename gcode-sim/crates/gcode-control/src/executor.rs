@@ -67,6 +67,7 @@ impl Executor {
     pub(super) fn commit<S: EventSink>(&mut self, plan: &mut BlockPlan, sink: &mut S) {
         std::mem::swap(&mut self.registers.state, &mut plan.state);
         self.record_work_use(plan.state.modal.work, plan.placed_axes);
+        self.log.restores_length |= plan.restores_length;
         if !plan.commanded_groups.is_empty() {
             self.record_groups(plan.commanded_groups);
         }

@@ -287,6 +287,13 @@ impl Planner<'_> {
         }
         self.place_at_machine_coordinates(plan, positioned);
         self.push_rapid(plan, &to);
+        let settings = &self.data.settings;
+        if self.moves_along_length(plan) {
+            plan.restores_length |= settings.assumes_restored_length();
+            if settings.restores_length == Some(false) {
+                cancel_length(plan);
+            }
+        }
         self.data.recompute_position(&mut plan.state);
         plan.commands_axes = true;
         Ok(())
@@ -330,12 +337,18 @@ impl Planner<'_> {
         self.place_at_machine_coordinates(plan, named);
         self.push_rapid(plan, &home);
         // The length offset is cancelled where its axis reaches the reference position.
-        let z = self.data.settings.axes.find(b'Z');
-        if z.is_some() && self.words.has(b'Z') && plan.state.modal.length != Length::Off {
+        if self.data.settings.restores_length != Some(true) && self.moves_along_length(plan) {
             cancel_length(plan);
         }
         self.data.recompute_position(&mut plan.state);
         Ok(())
+    }
+
+    /// Returns true if G28, G30 or G53 moves the axis of the length offset: that cancels it (operator's manual, "G53, G28, and
+    /// G30 commands in tool length offset mode").
+    fn moves_along_length(&self, plan: &BlockPlan) -> bool {
+        let z = self.data.settings.axes.find(b'Z');
+        z.is_some() && self.words.has(b'Z') && plan.state.modal.length != Length::Off
     }
 
     /// G28 of a Haas without an axis: all axes go straight home, and the length offset is cancelled.

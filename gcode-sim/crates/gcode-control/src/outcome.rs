@@ -171,6 +171,8 @@ pub(super) struct RunLog {
     pub(super) unset_systems: Vec<UnsetWorkOffset>,
     /// Axes that blocks have placed in work coordinates, as bits.
     pub(super) placed_axes: u8,
+    /// A length offset counts behind G53 although a parameter may have cancelled it.
+    pub(super) restores_length: bool,
     /// Modal groups that a block has commanded, without group 01.
     pub(super) commanded_groups: GroupSet,
     /// Those that a move preceded, or a canned cycle G98 and G99.

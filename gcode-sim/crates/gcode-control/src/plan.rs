@@ -39,6 +39,8 @@ pub(super) struct BlockPlan {
     pub(super) commands_axes: bool,
     /// Axes, as bits, that the block sends to coordinates of the active work coordinate system.
     pub(super) placed_axes: u8,
+    /// True if a length offset counts behind G53 although a parameter may have cancelled it.
+    pub(super) restores_length: bool,
     /// In the order of their M codes.
     pub(super) stops: Vec<StopKind>,
     /// M codes for the machine builder's logic.
@@ -210,6 +212,7 @@ impl BlockPlan {
             commanded_groups,
             commands_axes,
             placed_axes,
+            restores_length,
             stops,
             builder_m_codes,
             notes,
@@ -218,6 +221,7 @@ impl BlockPlan {
         **state = *start;
         (*skip_plan, *cycle_plan, *corner, *flow) = (None, None, None, BlockFlow::Next);
         (*uses_lookahead, *commands_axes, *placed_axes) = (false, false, 0);
+        *restores_length = false;
         *commanded_groups = GroupSet::default();
         events.clear();
         events_after_motion.clear();

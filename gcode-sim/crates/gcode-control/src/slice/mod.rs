@@ -51,6 +51,8 @@ pub enum OutsideValue {
     CutterRadius(u32),
     /// Setting 40 of a Haas, ODI: an offset that the program sets is a radius or a diameter.
     DiameterOffsets,
+    /// EVO 5001#6: the length offset counts behind G53 from the next block, or from the next H.
+    RestoredLength,
     /// Position at which the skip signal of G31 comes.
     SkipSignal,
     /// M code of the machine builder.
@@ -74,6 +76,7 @@ impl OutsideValue {
             Self::ToolLength(number) => format!("H{number}"),
             Self::CutterRadius(number) => format!("D{number}"),
             Self::DiameterOffsets => "ODI".to_owned(),
+            Self::RestoredLength => "EVO".to_owned(),
             Self::SkipSignal => "G31".to_owned(),
             Self::Auxiliary(code) => format!("M{code:02}"),
             Self::PowerOnMode(code) => name(code),
@@ -138,6 +141,8 @@ pub struct Slice {
     /// Values that decide whether the run cuts elsewhere.
     further: Marks,
     motion: Rc<Cell<Marks>>,
+    /// Values that decide the length offset behind the block, not in it.
+    length_behind_block: Marks,
     /// Marks of a motion from or to the position behind the last block.
     machine_motion: Marks,
     /// Marks of moves that wait for the next one.
@@ -338,6 +343,7 @@ impl Observer for Slice {
     }
 
     fn after_block(&mut self, control: &Control) {
+        self.machine.length |= std::mem::take(&mut self.length_behind_block);
         let level = control.vars().level();
         while level < self.variables.level() {
             self.variables.pop_level();

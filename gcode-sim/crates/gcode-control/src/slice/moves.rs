@@ -6,7 +6,7 @@ use super::{Block, Marks, OutsideValue, Slice};
 use gcode_lang::control::Settings;
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes::{MeasuringCode, OneShot};
-use gcode_lang::program::modes::{Distance, ModalGroup, Motion, Plane, Polar, WorkSystem};
+use gcode_lang::program::modes::{Distance, Length, ModalGroup, Motion, Plane, Polar, WorkSystem};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 
 /// Returns true if a canned cycle can drill along the axis of this letter.
@@ -33,6 +33,25 @@ struct CycleWords {
 }
 
 impl Slice {
+    /// Follows the length offset where G28, G30 or G53 moves its axis and so may cancel it.
+    fn follow_cancelled_length(&mut self, block: &Block<'_>, list: &[MarkedWord], modes: &BlockModes) {
+        let is_on_machine = modes.one_shot == Some(OneShot::MachineCoordinateSystem);
+        let is_home = matches!(modes.one_shot, Some(OneShot::Reference | OneShot::SecondReference));
+        let is_along_tool = list.iter().any(|word| word.letter == b'Z') && modes.length != Length::Off;
+        if !is_along_tool || !is_on_machine && !is_home {
+            return;
+        }
+        let undocumented = &block.registers.data.settings.undocumented;
+        if is_on_machine && modes.distance == Distance::Incremental && !undocumented.g53_moves_in_g91 {
+            return;
+        }
+        self.machine.length |= self.branches.marks();
+        if is_on_machine && block.registers.data.settings.assumes_restored_length() {
+            let marks = self.outside(OutsideValue::RestoredLength, Some(1.0), block.flow, block.op);
+            self.length_behind_block = marks;
+        }
+    }
+
     pub(super) fn follow_axes(&mut self, block: &Block<'_>, list: &[MarkedWord], modes: &BlockModes) {
         let settings = &block.registers.data.settings;
         let axes = &settings.axes;
@@ -42,6 +61,7 @@ impl Slice {
         if block.registers.state.is_in_parameter_input {
             self.machine.rest |= others | control;
         }
+        self.follow_cancelled_length(block, list, modes);
         match modes.one_shot {
             None | Some(OneShot::SingleDirection | OneShot::Skip | OneShot::Measure(_)) => {
                 let repeats = list.iter().find(|word| word.letter == b'L').filter(|_| settings.repeats_moves);

@@ -33,7 +33,7 @@ pub(super) struct BlockModes {
     pub(super) motion: Motion,
     pub(super) plane: Plane,
     pub(super) distance: Distance,
-    length: Length,
+    pub(super) length: Length,
     pub(super) cutter: CutterSide,
     /// G16 or G68 is in force or begins.
     pub(super) uses_plane: bool,

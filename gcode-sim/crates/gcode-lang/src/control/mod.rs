@@ -280,6 +280,9 @@ with_defaults! {
         pub offsets_are_diameters: Option<bool> = None,
         /// OFH 5001#2: the offset of G45 to G48 is that of H, not of D.
         pub tool_offset_is_h: bool = false,
+        /// EVO 5001#6: the length offset that G28, G30 and G53 cancel counts again from the next block, not from the next H, G43
+        /// or G44. If nothing states it, it does so behind G53 alone, as on a Haas.
+        pub restores_length: Option<bool> = None,
         /// EVR 5001#4: a changed offset of D applies from the next block, not from the next D.
         pub applies_radius_at_once: bool = false,
         /// SUP 5003#0: cutter compensation starts and ends by type B.
@@ -415,6 +418,11 @@ impl Settings {
     /// Returns true if the offsets of D are diameters.
     pub fn has_diameter_offsets(&self) -> bool {
         self.offsets_are_diameters == Some(true)
+    }
+
+    /// Returns true if a length offset counts behind G53 although a parameter may have cancelled it; a Haas has none.
+    pub fn assumes_restored_length(&self) -> bool {
+        self.restores_length.is_none() && self.codes != Dialect::HaasNgc
     }
 
     /// Returns true if the offsets of D count as radii although an operator may set the control to diameters: setting 40 of a

@@ -87,6 +87,7 @@ const ROWS: &[ParameterRow] = &[
     length_row(3410, ParameterAccess::Key("3410", |s| s.arc_tolerance)),
     bit_row(5001, 2, ParameterAccess::Key("OFH", |s| f64::from(s.tool_offset_is_h))),
     bit_row(5001, 4, ParameterAccess::Key("EVR", |s| f64::from(s.applies_radius_at_once))),
+    bit_row(5001, 6, ParameterAccess::Key("EVO", |s| f64::from(s.restores_length == Some(true)))),
     bit_row(5003, 0, ParameterAccess::Key("SUP", |s| f64::from(s.starts_up_by_type_b))),
     bit_row(5004, 2, ParameterAccess::Key("ODI", |s| f64::from(s.has_diameter_offsets()))),
     bit_row(5101, 0, ParameterAccess::Key("FXY", |s| f64::from(s.drills_by_plane))),

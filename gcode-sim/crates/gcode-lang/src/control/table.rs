@@ -217,6 +217,7 @@ const DOCUMENTED: &[SettingRow] = &[
     whole!("PRINT-DIGITS", "the most digits that DPRNT's format allows", 1, 18, |s, v| s.print_digits = v),
     switch!("ODI", "5004#2, setting 40 of a Haas: the offsets of D are diameters", |s, on| s.offsets_are_diameters = Some(on)),
     switch!("OFH", "5001#2: the offset of G45 to G48 is that of H, not of D", tool_offset_is_h),
+    switch!("EVO", "5001#6: a length offset that G28, G30 and G53 cancel counts again from the next block", |s, on| s.restores_length = Some(on)),
     switch!("EVR", "5001#4: a changed offset of D applies from the next block", applies_radius_at_once),
     switch!("SUP", "5003#0: cutter compensation starts and ends by type B", starts_up_by_type_b),
     whole!("19625", "blocks of lookahead in cutter compensation", 3, 8, |s, v| s.lookahead_blocks = v),

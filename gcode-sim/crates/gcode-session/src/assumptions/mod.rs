@@ -204,6 +204,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
                 || stated.work_systems.values().any(|axes| control.placed_axes() & !axes != 0)
                 || is_code_unknown()
                 || may_keep_spindle()
+                || control.assumes_restored_length()
                 || takes_power_on_modes())
         || control
             .memory()

@@ -169,6 +169,13 @@ fn switches_signals_lengths_and_codes_of_the_builder_are_assumptions() {
     assert_assumptions(&tapped("M09\nM01"), 2, &["M01=vacant@7: 2"]);
     let restarted = "G81 X10. Y10. Z-5. R2. F100.\nG80\nM05\nM03 M01\nG81 X20. Z-5. R2.";
     assert_assumptions(restarted, 2, &["M01=vacant@7: 2"]);
+    // The length counts behind G53 or not; G43 states it again, and X has none.
+    let retracted = |by| {
+        format!("#11001=0\n#10001=0\nG43 H1 Z50.\nG81 X10. Y10. Z-5. R2. F100.\nG80\n{by}\nG81 X20. Z-5. R2.")
+    };
+    assert_assumptions(&retracted("G53 Z0"), 2, &["EVO=1@9: 2"]);
+    assert_assumptions(&retracted("G53 Z0\nG43 H1 Z50."), 2, &[]);
+    assert_assumptions(&retracted("G53 X0"), 2, &[]);
     assert_assumptions(
         "G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.",
         2,
