@@ -20,7 +20,11 @@ pub(crate) fn modes_before<'u>(
 
 fn propagated_modes(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<PossibleModes>> {
     // Any block may precede the start of a call, also of one with Q.
-    let first = if unit.role == Role::Main { PossibleModes::POWER_ON } else { PossibleModes::ANYTHING };
+    let first = match (&unit.piece, unit.role) {
+        (Some(piece), _) => piece.start.modes,
+        (None, Role::Main) => PossibleModes::POWER_ON,
+        (None, Role::Called | Role::Resident) => PossibleModes::ANYTHING,
+    };
     let entries = std::iter::once(first).chain(std::iter::repeat(PossibleModes::ANYTHING));
     let starts = unit.entry_blocks.iter().copied().zip(entries);
     let next = |block: OpIndex, before: &PossibleModes, open: &mut Vec<_>| {

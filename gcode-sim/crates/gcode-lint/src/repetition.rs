@@ -113,6 +113,11 @@ impl Repetitions {
         }
     }
 
+    /// Returns true if a block within a run has a sequence number.
+    pub(super) fn has_numbers(&self) -> bool {
+        self.has_numbers
+    }
+
     /// Returns true if one of the blocks that stand for others has a finding.
     pub(super) fn stand_for_found(&self, findings: &[Diagnostic]) -> bool {
         findings.iter().any(|finding| {

@@ -16,9 +16,10 @@ use super::control_flow::raises_alarm;
 pub(crate) use super::locals::{ANY_VALUE, Locals, NUMBER, States, UNSET, VACANT};
 use super::{literal, variables};
 
-/// Returns the states of a program whose locals are all unset at its first block.
+/// Returns the states of a program whose locals are all unset at its first block; of a piece those that its start has.
 pub(crate) fn states_without_arguments<'u>(unit: &'u ProgramUnit<'_>) -> &'u States {
-    unit.states_without_arguments.get_or_init(|| states(unit, Locals::UNSET))
+    let start = unit.piece.as_ref().map_or(Locals::UNSET, |piece| piece.start.locals);
+    unit.states_without_arguments.get_or_init(|| states(unit, start))
 }
 
 /// Computes the states of a program whose locals are `entry` at its first block.
