@@ -124,11 +124,10 @@ impl Planner<'_> {
         match (uses.first, uses.second) {
             (first, None) => Ok(first),
             _ if uses.has_third => self.several_uses(),
-            // G53 is ignored in G91.
+            // In G91 an increment is the same in machine coordinates, and G53 alone would move nothing.
             (Some(first), Some(second))
                 if first.is_pair_with(second, [skip, machine])
-                    && state.modal.distance == Distance::Incremental
-                    && !self.data.settings.undocumented.g53_moves_in_g91 =>
+                    && state.modal.distance == Distance::Incremental =>
             {
                 Ok(Some(skip))
             }

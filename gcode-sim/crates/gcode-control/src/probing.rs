@@ -10,7 +10,7 @@ use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::m_codes::{self, MCodeEffect, SkipAlarm};
 use gcode_lang::program::modes::CutterSide;
-use gcode_lang::units::Seconds;
+use gcode_lang::units::{MmPerMin, Seconds};
 
 impl Planner<'_> {
     /// G31: plans a straight cut to its end point. [`Registers::resolve_skip_signal`] shortens it when the rest of the block
@@ -48,8 +48,12 @@ impl Planner<'_> {
             return Err(Alarm::SkipInCompensation.located_at(self.block));
         }
         let from = plan.state.machine_position;
-        let (rate, seconds) =
-            self.locate(self.data.feed_seconds(&plan.state, &from, &to, self.words.has(b'F')))?;
+        let timed = self.data.feed_seconds(&plan.state, &from, &to, self.words.has(b'F'));
+        // Without an axis there is no cut that needs a feed.
+        let (rate, seconds) = match timed {
+            Err(Alarm::FeedZero) if !self.names_axis() => (MmPerMin(0.0), 0.0),
+            timed => self.locate(timed)?,
+        };
         plan.skip_plan = Some(SkipPlan {
             event: plan.events.len(),
             from,

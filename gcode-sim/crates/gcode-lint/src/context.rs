@@ -99,6 +99,8 @@ pub(crate) struct ProgramUnit<'a> {
     pub is_reached: Vec<bool>,
     /// True if a path leads beyond the last block.
     pub reaches_end: bool,
+    /// True for each target behind a piece to which a reachable block jumps.
+    pub reached_far: Vec<bool>,
     pub role: Role,
     /// Modes before each block, see `modes`.
     pub modes: OnceLock<Vec<Option<PossibleModes>>>,
@@ -187,6 +189,9 @@ impl<'a> CheckContext<'a> {
         for unit in &mut self.units {
             unit.role = unit.piece.as_ref().map_or_else(|| unit.determine_role(), |piece| piece.role);
             unit.is_reached = unit.flow.reachable(&unit.entry_blocks);
+            let far = unit.flow.far_nodes();
+            unit.reached_far = unit.is_reached[far].to_vec();
+            unit.is_reached.truncate(unit.program.ops().len() + 1);
             unit.reaches_end = unit.is_reached.pop().unwrap_or_default();
         }
     }
@@ -295,18 +300,21 @@ fn written_alarm(kind: &OpKind) -> Option<&LocatedAlarm> {
 impl<'a> ProgramUnit<'a> {
     fn new(memory: &'a Memory, LoadedProgram { id, blocks, marks, calls, piece }: LoadedProgram) -> Self {
         let program = memory.get(id);
+        let far_jumps = piece.as_ref().map_or(&[][..], |piece| &piece.far_jumps);
+        let entries = piece.iter().flat_map(|piece| &piece.entries).map(|entry| entry.block);
         Self {
             id,
             reads: blocks.iter().map(|_| OnceLock::new()).collect(),
             blocks,
             marks,
             new_marks: OnceLock::new(),
-            flow: ControlFlowGraph::new(program),
+            flow: ControlFlowGraph::new(program, far_jumps),
             calls,
             callers: Vec::new(),
-            entry_blocks: vec![0],
+            entry_blocks: std::iter::once(0).chain(entries).collect(),
             is_reached: Vec::new(),
             reaches_end: false,
+            reached_far: Vec::new(),
             role: Role::Main,
             modes: OnceLock::new(),
             components: OnceLock::new(),

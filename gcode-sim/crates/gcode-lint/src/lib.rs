@@ -61,6 +61,7 @@ use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::KnownBlocks;
 use loader::Loader;
 use pieces::PieceSizes;
+use repetition::Repetitions;
 pub use variables::variables_read;
 
 /// Result of a check: the findings and the texts they refer to.
@@ -142,14 +143,14 @@ fn check_sized(
 ) -> CheckResult {
     let mut loader = Loader::new(&mut memory, control.0, library);
     loader.load_found(&mut known, sizes.whole);
+    if loader.may_numbers_matter() {
+        loader.restore(sizes.whole);
+    }
     if let Some((findings, programs)) = check_in_pieces(&mut loader, control.1, sizes) {
         return CheckResult { programs, memory, findings, blocks: CheckedBlocks::default() };
     }
     loader.load_long(&mut known);
-    let Loader { mut repetitions, loaded: mut units, .. } = loader;
-    if repetitions.may_numbers_matter(&memory, units.iter().map(|unit| unit.id)) {
-        std::mem::take(&mut repetitions).restore(&mut memory, control.0, &mut units);
-    }
+    let Loader { mut repetitions, loaded: units, .. } = loader;
     let mut context = CheckContext::new(&memory, control, units, rules::codes());
     for unit in &mut context.units {
         unit.left_out_numbers = repetitions.take_numbers(unit.id);
@@ -157,6 +158,15 @@ fn check_sized(
     let mut findings = rules::findings(&context);
     let mut units = context.into_loaded();
     if repetitions.stand_for_found(&findings) {
+        if repetitions.has_program_of(sizes.whole + 1) {
+            let mut loader = Loader::of_loaded(&mut memory, control.0, library, (repetitions, units));
+            loader.restore(sizes.whole);
+            if let Some((findings, programs)) = check_in_pieces(&mut loader, control.1, sizes) {
+                return CheckResult { programs, memory, findings, blocks: CheckedBlocks::default() };
+            }
+            loader.load_long(&mut known);
+            (repetitions, units) = (Repetitions::default(), loader.loaded);
+        }
         repetitions.restore(&mut memory, control.0, &mut units);
         let context = CheckContext::new(&memory, control, units, rules::codes());
         findings = rules::findings(&context);
@@ -176,17 +186,13 @@ fn check_in_pieces<L: Library>(
     if loader.long.is_empty() {
         return None;
     }
-    let restore = |loader: &mut Loader<'_, L>| {
-        let repetitions = std::mem::take(&mut loader.repetitions);
-        repetitions.restore(loader.memory, loader.settings, &mut loader.loaded);
-    };
     // The numbers of moves that are left out are not known to the pieces.
     if loader.repetitions.has_numbers() {
-        restore(loader);
+        loader.restore(sizes.whole);
     }
     let mut findings = pieces::findings(loader, knowledge, sizes)?;
     if loader.repetitions.stand_for_found(&findings) {
-        restore(loader);
+        loader.restore(sizes.whole);
         findings = pieces::findings(loader, knowledge, sizes)?;
     }
     Some((findings, loader.loaded.len() + loader.long.len()))

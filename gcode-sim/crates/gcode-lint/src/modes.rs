@@ -25,7 +25,8 @@ fn propagated_modes(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<O
         (None, Role::Main) => PossibleModes::POWER_ON,
         (None, Role::Called | Role::Resident) => PossibleModes::ANYTHING,
     };
-    let entries = std::iter::once(first).chain(std::iter::repeat(PossibleModes::ANYTHING));
+    let far = unit.piece.iter().flat_map(|piece| &piece.entries).map(|entry| entry.modes);
+    let entries = std::iter::once(first).chain(far).chain(std::iter::repeat(PossibleModes::ANYTHING));
     let starts = unit.entry_blocks.iter().copied().zip(entries);
     let next = |block: OpIndex, before: &PossibleModes, open: &mut Vec<_>| {
         let is_block = block < unit.program.ops().len();

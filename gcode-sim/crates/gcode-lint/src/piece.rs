@@ -1,4 +1,5 @@
 //! Piece of a long program: consecutive blocks that control enters at the first and leaves behind the last.
+use gcode_lang::program::OpIndex;
 use gcode_lang::source::Span;
 
 use super::context::Role;
@@ -11,8 +12,34 @@ pub(crate) struct Piece {
     /// Role of the whole program.
     pub role: Role,
     pub start: PieceStart,
+    /// Blocks to which jumps of earlier pieces lead.
+    pub entries: Vec<PieceEntry>,
+    /// Blocks that jump behind the piece, each with the index of its target.
+    pub far_jumps: Vec<(OpIndex, usize)>,
     pub is_first: bool,
     pub is_last: bool,
+}
+
+/// Block to which jumps of earlier pieces lead, with the states that they bring.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PieceEntry {
+    pub block: OpIndex,
+    pub modes: PossibleModes,
+    /// States of the locals; `None` if the conditions of these jumps are never true.
+    pub locals: Option<Locals>,
+    pub pending_move: Option<Span>,
+}
+
+impl PieceEntry {
+    /// Adds the states of another jump to the same block.
+    pub(super) fn join(&mut self, other: Self) {
+        self.modes = self.modes.join(other.modes);
+        match (&mut self.locals, other.locals) {
+            (Some(mine), Some(others)) => mine.join(others),
+            (mine, others) => *mine = mine.or(others),
+        }
+        self.pending_move = self.pending_move.or(other.pending_move);
+    }
 }
 
 /// State before the first block of a piece.

@@ -4,7 +4,7 @@
 //! What the analyses know at its end is the start of the next piece. Where this does not hold (a jump over many blocks, a
 //! computed GOTO to numbers elsewhere, a modal macro), or a finding rests on the whole program, the program is checked as a
 //! whole.
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use gcode_lang::diag::Diagnostic;
@@ -17,11 +17,15 @@ use super::context::{CheckContext, LoadedProgram, MACROS, ProgramUnit, Role};
 use super::control_flow::ControlFlowGraph;
 use super::literal;
 use super::loader::Loader;
+use super::locals::Locals;
 use super::modes::modes_before;
 use super::parameters::has_open_parameter_input;
-use super::piece::{Piece, PieceStart};
-use super::rules::{self, doubled_numbers, is_in_inch, limits_lookahead, pending_moves, sequence_numbers};
+use super::piece::{Piece, PieceEntry, PieceStart};
+use super::rules::{
+    self, alarming_cancel, doubled_numbers, is_in_inch, limits_lookahead, pending_moves, sequence_numbers,
+};
 use super::suppression::{Suppression, suppressions};
+use super::unset_reads::entry_locals;
 use super::vacancy::states_without_arguments;
 
 /// Numbers of blocks that decide how a program is checked.
@@ -42,6 +46,9 @@ impl PieceSizes {
 /// Number of windows in which the end of a piece is sought.
 const MAX_WINDOWS: usize = 20;
 
+/// Most blocks behind a piece to which its jumps lead: mostly they are the ends and the alarms of a program.
+const MAX_FAR_TARGETS: usize = 200;
+
 /// What the pieces of a program have in common so far.
 #[derive(Default)]
 struct WholeProgram {
@@ -49,8 +56,9 @@ struct WholeProgram {
     suppressions: Vec<Suppression>,
     numbers: Vec<(u32, Span)>,
     jumps: BTreeSet<u32>,
-    /// Blocks of calls.
+    /// Blocks of calls: of those of the programs that are here one of each form.
     calls: Vec<OpIndex>,
+    known_calls: BTreeSet<(ProgramId, bool, Locals)>,
     returns: bool,
     ends: bool,
     has_exit: bool,
@@ -155,13 +163,21 @@ fn findings_as<L: Library>(
     let mut found = WholeProgram::default();
     let mut start = PieceStart::of_program(role);
     let mut first = 0;
+    let mut far: BTreeMap<OpIndex, PieceEntry> = BTreeMap::new();
     while first < whole.block_count() {
         let end = piece_end(loader.memory, (id, whole), first, sizes).ok_or(NotInPieces)?;
         let is_last = end == whole.block_count();
         loader.memory.replace(id, whole.part(first..end));
         let mut none = KnownBlocks::default();
         let mut program = LoadedProgram::new(loader.memory, id, &mut none, loader.settings);
-        program.piece = Some(Piece { role, start, is_first: first == 0, is_last });
+        let behind = far.split_off(&end);
+        let entries = std::mem::replace(&mut far, behind).into_iter();
+        let entries = entries.map(|(target, entry)| PieceEntry { block: target - first, ..entry }).collect();
+        let (targets, far_jumps) = far_jumps(loader.memory.get(id), (whole, first..end));
+        if MAX_FAR_TARGETS < targets.len() || targets.iter().any(|target| whole.is_in_loop(*target)) {
+            return Err(NotInPieces);
+        }
+        program.piece = Some(Piece { role, start, entries, far_jumps, is_first: first == 0, is_last });
         loader.find_called(id, &program.calls);
         loader.load_found(&mut none, usize::MAX);
         // The piece is the last unit.
@@ -169,7 +185,11 @@ fn findings_as<L: Library>(
         units.push(program);
         let context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
         let result = match context.units.last() {
-            Some(unit) => found.add(&context, unit, (whole, first..end), &loader.long),
+            Some(unit) => found.add(&context, unit, (whole, first..end), &loader.long).inspect(|_| {
+                for (target, entry) in far_entries(&context, unit, &targets) {
+                    far.entry(target).and_modify(|known| known.join(entry)).or_insert(entry);
+                }
+            }),
             None => Err(NotInPieces),
         };
         loader.loaded = context.into_loaded();
@@ -218,7 +238,14 @@ impl WholeProgram {
         self.suppressions.extend(suppressions(unit));
         self.numbers.extend(sequence_numbers(unit));
         self.jumps.extend(unit.flow.jumps.iter().filter(|jump| !jump.is_return).map(|jump| jump.number));
-        self.calls.extend(unit.calls.iter().map(|call| blocks.start + call.block));
+        // What a called program knows of its calls is their arguments.
+        for call in &unit.calls {
+            let is_new = context.called_unit(call).is_none_or(|called| {
+                let form = (context.units[called].id, call.has_own_locals, entry_locals(call));
+                self.known_calls.insert(form)
+            });
+            self.calls.extend(is_new.then_some(blocks.start + call.block));
+        }
         if is_last {
             return Ok(PieceStart::of_program(unit.role));
         }
@@ -232,6 +259,44 @@ impl WholeProgram {
             },
         })
     }
+}
+
+/// Returns the blocks behind a piece to which it jumps, and the blocks that do, each with the index of its target.
+fn far_jumps(
+    part: &Program,
+    (whole, blocks): (&Program, Range<OpIndex>),
+) -> (Vec<OpIndex>, Vec<(OpIndex, usize)>) {
+    let mut targets = Vec::new();
+    let mut jumps = Vec::new();
+    for jump in ControlFlowGraph::new(part, &[]).jumps.iter().filter(|jump| !jump.is_return) {
+        let target = whole.find_number(jump.number, blocks.start + jump.block + 1);
+        let Some(target) = target.filter(|target| blocks.end <= *target) else { continue };
+        let place = targets.iter().position(|known| *known == target).unwrap_or_else(|| {
+            targets.push(target);
+            targets.len() - 1
+        });
+        jumps.push((jump.block, place));
+    }
+    (targets, jumps)
+}
+
+/// Returns the states that the jumps of a piece bring to blocks behind it.
+fn far_entries(
+    context: &CheckContext<'_>,
+    unit: &ProgramUnit<'_>,
+    targets: &[OpIndex],
+) -> Vec<(OpIndex, PieceEntry)> {
+    let (modes, locals) = (modes_before(context, unit), states_without_arguments(unit));
+    let pending = if limits_lookahead(context, unit) { Vec::new() } else { pending_moves(context, unit) };
+    let nodes = unit.flow.far_nodes().zip(targets).zip(&unit.reached_far);
+    let entries = nodes.filter(|(_, is_reached)| **is_reached).filter_map(|((node, target), _)| {
+        let pending_move = pending.get(node).copied().flatten().flatten();
+        Some((
+            *target,
+            PieceEntry { block: *target, modes: modes[node]?, locals: locals[node], pending_move },
+        ))
+    });
+    entries.collect()
 }
 
 /// Returns true for a finding, or the lack of one, that the other blocks of a program decide too.
@@ -248,7 +313,7 @@ fn leads_elsewhere(
     long: &[ProgramId],
 ) -> bool {
     let is_outside = |to: OpIndex| !blocks.contains(&to) || to == blocks.start && to != 0;
-    let leads_out = unit.flow.jumps.iter().any(|jump| {
+    let leads_out = unit.flow.jumps.iter().filter(|jump| !jump.is_far).any(|jump| {
         let from = if jump.is_return { 0 } else { blocks.start + jump.block + 1 };
         let targets = [whole.find_number(jump.number, from), whole.find_number(jump.number, 0)];
         let targets = if jump.is_return { &targets[..] } else { &targets[..1] };
@@ -267,9 +332,11 @@ fn leads_elsewhere(
     leads_out
         || is_computed && whole.has_number_outside(blocks)
         || unit.reached_words().any(|(_, words)| words.list.iter().any(calls_own_blocks))
+        // A macro that is called modally elsewhere makes it right.
+        || unit.reached_words().any(|(_, words)| alarming_cancel(context, words).is_some())
         || context.units.iter().flat_map(|unit| &unit.calls).any(calls_long)
         || !unit.callers.is_empty()
-        || 1 < unit.entry_blocks.len()
+        || unit.entry_blocks.len() != 1 + unit.piece.as_ref().map_or(0, |piece| piece.entries.len())
         || others.iter().any(|other| other.flow.jumps.iter().any(|jump| jump.is_return))
         || has_open_parameter_input(unit.program)
 }
@@ -319,11 +386,15 @@ fn crossed_places(
             )
         })
         .collect();
-    for jump in ControlFlowGraph::new(part).jumps {
+    for jump in ControlFlowGraph::new(part, &[]).jumps {
         let from = blocks.start + jump.block;
         let Some(to) = whole.find_number(jump.number, if jump.is_return { 0 } else { from + 1 }) else {
             continue;
         };
+        // A piece may jump to one far behind it.
+        if blocks.end <= to {
+            continue;
+        }
         // The first block of a piece may be no target either.
         let across = if from < to { from + 1..to + 1 } else { to..from + 1 };
         let (start, end) = (across.start.max(blocks.start), across.end.min(blocks.end));
@@ -382,6 +453,9 @@ mod tests {
              #102=1\n#102=2\nM30\n",
             "O1(CHECK-OFF UNSET-VARIABLE)\n#101=1\n#101=#1\n#101=2\n#101=#2\n#101=#3\nG1X1.\n#101=2\nN1\nN1\nM30\n",
             "O1\n#101=1\n#101=2\n#101=3\n#101=2\nG65P2A1.\n#101=2\n#101=2\nG65P2B1.\n#101=2\nM30\nO2\nX#3\nM99\n",
+            "O1\n#101=1\n#101=2\nIF[#2EQ#0]GOTO90\n#101=#1\n#2=1\n#101=2\nX1.\nIF[#101EQ5.]GOTO90\n#101=2\n#101=2\nM30\n\
+             N90#101=#2\n#101=1\n#101=1\n#101=1\nM30\n",
+            "O1\nG1\n#101=1\n#101=2\nIF[#102EQ1]GOTO90\n#101=2\nF9.\n#101=2\n#101=2\n#101=2\n#101=2\nN90X5.\n#101=2\nM30\n",
             "O9001\n#101=1\n#101=2\n#101=3\n#101=#1\n#101=2\n#101=2\nX1.\n#101=2\n#101=2\nM99\n",
         ] {
             let found = in_pieces(text);

@@ -113,6 +113,29 @@ impl Repetitions {
         }
     }
 
+    /// Returns true if moves of a program with so many blocks are left out.
+    pub(super) fn has_program_of(&self, blocks: usize) -> bool {
+        self.programs.iter().any(|(_, whole)| blocks <= whole.block_count())
+    }
+
+    /// Puts the programs back that have more than `max_blocks` blocks and that `is_one` accepts. Returns them.
+    pub(super) fn restore_long(
+        &mut self,
+        memory: &mut Memory,
+        max_blocks: usize,
+        is_one: impl Fn(ProgramId) -> bool,
+    ) -> Vec<ProgramId> {
+        let is_long = |(id, whole): &(ProgramId, Program)| max_blocks < whole.block_count() && is_one(*id);
+        let (long, others) = std::mem::take(&mut self.programs).into_iter().partition(is_long);
+        self.programs = others;
+        let long: Vec<(ProgramId, Program)> = long;
+        let put_back = |(id, whole)| {
+            memory.replace(id, whole);
+            id
+        };
+        long.into_iter().map(put_back).collect()
+    }
+
     /// Returns true if a block within a run has a sequence number.
     pub(super) fn has_numbers(&self) -> bool {
         self.has_numbers

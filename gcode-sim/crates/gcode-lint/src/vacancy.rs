@@ -25,8 +25,10 @@ pub(crate) fn states_without_arguments<'u>(unit: &'u ProgramUnit<'_>) -> &'u Sta
 /// Computes the states of a program whose locals are `entry` at its first block.
 pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
     // A call that starts at another block brings its own locals.
-    let entries = std::iter::once(entry).chain(std::iter::repeat(Locals::ANYTHING));
-    let starts = unit.entry_blocks.iter().copied().zip(entries);
+    let far = unit.piece.iter().flat_map(|piece| &piece.entries).map(|entry| entry.locals);
+    let entries = std::iter::once(Some(entry)).chain(far).chain(std::iter::repeat(Some(Locals::ANYTHING)));
+    let starts = unit.entry_blocks.iter().zip(entries);
+    let starts = starts.filter_map(|(block, locals)| Some((*block, locals?)));
     unit.flow.propagate(starts, Locals::join, |block, state, open| steps(unit, block, state, open))
 }
 

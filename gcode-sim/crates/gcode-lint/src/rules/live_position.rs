@@ -83,7 +83,7 @@ pub(crate) fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) 
             None => op.and_then(|op| move_effect(context, op.kind())),
         };
         // A computed jump may lead from elsewhere.
-        let is_computed = unit.program.ops().len() < block;
+        let is_computed = unit.program.ops().len() + 1 == block;
         let after = match after {
             _ if is_computed => None,
             Some(true) => op.map(|op| op.span),
@@ -94,7 +94,9 @@ pub(crate) fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) 
         open.extend(unit.flow.successors(block).map(|to| (to, after)).chain(skipped));
     };
     let start = unit.piece.as_ref().and_then(|piece| piece.start.pending_move);
-    unit.flow.propagate([(0, start)], |known, other| *known = known.or(other), next)
+    let far =
+        unit.piece.iter().flat_map(|piece| &piece.entries).map(|entry| (entry.block, entry.pending_move));
+    unit.flow.propagate(std::iter::once((0, start)).chain(far), |known, other| *known = known.or(other), next)
 }
 
 /// Returns the effect of a call: that of a program that only moves, or does neither; false if it is unknown.

@@ -46,6 +46,7 @@ pub(super) use doubled_n::{doubled_numbers, sequence_numbers};
 pub(super) use live_position::{limits_lookahead, pending_moves};
 pub(super) use missing_point::is_in_inch;
 pub(super) use missing_program::find as missing_programs;
+pub(super) use refused_words::alarming_cancel;
 
 /// All rules, in the order of their findings about one block.
 pub static ALL: &[&Rule] = &[

@@ -151,6 +151,12 @@ impl FileHead {
         unit.map(Some).ok_or_else(wrong)
     }
 
+    /// Returns true if an axis of the head has this letter.
+    pub(super) fn turns_by(&self, letter: &str) -> bool {
+        let letters = self.axis.iter().flatten().map(|link| &link.letter).chain(&self.letter);
+        letters.into_iter().any(|own| own.as_ref() == letter)
+    }
+
     /// Rejects a key that has no meaning for this kind of head.
     fn check_keys(&self, reader: &Reader<'_>, kind: FileHeadKind) -> Result<(), FileError> {
         let given = [

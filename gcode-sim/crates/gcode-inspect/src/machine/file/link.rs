@@ -18,7 +18,7 @@ use gcode_part::reader::{FixedArray, Located, Reader, names};
 pub(super) struct FileLink {
     /// The axis.
     #[schemars(extend("enum" = AXES))]
-    letter: Located<String>,
+    pub(super) letter: Located<String>,
     /// The direction x, y or z of a rotary axis A, B or C, or a vector along it.
     turns: Option<Located<FileDirection>>,
     /// The direction x, y or z of a linear axis: all other letters.

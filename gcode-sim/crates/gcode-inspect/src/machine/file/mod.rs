@@ -121,6 +121,7 @@ impl Machine {
         let control = file.control.unwrap_or_default();
         let axes = control.axes(&reader)?;
         let part = file.part.unwrap_or_default().placement();
+        let head_turns_by_b = file.head.as_ref().is_some_and(|head| head.turns_by("B"));
         let table = match &file.table {
             Some(links) => {
                 let mut table = Chain::default();
@@ -130,6 +131,8 @@ impl Machine {
                 }
                 table
             }
+            // The axis that turns the head is none of the table.
+            None if head_turns_by_b => Chain::default(),
             None => Chain::default_table(&axes, part.origin),
         };
         let head = match &file.head {
@@ -168,7 +171,7 @@ impl Machine {
             wheel: file.wheel.map(|wheel| wheel.check(&reader, &axes, &table, &head)).transpose()?,
             offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, offsets))?,
             start: file.start.map_or(Ok(Vec::new()), |start| start_positions(&reader, &axes, start))?,
-            has_default_table: file.table.is_none(),
+            has_default_table: file.table.is_none() && !head_turns_by_b,
             axes,
             table,
             head,
