@@ -86,7 +86,9 @@ impl Repetitions {
             self.has_numbers |= form.has_number && run.is_numbered;
             run.is_numbered = form.has_number;
             let first = *run.first.entry((run.modes, form)).or_insert(start);
-            is_left_out[block] = first != start;
+            // A block that changes the mode decides how those behind it are read.
+            let keeps_mode = form.code.is_none() || form.code == run.modes.code;
+            is_left_out[block] = first != start && keeps_mode;
             run.last_left_out = None;
             if is_left_out[block] {
                 self.stand_ins.insert((source, first));
@@ -272,13 +274,17 @@ mod tests {
         // Before G01 and after it, before F and after it: X2., X3., X6. and X9. are left out; X10. is the last.
         let modes = "O1\nX1.\nX2.\nX3.\nG1X4.\nX5.\nX6.\nX7.F9.\nX8.\nX9.\nX10.\n";
         assert_eq!(left_out(modes), 4);
+        // Both G01 are kept: the moves behind each stand in its mode.
+        let changes = "O1\nF9.\nG1X1.\nG2X2.R5.\nG1X3.\nG2X4.R5.\nG1X5.\nX6.\nX7.\nX8.\n";
+        assert_eq!(left_out(changes), 1);
         assert_eq!(left_out("O1\nX1\nX2\nX3\n"), 0, "without a point");
         assert_eq!(left_out("O1\nX1.\nX2. (A)\nX3.\n"), 0, "a comment ends the run");
     }
 
     fn block() -> impl Strategy<Value = String> {
         let number = "-?[0-9]{1,2}\\.?[0-9]?";
-        let moves = format!("(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(F[0-9]0\\.?)?");
+        let moves =
+            format!("(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(R{number})?(F[0-9]0\\.?)?");
         let others = "N9999 M9|M30|M99|G81Z-1\\.R1\\.|G80|#1=#2|IF\\[#1EQ#0\\]GOTO[1-4]0|GOTO[1-4]0|M98P2|M98P2Q20|WHILE\\[#1LT2\\]DO1|END1\
             |G10L52|G11|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|U5\\.|O2|M3M4|M99P20|X#1";
         let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();
