@@ -156,7 +156,10 @@ impl Planner<'_> {
             {
                 ("G68", "G69")
             } else if is_bound && is_mirrored {
-                ("G51.1", "G50.1")
+                match self.data.settings.codes {
+                    Dialect::HaasNgc => ("G101", "G100"),
+                    Dialect::Fanuc31i | Dialect::Fanuc0iF => ("G51.1", "G50.1"),
+                }
             } else if is_scaled && (is_mirror(Mirror::On) || is_mirror(Mirror::Off) && is_mirrored) {
                 ("G51", "G50")
             } else {

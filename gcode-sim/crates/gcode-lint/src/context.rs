@@ -21,6 +21,7 @@ use super::calls::{self, CallSite};
 use super::components::strongly_connected_components;
 use super::control_flow::ControlFlowGraph;
 use super::locals::States;
+use super::piece::Piece;
 use super::possible_modes::PossibleModes;
 use super::variables::{self, VariableRead};
 
@@ -59,6 +60,8 @@ pub(crate) struct LoadedProgram {
     /// Marks of the blocks, see `block_marks`.
     pub marks: Vec<BlockMarks>,
     pub calls: Vec<CallSite>,
+    /// Piece of a longer program.
+    pub piece: Option<Piece>,
 }
 
 impl LoadedProgram {
@@ -74,7 +77,7 @@ impl LoadedProgram {
         let known = if is_first { known } else { &mut none };
         let blocks = memory.lower_with_trees(id, known);
         let marks = blocks.iter().map(|block| known.marks(block.span.start)).collect();
-        Self { id, blocks, marks, calls: calls::call_sites(memory.get(id), settings) }
+        Self { id, blocks, marks, calls: calls::call_sites(memory.get(id), settings), piece: None }
     }
 }
 
@@ -96,6 +99,8 @@ pub(crate) struct ProgramUnit<'a> {
     pub is_reached: Vec<bool>,
     /// True if a path leads beyond the last block.
     pub reaches_end: bool,
+    /// True for each target behind a piece to which a reachable block jumps.
+    pub reached_far: Vec<bool>,
     pub role: Role,
     /// Modes before each block, see `modes`.
     pub modes: OnceLock<Vec<Option<PossibleModes>>>,
@@ -110,6 +115,8 @@ pub(crate) struct ProgramUnit<'a> {
     pub states_without_arguments: OnceLock<States>,
     /// Sequence numbers of the blocks that are left out, in the order of the blocks.
     pub left_out_numbers: Vec<LeftOutNumber>,
+    /// Piece of a longer program, of which the other blocks are not here.
+    pub piece: Option<Piece>,
 }
 
 /// Way in which a program is entered.
@@ -143,10 +150,10 @@ impl<'a> CheckContext<'a> {
     /// Returns the programs again.
     pub(super) fn into_loaded(self) -> Vec<LoadedProgram> {
         let units = self.units.into_iter();
-        let loaded = |ProgramUnit { id, blocks, mut marks, new_marks, calls, .. }: ProgramUnit<'_>| {
+        let loaded = |ProgramUnit { id, blocks, mut marks, new_marks, calls, piece, .. }: ProgramUnit<'_>| {
             let new = new_marks.into_inner().into_iter().flatten();
             marks.iter_mut().zip(new).for_each(|(marks, new)| *marks |= new);
-            LoadedProgram { id, blocks, marks, calls }
+            LoadedProgram { id, blocks, marks, calls, piece }
         };
         units.map(loaded).collect()
     }
@@ -180,8 +187,11 @@ impl<'a> CheckContext<'a> {
             }
         }
         for unit in &mut self.units {
-            unit.role = unit.determine_role();
+            unit.role = unit.piece.as_ref().map_or_else(|| unit.determine_role(), |piece| piece.role);
             unit.is_reached = unit.flow.reachable(&unit.entry_blocks);
+            let far = unit.flow.far_nodes();
+            unit.reached_far = unit.is_reached[far].to_vec();
+            unit.is_reached.truncate(unit.program.ops().len() + 1);
             unit.reaches_end = unit.is_reached.pop().unwrap_or_default();
         }
     }
@@ -288,25 +298,29 @@ fn written_alarm(kind: &OpKind) -> Option<&LocatedAlarm> {
 }
 
 impl<'a> ProgramUnit<'a> {
-    fn new(memory: &'a Memory, LoadedProgram { id, blocks, marks, calls }: LoadedProgram) -> Self {
+    fn new(memory: &'a Memory, LoadedProgram { id, blocks, marks, calls, piece }: LoadedProgram) -> Self {
         let program = memory.get(id);
+        let far_jumps = piece.as_ref().map_or(&[][..], |piece| &piece.far_jumps);
+        let entries = piece.iter().flat_map(|piece| &piece.entries).map(|entry| entry.block);
         Self {
             id,
             reads: blocks.iter().map(|_| OnceLock::new()).collect(),
             blocks,
             marks,
             new_marks: OnceLock::new(),
-            flow: ControlFlowGraph::new(program),
+            flow: ControlFlowGraph::new(program, far_jumps),
             calls,
             callers: Vec::new(),
-            entry_blocks: vec![0],
+            entry_blocks: std::iter::once(0).chain(entries).collect(),
             is_reached: Vec::new(),
             reaches_end: false,
+            reached_far: Vec::new(),
             role: Role::Main,
             modes: OnceLock::new(),
             components: OnceLock::new(),
             states_without_arguments: OnceLock::new(),
             left_out_numbers: Vec::new(),
+            piece,
             program,
         }
     }
@@ -318,6 +332,12 @@ impl<'a> ProgramUnit<'a> {
         if self.program.number().is_some_and(|number| MACROS.contains(&number)) {
             return Role::Resident;
         }
+        let (returns, ends) = self.returns_or_ends();
+        if returns && !ends { Role::Resident } else { Role::Main }
+    }
+
+    /// Returns whether a block returns, and whether one ends the run.
+    pub(crate) fn returns_or_ends(&self) -> (bool, bool) {
         let words = |(block, op): (usize, &'a Op)| match op.kind() {
             OpKind::Words(words) => Some((words.call().map(|call| call.kind), block)),
             _ => None,
@@ -325,7 +345,7 @@ impl<'a> ProgramUnit<'a> {
         let mut blocks = self.program.ops().iter().enumerate().filter_map(words);
         let returns = blocks.clone().any(|(call, _)| call == Some(CallCode::Return));
         let ends = blocks.any(|(call, block)| call.is_none() && self.flow.block_successors[block].is_exit);
-        if returns && !ends { Role::Resident } else { Role::Main }
+        (returns, ends)
     }
 
     /// Returns the variables that a block reads; none of a block that is known to read commons alone.
@@ -353,6 +373,11 @@ impl<'a> ProgramUnit<'a> {
             })
         };
         self.blocks.iter().flat_map(|block| &block.comments).any(jumps)
+    }
+
+    /// Returns true if a block ends the program, returns or stops with its own alarm.
+    pub(crate) fn has_exit(&self) -> bool {
+        self.flow.block_successors.iter().any(|block| block.is_exit)
     }
 
     pub(crate) fn op(&self, block: OpIndex) -> &Op {

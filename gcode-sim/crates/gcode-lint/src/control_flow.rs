@@ -1,4 +1,7 @@
 //! Control flow of a program: the blocks that can follow each block, and the blocks that are reachable.
+use std::collections::BTreeMap;
+use std::ops::Range;
+
 use gcode_lang::program::{CallCode, CallTarget, OpIndex, OpKind, Operand, Program, Statement, Words};
 
 use super::literal;
@@ -45,6 +48,8 @@ pub(crate) struct Jump {
     pub to: Option<OpIndex>,
     /// True for `M99 P`: in a called program the number is the caller's.
     pub is_return: bool,
+    /// The target is behind the piece of a program that this is.
+    pub is_far: bool,
 }
 
 #[derive(Debug)]
@@ -52,11 +57,23 @@ pub(crate) struct ControlFlowGraph {
     pub block_successors: Vec<Successors>,
     pub jumps: Vec<Jump>,
     numbered: Vec<OpIndex>,
+    /// Jumps of a piece to blocks behind it: each with the node that stands for its target.
+    far_jumps: BTreeMap<OpIndex, OpIndex>,
+    far_nodes: usize,
 }
 
 impl ControlFlowGraph {
-    pub(super) fn new(program: &Program) -> Self {
-        let mut flow = Self { block_successors: Vec::new(), jumps: Vec::new(), numbered: Vec::new() };
+    /// `far_jumps` are the blocks of a piece that jump to blocks behind it, each with the index of its target among all such
+    /// targets.
+    pub(super) fn new(program: &Program, far_jumps: &[(OpIndex, usize)]) -> Self {
+        let first_far = program.ops().len() + 2;
+        let mut flow = Self {
+            block_successors: Vec::new(),
+            jumps: Vec::new(),
+            numbered: Vec::new(),
+            far_jumps: far_jumps.iter().map(|(block, target)| (*block, first_far + target)).collect(),
+            far_nodes: far_jumps.iter().map(|(_, target)| target + 1).max().unwrap_or(0),
+        };
         for (block, op) in program.ops().iter().enumerate() {
             if op.number.is_some() {
                 flow.numbered.push(block);
@@ -103,7 +120,7 @@ impl ControlFlowGraph {
                     Some(number) => {
                         let to = program.find_number(number, 0);
                         found.jumps.extend(to);
-                        self.jumps.push(Jump { block, number, to, is_return: true });
+                        self.jumps.push(Jump { block, number, to, is_return: true, is_far: false });
                     }
                     None => found.jumps_anywhere = true,
                 }
@@ -146,18 +163,27 @@ impl ControlFlowGraph {
             return Successors { jumps_anywhere: true, ..Successors::default() };
         };
         let Some(number) = literal::to_whole(*number) else { return Successors::default() };
+        if let Some(far) = self.far_jumps.get(&block).copied() {
+            self.jumps.push(Jump { block, number, to: None, is_return: false, is_far: true });
+            return Successors { jumps: vec![far], ..Successors::default() };
+        }
         let to = program.find_number(number, block + 1);
-        self.jumps.push(Jump { block, number, to, is_return: false });
+        self.jumps.push(Jump { block, number, to, is_return: false, is_far: false });
         // The rule `missing-n` reports a missing target; the blocks after it are not a second fault.
         Successors { falls_through: to.is_none(), jumps: to.into_iter().collect(), ..Successors::default() }
     }
 
-    /// Returns the number of nodes: the blocks, the end of the program and one for computed jumps.
+    /// Returns the number of nodes: the blocks, the end of the program, one for computed jumps and the targets behind a piece.
     ///
-    /// The end is one past the last block. The last node leads to every numbered block, which keeps the edges
+    /// The end is one past the last block. The node for computed jumps leads to every numbered block, which keeps the edges
     /// few.
     pub(crate) fn block_count(&self) -> usize {
-        self.block_successors.len() + 2
+        self.block_successors.len() + 2 + self.far_nodes
+    }
+
+    /// Returns the nodes of the targets behind a piece.
+    pub(crate) fn far_nodes(&self) -> Range<OpIndex> {
+        self.block_successors.len() + 2..self.block_count()
     }
 
     pub(crate) fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
@@ -170,12 +196,12 @@ impl ControlFlowGraph {
         jumps.iter().copied().chain(next).chain(computed).chain(numbered.iter().copied())
     }
 
-    /// Returns, for each block and the end of the program, whether it is reachable from one of `starts`.
+    /// Returns, for each node, whether it is reachable from one of `starts`.
     pub(crate) fn reachable(&self, starts: &[OpIndex]) -> Vec<bool> {
         let starts = starts.iter().map(|start| (*start, ()));
         let next = |place, (): &(), open: &mut Vec<_>| open.extend(self.successors(place).map(|to| (to, ())));
         let states = self.propagate(starts, |(), ()| (), next);
-        states[..=self.block_successors.len()].iter().map(Option::is_some).collect()
+        states.iter().map(Option::is_some).collect()
     }
 
     /// Returns the state before each node, `None` for an unreachable one.

@@ -87,7 +87,10 @@ impl<'a> FirstReach<'a> {
         };
         let entries = self.entries.get(&component).into_iter().flatten();
         let entries = entries.filter_map(|entry| Some((*entry, self.states[*entry].as_ref()?)));
-        let starts = self.unit.entry_blocks.iter().map(|start| (*start, self.bits(*start, local)));
+        let far: &[_] = self.unit.piece.as_ref().map_or(&[], |piece| &piece.entries);
+        let of_far = far.iter().filter_map(|entry| Some((entry.block, entry.locals?.bits_of(local))));
+        let own = self.unit.entry_blocks.iter().take(self.unit.entry_blocks.len() - far.len());
+        let starts = own.map(|start| (*start, self.bits(*start, local))).chain(of_far);
         let starts = starts.chain(entries.flat_map(|(entry, state)| next_bits(entry, state)));
         let next = |place: OpIndex, bits: &u8, open: &mut Vec<_>| {
             let is_inside = self.component[place] == component && !ends.contains(&place);

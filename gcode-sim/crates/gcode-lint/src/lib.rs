@@ -28,10 +28,13 @@ mod control_flow;
 mod expressions;
 mod first_reach;
 mod literal;
+mod loader;
 mod locals;
 mod main_programs;
 mod modes;
 mod parameters;
+mod piece;
+mod pieces;
 mod possible_modes;
 mod prelude;
 #[cfg(test)]
@@ -44,20 +47,20 @@ mod unset_reads;
 mod vacancy;
 mod variables;
 
-use std::collections::BTreeSet;
-
 pub use calls::{Argument, CallSite, CalledProgramName, call_site, called_programs};
 pub use checked_blocks::CheckedBlocks;
 pub use expressions::{UsedExpressions, ValueUse, block_expressions};
 pub use literal::{constant, variable};
 pub use main_programs::{main_programs, programs_called_by_others};
 
-use context::{CheckContext, LoadedProgram};
+use context::CheckContext;
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::{Library, Memory, Program};
 use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::KnownBlocks;
+use loader::Loader;
+use pieces::PieceSizes;
 use repetition::Repetitions;
 pub use variables::variables_read;
 
@@ -124,16 +127,30 @@ pub fn check_edited(
 }
 
 fn check_known(
-    mut memory: Memory,
+    memory: Memory,
     known: KnownBlocks,
     control: (&Settings, ControlKnowledge),
     library: &mut impl Library,
 ) -> CheckResult {
-    let mut repetitions = Repetitions::default();
-    let mut units = load_called_programs(&mut memory, known, control.0, library, &mut repetitions);
-    if repetitions.may_numbers_matter(&memory, units.iter().map(|unit| unit.id)) {
-        std::mem::take(&mut repetitions).restore(&mut memory, control.0, &mut units);
+    check_sized((memory, known), control, library, PieceSizes::USUAL)
+}
+
+fn check_sized(
+    (mut memory, mut known): (Memory, KnownBlocks),
+    control: (&Settings, ControlKnowledge),
+    library: &mut impl Library,
+    sizes: PieceSizes,
+) -> CheckResult {
+    let mut loader = Loader::new(&mut memory, control.0, library);
+    loader.load_found(&mut known, sizes.whole);
+    if loader.may_numbers_matter() {
+        loader.restore(sizes.whole);
     }
+    if let Some((findings, programs)) = check_in_pieces(&mut loader, control.1, sizes) {
+        return CheckResult { programs, memory, findings, blocks: CheckedBlocks::default() };
+    }
+    loader.load_long(&mut known);
+    let Loader { mut repetitions, loaded: units, .. } = loader;
     let mut context = CheckContext::new(&memory, control, units, rules::codes());
     for unit in &mut context.units {
         unit.left_out_numbers = repetitions.take_numbers(unit.id);
@@ -141,6 +158,15 @@ fn check_known(
     let mut findings = rules::findings(&context);
     let mut units = context.into_loaded();
     if repetitions.stand_for_found(&findings) {
+        if repetitions.has_program_of(sizes.whole + 1) {
+            let mut loader = Loader::of_loaded(&mut memory, control.0, library, (repetitions, units));
+            loader.restore(sizes.whole);
+            if let Some((findings, programs)) = check_in_pieces(&mut loader, control.1, sizes) {
+                return CheckResult { programs, memory, findings, blocks: CheckedBlocks::default() };
+            }
+            loader.load_long(&mut known);
+            (repetitions, units) = (Repetitions::default(), loader.loaded);
+        }
         repetitions.restore(&mut memory, control.0, &mut units);
         let context = CheckContext::new(&memory, control, units, rules::codes());
         findings = rules::findings(&context);
@@ -151,44 +177,25 @@ fn check_known(
     CheckResult { programs, memory, findings, blocks }
 }
 
-/// Returns the programs in memory, followed by the programs that they call, as far as these are found.
-fn load_called_programs(
-    memory: &mut Memory,
-    mut known_blocks: KnownBlocks,
-    settings: &Settings,
-    library: &mut impl Library,
-    repetitions: &mut Repetitions,
-) -> Vec<LoadedProgram> {
-    let mut loaded = Vec::new();
-    let mut found: Vec<_> = memory.ids().collect();
-    let mut known: BTreeSet<_> = found.iter().copied().collect();
-    let (main, mut next) = (memory.main(), 0);
-    while let Some(id) = found.get(next).copied() {
-        // Each program finds what a main program in its folder would find.
-        memory.set_main(id);
-        repetitions.leave_out(memory, id, settings);
-        let program = LoadedProgram::new(memory, id, &mut known_blocks, settings);
-        // A missing program is looked for once, not at each of its calls.
-        let mut named = BTreeSet::new();
-        let targets = program.calls.iter().map(|call| &call.target).filter(|target| named.insert(*target));
-        for target in targets {
-            let called = match target {
-                CalledProgramName::Number(number) => memory.fetch(*number, library),
-                CalledProgramName::Name(name) => memory.fetch_name(name, library),
-                CalledProgramName::Computed | CalledProgramName::Missing => None,
-            };
-            found.extend(called.filter(|called| known.insert(*called)));
-        }
-        // The help of a missing program names the one with all digits of P if it is there.
-        for call in &program.calls {
-            let digits = call.digits_of_p.filter(|_| call.target.find(memory, None).is_none());
-            _ = digits.and_then(|digits| memory.fetch(digits, library));
-        }
-        loaded.push(program);
-        next += 1;
+/// Returns the findings, and the number of programs, if one is long and can be checked in pieces.
+fn check_in_pieces<L: Library>(
+    loader: &mut Loader<'_, L>,
+    knowledge: ControlKnowledge,
+    sizes: PieceSizes,
+) -> Option<(Vec<Diagnostic>, usize)> {
+    if loader.long.is_empty() {
+        return None;
     }
-    memory.set_main(main);
-    loaded
+    // The numbers of moves that are left out are not known to the pieces.
+    if loader.repetitions.has_numbers() {
+        loader.restore(sizes.whole);
+    }
+    let mut findings = pieces::findings(loader, knowledge, sizes)?;
+    if loader.repetitions.stand_for_found(&findings) {
+        loader.restore(sizes.whole);
+        findings = pieces::findings(loader, knowledge, sizes)?;
+    }
+    Some((findings, loader.loaded.len() + loader.long.len()))
 }
 
 impl CheckResult {

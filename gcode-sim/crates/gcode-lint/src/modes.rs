@@ -20,8 +20,13 @@ pub(crate) fn modes_before<'u>(
 
 fn propagated_modes(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<PossibleModes>> {
     // Any block may precede the start of a call, also of one with Q.
-    let first = if unit.role == Role::Main { PossibleModes::POWER_ON } else { PossibleModes::ANYTHING };
-    let entries = std::iter::once(first).chain(std::iter::repeat(PossibleModes::ANYTHING));
+    let first = match (&unit.piece, unit.role) {
+        (Some(piece), _) => piece.start.modes,
+        (None, Role::Main) => PossibleModes::POWER_ON,
+        (None, Role::Called | Role::Resident) => PossibleModes::ANYTHING,
+    };
+    let far = unit.piece.iter().flat_map(|piece| &piece.entries).map(|entry| entry.modes);
+    let entries = std::iter::once(first).chain(far).chain(std::iter::repeat(PossibleModes::ANYTHING));
     let starts = unit.entry_blocks.iter().copied().zip(entries);
     let next = |block: OpIndex, before: &PossibleModes, open: &mut Vec<_>| {
         let is_block = block < unit.program.ops().len();

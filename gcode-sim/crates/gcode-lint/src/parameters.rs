@@ -1,6 +1,6 @@
 //! Blocks of parameter input, between G10 L50 or L52 and G11: N is a parameter number, the words are its
 //! values.
-use gcode_lang::program::{OpKind, Program, WordOperand, Words};
+use gcode_lang::program::{Op, OpKind, Program, WordOperand, Words};
 
 use super::literal;
 
@@ -15,6 +15,17 @@ pub(crate) fn parameter_blocks(program: &Program) -> Vec<bool> {
         before && parameters
     });
     blocks.collect()
+}
+
+/// Returns true if the last block is within parameter input.
+pub(crate) fn has_open_parameter_input(program: &Program) -> bool {
+    let is_words = |op: &&Op| matches!(op.kind(), OpKind::Words(_));
+    let begins_or_ends = |words: &Words| starts_parameter_input(words) || has_g(words, 110);
+    let last = program.ops().iter().rev().filter(is_words).find_map(|op| match op.kind() {
+        OpKind::Words(words) if begins_or_ends(words) => Some(starts_parameter_input(words)),
+        _ => None,
+    });
+    last == Some(true)
 }
 
 /// Returns L of a block with G10, the kind of data input.

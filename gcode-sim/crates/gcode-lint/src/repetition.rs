@@ -115,6 +115,34 @@ impl Repetitions {
         }
     }
 
+    /// Returns true if moves of a program with so many blocks are left out.
+    pub(super) fn has_program_of(&self, blocks: usize) -> bool {
+        self.programs.iter().any(|(_, whole)| blocks <= whole.block_count())
+    }
+
+    /// Puts the programs back that have more than `max_blocks` blocks and that `is_one` accepts. Returns them.
+    pub(super) fn restore_long(
+        &mut self,
+        memory: &mut Memory,
+        max_blocks: usize,
+        is_one: impl Fn(ProgramId) -> bool,
+    ) -> Vec<ProgramId> {
+        let is_long = |(id, whole): &(ProgramId, Program)| max_blocks < whole.block_count() && is_one(*id);
+        let (long, others) = std::mem::take(&mut self.programs).into_iter().partition(is_long);
+        self.programs = others;
+        let long: Vec<(ProgramId, Program)> = long;
+        let put_back = |(id, whole)| {
+            memory.replace(id, whole);
+            id
+        };
+        long.into_iter().map(put_back).collect()
+    }
+
+    /// Returns true if a block within a run has a sequence number.
+    pub(super) fn has_numbers(&self) -> bool {
+        self.has_numbers
+    }
+
     /// Returns true if one of the blocks that stand for others has a finding.
     pub(super) fn stand_for_found(&self, findings: &[Diagnostic]) -> bool {
         findings.iter().any(|finding| {
@@ -246,6 +274,9 @@ mod tests {
         // Before G01 and after it, before F and after it: X2., X3., X6. and X9. are left out; X10. is the last.
         let modes = "O1\nX1.\nX2.\nX3.\nG1X4.\nX5.\nX6.\nX7.F9.\nX8.\nX9.\nX10.\n";
         assert_eq!(left_out(modes), 4);
+        // Both G01 are kept: the moves behind each stand in its mode.
+        let changes = "O1\nF9.\nG1X1.\nG2X2.R5.\nG1X3.\nG2X4.R5.\nG1X5.\nX6.\nX7.\nX8.\n";
+        assert_eq!(left_out(changes), 1);
         assert_eq!(left_out("O1\nX1\nX2\nX3\n"), 0, "without a point");
         assert_eq!(left_out("O1\nX1.\nX2. (A)\nX3.\n"), 0, "a comment ends the run");
     }

@@ -26,7 +26,8 @@ pub(super) fn suppressions(unit: &ProgramUnit<'_>) -> Vec<Suppression> {
     let mut found = Vec::new();
     let ops = unit.program.ops();
     let is_head = |op: &Op| matches!(op.kind(), OpKind::Empty) && op.number.is_none();
-    let head = ops.iter().position(|op| !is_head(op)).unwrap_or(ops.len());
+    let is_begun_before = unit.piece.as_ref().is_some_and(|piece| !piece.is_first);
+    let head = ops.iter().position(|op| is_begun_before || !is_head(op)).unwrap_or(ops.len());
     for (block, written) in unit.blocks.iter().enumerate() {
         let is_in_head = block < head;
         for comment in &written.comments {

@@ -16,16 +16,19 @@ use super::control_flow::raises_alarm;
 pub(crate) use super::locals::{ANY_VALUE, Locals, NUMBER, States, UNSET, VACANT};
 use super::{literal, variables};
 
-/// Returns the states of a program whose locals are all unset at its first block.
+/// Returns the states of a program whose locals are all unset at its first block; of a piece those that its start has.
 pub(crate) fn states_without_arguments<'u>(unit: &'u ProgramUnit<'_>) -> &'u States {
-    unit.states_without_arguments.get_or_init(|| states(unit, Locals::UNSET))
+    let start = unit.piece.as_ref().map_or(Locals::UNSET, |piece| piece.start.locals);
+    unit.states_without_arguments.get_or_init(|| states(unit, start))
 }
 
 /// Computes the states of a program whose locals are `entry` at its first block.
 pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
     // A call that starts at another block brings its own locals.
-    let entries = std::iter::once(entry).chain(std::iter::repeat(Locals::ANYTHING));
-    let starts = unit.entry_blocks.iter().copied().zip(entries);
+    let far = unit.piece.iter().flat_map(|piece| &piece.entries).map(|entry| entry.locals);
+    let entries = std::iter::once(Some(entry)).chain(far).chain(std::iter::repeat(Some(Locals::ANYTHING)));
+    let starts = unit.entry_blocks.iter().zip(entries);
+    let starts = starts.filter_map(|(block, locals)| Some((*block, locals?)));
     unit.flow.propagate(starts, Locals::join, |block, state, open| steps(unit, block, state, open))
 }
 

@@ -256,6 +256,8 @@ with_defaults! {
         pub macro_alarm_base: u16 = 3000,
         /// Largest n that the manual gives for `#3000=n`.
         pub macro_alarm_max: u16 = 200,
+        /// Macro statements behind DO in its line are accepted, each as a block of its own.
+        pub reads_statements_behind_do: bool = false,
         /// `IF[…]` accepts an assignment or words without THEN.
         pub allows_plain_if: bool = false,
         /// IF and WHILE accept a value as their condition, true unless it is 0 or vacant.

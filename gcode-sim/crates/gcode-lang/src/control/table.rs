@@ -208,6 +208,7 @@ const DOCUMENTED: &[SettingRow] = &[
     row!("MORE-COMMONS", "common variables beyond #100 to #199 and #500 to #999", SettingValues::Ranges(common_ranges::PATTERN), |s, v| s.extra_commons = common_ranges::read(v).ok()?),
     choice!("OFFSET-MEMORY", "the tool offset memory (8136#6, 8136#7): C has H and D apart, B geometry and wear for both, A one value", OffsetMemory::ALL, |s, v| s.offset_memory = v),
     choice!("OFFSET-VARIABLES", "numbering of the tool offset variables", OffsetVariables::ALL, |s, v| s.offset_variables = v),
+    switch!("DO-LINE", "macro statements behind DO in its line are accepted, each as a block of its own; otherwise PS0125", reads_statements_behind_do),
     switch!("PLAIN-IF", "IF[..] accepts an assignment or words without THEN", allows_plain_if),
     switch!("VALUE-CONDITIONS", "IF[#1] and WHILE[#1] are true unless #1 is 0 or vacant", allows_value_conditions),
     switch!("THEN-WORDS", "IF[..]THEN accepts words", then_takes_words),

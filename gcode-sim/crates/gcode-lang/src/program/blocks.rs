@@ -2,6 +2,7 @@
 //!
 //! A loop lowers its blocks once, and a long file never has all of its blocks lowered at the same time.
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use super::block_texts::{BlockTexts, ProgramText};
 use super::loops::Loops;
@@ -84,6 +85,14 @@ impl Blocks {
         let trees =
             self.texts.separate_trees.iter().map(|(index, tree)| (new_index[*index as usize], tree.clone()));
         Self::new(self.texts.text.clone(), kept.map(|(_, start)| *start).collect(), trees.collect())
+    }
+
+    /// Returns some consecutive blocks.
+    pub(super) fn part(&self, blocks: Range<OpIndex>) -> Self {
+        let is_in = |index: u32| blocks.contains(&(index as OpIndex));
+        let trees = self.texts.separate_trees.iter().filter(|(index, _)| is_in(**index));
+        let trees = trees.map(|(index, tree)| (index - blocks.start as u32, tree.clone())).collect();
+        Self::new(self.texts.text.clone(), self.texts.starts[blocks.clone()].to_vec(), trees)
     }
 
     /// Returns the operation of a block if it is lowered.

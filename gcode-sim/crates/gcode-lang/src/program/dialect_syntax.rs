@@ -21,6 +21,8 @@ pub enum DialectSyntax {
     SeveralAssignments,
     /// GOTO behind an assignment in a block: `#1=1 GOTO 5`.
     GotoAfterAssignment,
+    /// Statements behind DO in its line, each a block of its own.
+    StatementsBehindDo,
     /// A block behind another one and `;` in its line.
     BlockAfterSemicolon,
     /// `IF[…]` before words or an assignment, without THEN.
@@ -63,6 +65,7 @@ impl DialectSyntax {
             Self::RelationSigns => undocumented.allows_relation_signs,
             Self::SeveralAssignments => undocumented.allows_several_assignments,
             Self::GotoAfterAssignment => undocumented.allows_goto_after_assignment,
+            Self::StatementsBehindDo => settings.reads_statements_behind_do,
             Self::BlockAfterSemicolon => undocumented.semicolon_ends_block,
             Self::PlainIf => settings.allows_plain_if,
             Self::ThenWords => settings.then_takes_words,
@@ -90,6 +93,9 @@ impl DialectSyntax {
             Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },
             Self::GotoAfterAssignment => {
                 Alarm::MacroFormat { what: "GOTO behind an assignment in one block".into() }
+            }
+            Self::StatementsBehindDo => {
+                Alarm::MacroFormat { what: "a statement behind DO in one block".into() }
             }
             Self::BlockAfterSemicolon => Alarm::TwoBlocksInOneLine,
             Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,

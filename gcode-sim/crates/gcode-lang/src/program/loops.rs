@@ -1,4 +1,6 @@
 //! Pairing of DO and END.
+use std::ops::Range;
+
 use super::OpIndex;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,13 +53,35 @@ impl Loops {
         Self { pairs, ends }
     }
 
-    /// Returns the loops with new indices for their blocks.
+    /// Returns the loops whose first and last blocks are kept, with new indices for them.
     pub(super) fn renumbered(&self, new_index: &[u32]) -> Self {
         let new = |block: OpIndex| new_index[block] as OpIndex;
+        let is_kept = |block: OpIndex| new_index[block] != new_index[block + 1];
+        let pairs = self.pairs.iter().filter(|(begin, end, _)| is_kept(*begin) && is_kept(*end));
+        let ends = self.ends.iter().filter(|(end, begin)| is_kept(*begin) && is_kept(*end));
         Self {
-            pairs: self.pairs.iter().map(|(begin, end, number)| (new(*begin), new(*end), *number)).collect(),
-            ends: self.ends.iter().map(|(end, begin)| (new(*end), new(*begin))).collect(),
+            pairs: pairs.map(|(begin, end, number)| (new(*begin), new(*end), *number)).collect(),
+            ends: ends.map(|(end, begin)| (new(*end), new(*begin))).collect(),
         }
+    }
+
+    /// Returns the loops of some consecutive blocks.
+    pub(super) fn part(&self, blocks: Range<OpIndex>) -> Self {
+        let first = blocks.start;
+        let of = |list: &[(OpIndex, OpIndex)]| {
+            let from = list.partition_point(|(block, _)| *block < first);
+            let inside = list[from..].iter().take_while(|(block, _)| *block < blocks.end);
+            inside.map(|(block, partner)| (block - first, partner.saturating_sub(first))).collect()
+        };
+        let from = self.pairs.partition_point(|(begin, ..)| *begin < first);
+        let inside = self.pairs[from..].iter().take_while(|(begin, ..)| *begin < blocks.end);
+        let pairs = inside.map(|(begin, end, number)| (begin - first, end - first, *number)).collect();
+        Self { pairs, ends: of(&self.ends) }
+    }
+
+    /// Returns true if a loop begins before a block and does not end before it.
+    pub(super) fn contain(&self, block: OpIndex) -> bool {
+        self.pairs.iter().take_while(|(begin, ..)| *begin < block).any(|(_, end, _)| block <= *end)
     }
 
     pub(super) fn end_of(&self, begin: OpIndex) -> Option<OpIndex> {

@@ -35,6 +35,7 @@ pub use expression::{Expression, parse_target};
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallCode, CallOp, CallTarget, LoweredWord, WordOperand, WordUse, Words};
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use self::blocks::Blocks;
@@ -321,8 +322,7 @@ impl Program {
         self.blocks.visit_numbers(each);
     }
 
-    /// Returns the program without the marked blocks. No block that begins or ends a loop may be marked, nor the last one
-    /// before it.
+    /// Returns the program without the marked blocks. A loop whose first or last block is marked is none.
     #[must_use]
     pub fn without(&self, is_left_out: &[bool]) -> Self {
         let mut kept = 0;
@@ -339,6 +339,29 @@ impl Program {
             loops: self.loops.renumbered(&new_index),
             ..*self
         }
+    }
+
+    /// Returns the program of some consecutive blocks. No loop may lead out of them.
+    #[must_use]
+    pub fn part(&self, blocks: Range<OpIndex>) -> Self {
+        Self {
+            name: self.name.clone(),
+            folder: self.folder.clone(),
+            blocks: self.blocks.part(blocks.clone()),
+            numbers: OnceLock::new(),
+            loops: self.loops.part(blocks),
+            ..*self
+        }
+    }
+
+    /// Returns true if a loop begins before a block and does not end before it.
+    pub fn is_in_loop(&self, block: OpIndex) -> bool {
+        self.loops.contain(block)
+    }
+
+    /// Returns true if a block outside some blocks has a sequence number.
+    pub fn has_number_outside(&self, blocks: &Range<OpIndex>) -> bool {
+        self.numbers().iter().any(|(_, block)| !blocks.contains(&(*block as OpIndex)))
     }
 
     /// Lowers one block for execution and returns it; `None` after the last block.

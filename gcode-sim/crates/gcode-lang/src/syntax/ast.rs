@@ -19,6 +19,19 @@ pub struct Program {
     pub blocks: Vec<Block>,
 }
 
+/// Place of a block in a line of several macro statements that DO begins: `WHILE[#1GT0]DO1 #1=#1-1 END1`. Each statement is a
+/// block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DoLine {
+    /// The line is another one.
+    #[default]
+    No,
+    /// The block ends with DO, and the statement of this span stands behind it.
+    Begins(Span),
+    /// The block stands behind DO.
+    Behind,
+}
+
 /// One line of a program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Block {
@@ -32,6 +45,8 @@ pub struct Block {
     pub short_word: Option<Span>,
     /// The `;` before the block, if it ends another block of the line.
     pub behind_semicolon: Option<Span>,
+    /// Place among the statements of a line with DO.
+    pub do_line: DoLine,
     /// Words, statements and inner skips, in the order written.
     pub items: Vec<Item>,
     /// Comments in the order written.

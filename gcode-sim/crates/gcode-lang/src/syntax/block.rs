@@ -1,7 +1,7 @@
 //! Reader of one line: skip, sequence number, words and statements in the order written.
 use nom::Err;
 
-use super::ast::{Address, Block, Decimal, Item, Unreadable, Word, WordValue};
+use super::ast::{Address, Block, Decimal, DoLine, Item, Statement, Unreadable, Word, WordValue};
 use super::number::integer;
 use super::numbers::{MAX_SEQUENCE_NUMBER, continues_number, number_word, window};
 use super::statement::{assignment, keyword, statement};
@@ -25,6 +25,9 @@ pub(super) fn read_block<'a>(line: LineInput, input: Input<'a>, block: &mut Bloc
             }
         }
     }
+    if begins_statement(rest) && block.do_line == DoLine::No {
+        block.do_line = DoLine::Begins(line.span(rest, &rest[rest.len()..]));
+    }
     block.span = line.span(input, rest);
     rest
 }
@@ -34,8 +37,23 @@ fn ends_block(rest: Input<'_>, block: &Block) -> bool {
         Some(b'%') => true,
         Some(b';') => !block.items.is_empty(),
         Some(b'O' | b'o') => begins_program(rest) && block.items.last().is_some_and(ends_program),
+        // Behind DO each statement is a block of its own.
+        Some(_) if block.items.last().is_some_and(|last| is_do(last, block.do_line)) => {
+            begins_statement(rest)
+        }
         _ => false,
     }
+}
+
+/// Returns true for WHILE and DO, and for any statement behind one in its line.
+fn is_do(item: &Item, line: DoLine) -> bool {
+    let Item::Statement(statement) = item else { return false };
+    line == DoLine::Behind || matches!(statement.node, Statement::While { .. } | Statement::Do(_))
+}
+
+/// Returns true at an assignment and at a keyword.
+fn begins_statement(rest: Input<'_>) -> bool {
+    matches!(rest.first(), Some(b'#' | b'[')) || keyword(rest).is_some()
 }
 
 fn ends_program(item: &Item) -> bool {

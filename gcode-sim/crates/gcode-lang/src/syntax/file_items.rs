@@ -1,7 +1,7 @@
 //! Stream of a file's items: `%`, program names and blocks.
 use std::collections::VecDeque;
 
-use super::ast::{Block, Comment, Folder, Item, ProgramName, Unreadable};
+use super::ast::{Block, Comment, DoLine, Folder, Item, ProgramName, Unreadable};
 use super::block::{begins_program, read_block};
 use super::comment::blank_out_comments;
 use super::number::integer;
@@ -46,6 +46,8 @@ pub struct FileItems<'a> {
     code: Vec<u8>,
     /// Comments of the current line that belong to no item yet.
     comments: VecDeque<Comment>,
+    /// A statement of the current line is DO.
+    is_behind_do: bool,
     /// Path of the last folder line.
     folder: Option<&'a [u8]>,
 }
@@ -71,6 +73,7 @@ impl<'a> FileItems<'a> {
             blanked: None,
             code: Vec::new(),
             comments: VecDeque::new(),
+            is_behind_do: false,
             folder: None,
         }
     }
@@ -110,7 +113,7 @@ impl<'a> FileItems<'a> {
             (self.line_start, self.position) = (self.next_line_start, self.next_line_start);
             self.line_end = self.next_line_start + length;
             self.code_end = self.line_end;
-            self.blanked = None;
+            (self.blanked, self.is_behind_do) = (None, false);
             self.next_line_start = self.line_end + end_of_line(&text[length..]);
             let line = &text[..length];
             if let Some(path) = unspaced(line).strip_prefix(b"&F=") {
@@ -175,9 +178,11 @@ impl<'a> FileItems<'a> {
             self.position = left(rest);
             return Some(FileItem::Program { name, span });
         }
-        let mut block = Block { behind_semicolon: semicolon, ..Block::default() };
+        let do_line = if self.is_behind_do { DoLine::Behind } else { DoLine::No };
+        let mut block = Block { behind_semicolon: semicolon, do_line, ..Block::default() };
         let to = left(read_block(line, text, &mut block));
         self.position = to;
+        self.is_behind_do = block.do_line != DoLine::No;
         self.attach_comments(&mut block, from, to);
         Some(FileItem::Block(block))
     }

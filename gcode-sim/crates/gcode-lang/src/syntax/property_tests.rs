@@ -246,6 +246,7 @@ fn block() -> impl Strategy<Value = Block> {
             number,
             short_word: None,
             behind_semicolon: None,
+            do_line: DoLine::No,
             items,
             comments,
         })

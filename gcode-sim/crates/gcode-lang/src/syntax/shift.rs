@@ -1,5 +1,5 @@
 //! Shift of a tree: its places after an edit in front of it.
-use super::ast::{Block, Condition, Expr, Item, PrintPart, Statement, WordValue};
+use super::ast::{Block, Condition, DoLine, Expr, Item, PrintPart, Statement, WordValue};
 use crate::source::Span;
 
 impl Block {
@@ -11,6 +11,9 @@ impl Block {
             self.short_word.as_mut(),
             self.behind_semicolon.as_mut(),
         ];
+        if let DoLine::Begins(span) = &mut self.do_line {
+            shift_span(span, delta);
+        }
         let number = self.number.as_mut().map(|number| &mut number.span);
         marks.into_iter().chain([number]).flatten().for_each(|span| shift_span(span, delta));
         self.comments.iter_mut().for_each(|comment| shift_span(&mut comment.span, delta));

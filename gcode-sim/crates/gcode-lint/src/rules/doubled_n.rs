@@ -2,8 +2,10 @@
 //!
 //! The target of a jump then depends on the control's parameters and on the blocks read so far; without a jump it is a note.
 //! In a long program the numbers begin anew at N9999: many notes are one.
+use std::collections::BTreeSet;
+
 use gcode_lang::motion::Backtrace;
-use gcode_lang::source::Span;
+use gcode_lang::source::{Sources, Span};
 
 use crate::parameters;
 use crate::prelude::*;
@@ -15,6 +17,16 @@ pub(super) static RULE: Rule =
 const MAX_NOTES: usize = 20;
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    // Of a long program all pieces together have their findings.
+    if unit.piece.is_some() {
+        return Vec::new();
+    }
+    let jumps = unit.flow.jumps.iter().filter(|jump| !jump.is_return).map(|jump| jump.number).collect();
+    doubled_numbers(context.memory.sources(), sequence_numbers(unit), &jumps)
+}
+
+/// Returns the sequence numbers of a program with their blocks, in order.
+pub(crate) fn sequence_numbers(unit: &ProgramUnit<'_>) -> Vec<(u32, Span)> {
     let parameters = parameters::parameter_blocks(unit.program);
     let ops = unit.program.ops().iter().zip(&parameters);
     let mut left_out = unit.left_out_numbers.iter().peekable();
@@ -29,6 +41,15 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         numbers.extend(op.number.filter(|_| !is_input).map(|number| (number, op.span)));
     }
     numbers.retain(|(number, _)| *number > 0);
+    numbers
+}
+
+/// Returns a finding for each number of a program that is defined twice. `jumps` are the numbers to which GOTO leads.
+pub(crate) fn doubled_numbers(
+    sources: &Sources,
+    mut numbers: Vec<(u32, Span)>,
+    jumps: &BTreeSet<u32>,
+) -> Vec<Diagnostic> {
     numbers.sort_unstable_by_key(|(number, block)| (*number, block.start));
     let of_number = numbers.chunk_by(|one, other| one.0 == other.0);
     let doubled = of_number.filter_map(|all| Some((all.first()?, all.get(1)?)));
@@ -36,8 +57,8 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         doubled.map(|((number, first), (_, second))| (*number, *first, *second)).collect();
     doubled.sort_unstable_by_key(|(_, _, second)| second.start);
     let finding = |(number, first, block): (u32, Span, Span)| {
-        let line = context.memory.sources().line_column(first).line;
-        let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.is_return);
+        let line = sources.line_column(first).line;
+        let jump = jumps.contains(&number);
         let (severity, consequence) = match jump {
             true => (Severity::Warning, ": the control decides which of the two GOTO takes"),
             false => (Severity::Note, ": a search finds one of the two"),

@@ -6,7 +6,8 @@ pub(super) static RULE: Rule =
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let refused = context.memory.duplicates().any(|program| std::ptr::eq(program, unit.program));
-    if !refused || unit.program.ops().is_empty() {
+    let is_begun_before = unit.piece.as_ref().is_some_and(|piece| !piece.is_first);
+    if !refused || unit.program.ops().is_empty() || is_begun_before {
         return Vec::new();
     }
     let label = unit.program.label();

@@ -9,6 +9,7 @@ use std::ops::RangeInclusive;
 use gcode_lang::control::Dialect;
 use gcode_lang::program::code_facts::Timing;
 use gcode_lang::program::{Statement, WordOperand, Words};
+use gcode_lang::source::Span;
 
 use crate::calls::CallSite;
 use crate::literal;
@@ -29,7 +30,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     if limits_lookahead(context, unit) {
         return Vec::new();
     }
-    let pending = pending_moves(context, unit);
+    let pending = &pending_moves(context, unit)[..];
     let mut found = Vec::new();
     for (block, written) in unit.reached_blocks() {
         let Some(motion) = pending[block].flatten() else { continue };
@@ -44,7 +45,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         let set = target.filter(|number| OUTPUTS.contains(number)).map(|number| (number, "set", None));
         for (number, access, span) in read.into_iter().chain(set) {
             let message = format!("#{number} is {access} while the preceding move may still be in progress");
-            let finding = unit.finding(&RULE.kind, block, message).label(unit.op(motion).span, "the move");
+            let finding = unit.finding(&RULE.kind, block, message).label(motion, "the move");
             found.push(Diagnostic { span, ..finding.help(HELP) });
         }
     }
@@ -52,7 +53,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 }
 
 /// Returns true if G103 of a Haas limits lookahead in a program, or may do so in a caller.
-fn limits_lookahead(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> bool {
+pub(crate) fn limits_lookahead(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> bool {
     let limits = |words: &Words| words.list.iter().any(|word| matches!(word.value, WordOperand::G(1030, _)));
     context.settings.codes == Dialect::HaasNgc
         && (unit.role != Role::Main || unit.reached_words().any(|(_, words)| limits(words)))
@@ -71,10 +72,10 @@ fn is_difference(reads: &[VariableRead], number: u32) -> bool {
 
 const HELP: &str = "insert a block before it that waits for the move: G53, M00 or G31";
 
-/// Returns, for each block, a move that may still be in progress before it; the outer `None` is an unreachable
+/// Returns, for each node, a move that may still be in progress before it; the outer `None` is an unreachable
 /// block.
-fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<Option<OpIndex>>> {
-    let next = |block: OpIndex, before: &Option<OpIndex>, open: &mut Vec<_>| {
+pub(crate) fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<Option<Span>>> {
+    let next = |block: OpIndex, before: &Option<Span>, open: &mut Vec<_>| {
         let op = unit.program.ops().get(block);
         let called = unit.call_in(block);
         let after = match called {
@@ -82,17 +83,20 @@ fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Opti
             None => op.and_then(|op| move_effect(context, op.kind())),
         };
         // A computed jump may lead from elsewhere.
-        let is_computed = unit.program.ops().len() < block;
+        let is_computed = unit.program.ops().len() + 1 == block;
         let after = match after {
             _ if is_computed => None,
-            Some(true) => Some(block),
+            Some(true) => op.map(|op| op.span),
             Some(false) => None,
             None => *before,
         };
         let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, *before));
         open.extend(unit.flow.successors(block).map(|to| (to, after)).chain(skipped));
     };
-    unit.flow.propagate([(0, None)], |known, other| *known = known.or(other), next)
+    let start = unit.piece.as_ref().and_then(|piece| piece.start.pending_move);
+    let far =
+        unit.piece.iter().flat_map(|piece| &piece.entries).map(|entry| (entry.block, entry.pending_move));
+    unit.flow.propagate(std::iter::once((0, start)).chain(far), |known, other| *known = known.or(other), next)
 }
 
 /// Returns the effect of a call: that of a program that only moves, or does neither; false if it is unknown.

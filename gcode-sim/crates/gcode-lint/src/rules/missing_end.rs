@@ -6,7 +6,8 @@ pub(super) static RULE: Rule =
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     // A main program that is the last text of a file without `%` may end there.
-    if unit.role == Role::Main && !unit.program.is_closed || !unit.reaches_end {
+    let is_closed = unit.role != Role::Main || unit.program.is_closed;
+    if !is_closed || !unit.reaches_end || unit.piece.as_ref().is_some_and(|piece| !piece.is_last) {
         return Vec::new();
     }
     let Some(last) = unit.program.ops().len().checked_sub(1) else { return Vec::new() };

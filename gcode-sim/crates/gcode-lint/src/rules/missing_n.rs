@@ -19,7 +19,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     for jump in unit.flow.jumps.iter().filter(|jump| unit.is_reached[jump.block]) {
         let Jump { block, number, .. } = *jump;
         if !jump.is_return {
-            if jump.to.is_none() {
+            if jump.to.is_none() && !jump.is_far {
                 found.push(finding(block, format!("{PS0128}: sequence number N{number}"), unit.program));
             }
             continue;

@@ -31,10 +31,13 @@ const MIN_INTENDED_FEED: f64 = 1.0;
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let settings = context.settings;
-    if settings.uses_calculator_input || counts_in_increments(unit, settings) {
+    if settings.uses_calculator_input || unit.piece.is_none() && counts_in_increments(unit, settings) {
         return Vec::new();
     }
     let found = numbers_without_point(context, unit);
+    if unit.piece.is_some() {
+        return found;
+    }
     let calculator_files = context.calculator_files.get_or_init(|| calculator_files(context));
     if found.is_empty() || !calculator_files.contains(&unit.program.span.source) {
         return found;
@@ -90,8 +93,7 @@ fn programs_of_file<'c, 'a>(
 /// Returns a finding for each number without a point.
 fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let settings = context.settings;
-    let mut words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
-    let is_inch = words.any(|words| BlockCodes::of(words).has(|effect| *effect == Effect::Unit(Unit::Inch)));
+    let is_inch = is_in_inch(unit);
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
     for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
@@ -118,6 +120,14 @@ fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> 
         }
     }
     found
+}
+
+/// Returns true if a block of the program, of a piece also one before it, commands inch.
+pub(crate) fn is_in_inch(unit: &ProgramUnit<'_>) -> bool {
+    let is_begun_in_inch = unit.piece.as_ref().is_some_and(|piece| piece.start.is_inch);
+    let mut words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
+    is_begun_in_inch
+        || words.any(|words| BlockCodes::of(words).has(|effect| *effect == Effect::Unit(Unit::Inch)))
 }
 
 /// Iterates over the literals that are lengths, angles or seconds.

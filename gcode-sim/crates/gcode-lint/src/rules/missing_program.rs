@@ -11,7 +11,7 @@ use crate::prelude::*;
 pub(super) static RULE: Rule =
     Rule::new("missing-program", Severity::Error, "a call of a program that is not found", find);
 
-fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+pub(crate) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut reported: Vec<&CalledProgramName> = Vec::new();
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {

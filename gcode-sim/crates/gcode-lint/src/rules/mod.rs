@@ -40,8 +40,13 @@ use super::block_marks::{FAULTLESS, KEEPS_LOCALS, READS_COMMONS_ALONE};
 use super::context::{CheckContext, ProgramUnit};
 use super::rule::Find;
 pub use super::rule::Rule;
-use super::suppression::suppressions;
+use super::suppression::{Suppression, suppressions};
 use super::vacancy::keeps_locals;
+pub(super) use doubled_n::{doubled_numbers, sequence_numbers};
+pub(super) use live_position::{limits_lookahead, pending_moves};
+pub(super) use missing_point::is_in_inch;
+pub(super) use missing_program::find as missing_programs;
+pub(super) use refused_words::alarming_cancel;
 
 /// All rules, in the order of their findings about one block.
 pub static ALL: &[&Rule] = &[
@@ -82,6 +87,23 @@ pub static MISSING_POINT: &FindingKind = &missing_point::RULE.kind;
 /// Kind of finding about a sequence number that is defined twice.
 pub(super) static DOUBLED_N: &FindingKind = &doubled_n::RULE.kind;
 
+/// Kind of finding about a local that is read before it is set.
+pub(super) static UNSET_VARIABLE: &FindingKind = &unset_variable::RULE.kind;
+
+/// Kind of finding about a program that is called and not found.
+pub(super) static MISSING_PROGRAM: &FindingKind = &missing_program::RULE.kind;
+
+/// Kind of finding about a position read in a move.
+pub(super) static LIVE_POSITION: &FindingKind = &live_position::RULE.kind;
+
+/// Kinds of findings about a block that other blocks, wherever they are, add to or take away.
+pub(super) static OF_WHOLE_PROGRAM: [&FindingKind; 4] = [
+    &loop_pairs::RULE.kind,
+    &missing_point::RULE.kind,
+    &unreachable::RULE.kind,
+    &unreachable_alarm::RULE.kind,
+];
+
 /// Kind of finding about a macro call without a required argument.
 pub static MISSING_ARGUMENT: &FindingKind = &missing_argument::RULE.kind;
 
@@ -93,13 +115,28 @@ pub(super) fn codes() -> Vec<&'static str> {
 pub(super) fn findings(context: &CheckContext<'_>) -> Vec<Diagnostic> {
     let mut all = Vec::new();
     for unit in &context.units {
-        let off = suppressions(unit);
-        let mut found = findings_in(context, unit);
-        found.retain(|finding| !off.iter().any(|suppression| suppression.suppresses(finding)));
-        found.sort_by_key(|finding| finding.backtrace.as_ref().map(|place| place.block.start));
-        all.extend(found);
+        all.extend(findings_in_program(context, unit));
     }
     all
+}
+
+/// Returns the findings of all rules in one program except the suppressed ones, by block.
+pub(super) fn findings_in_program(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+    let mut found = findings_in(context, unit);
+    put_in_order(&mut found, &suppressions(unit));
+    found
+}
+
+/// Removes the suppressed findings of a program and sorts the others by block; they are in the order of the rules.
+fn put_in_order(found: &mut Vec<Diagnostic>, off: &[Suppression]) {
+    found.retain(|finding| !off.iter().any(|suppression| suppression.suppresses(finding)));
+    found.sort_by_key(|finding| finding.backtrace.as_ref().map(|place| place.block.start));
+}
+
+/// Does the same with the findings of the pieces of a program, which are not in the order of the rules.
+pub(super) fn put_pieces_in_order(found: &mut Vec<Diagnostic>, off: &[Suppression]) {
+    found.sort_by_cached_key(|finding| ALL.iter().position(|rule| &rule.kind == finding.kind));
+    put_in_order(found, off);
 }
 
 /// Number of blocks from which several threads share the rules: fewer are checked sooner than a thread starts.
@@ -112,7 +149,7 @@ const SHARE: usize = 5000;
 type Found = (Vec<(usize, Vec<Diagnostic>)>, Option<(usize, Vec<BlockMarks>)>);
 
 /// Returns the findings in one program, rule by rule.
-fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
+pub(super) fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let shares = unit.blocks.len().div_ceil(SHARE);
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let threads = if unit.blocks.len() < MIN_BLOCKS_TO_SHARE { 1 } else { cores.min(ALL.len()) };

@@ -4,7 +4,8 @@
 use gcode_control::static_plan::StaticPlanner;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Motion;
-use gcode_lang::program::{LoweredWord, Words, m_codes};
+use gcode_lang::program::{CallCode, LoweredWord, WordOperand, Words, m_codes};
+use gcode_lang::source::Span;
 
 use crate::literal;
 use crate::modes::modes_before;
@@ -22,7 +23,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut planner = StaticPlanner::new(context.settings.clone());
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
+    let has_modal_call = may_call_modally(context);
     for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
+        if let Some(call) = alarming_cancel(context, words).filter(|_| !has_modal_call) {
+            let alarm = Alarm::CancelWithoutModalCall.located_at(call);
+            found.push(context.alarm_finding(unit, &RULE.kind, block, &alarm));
+            continue;
+        }
         let calls_by_code = words.call().is_none() && unit.call_in(block).is_some();
         if calls_by_code {
             continue;
@@ -50,6 +57,26 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         }
     }
     found
+}
+
+/// Returns the place of a G67 that raises an alarm if no modal call is in force.
+pub(crate) fn alarming_cancel(context: &CheckContext<'_>, words: &Words) -> Option<Span> {
+    let call = words.call().filter(|call| call.kind == CallCode::Cancel)?;
+    let resets_modes = words.g_codes().next().is_some();
+    context.settings.g67_alarms.unwrap_or(!resets_modes).then_some(call.span)
+}
+
+/// Returns true if one of the programs may call a macro modally, or a caller or a called program that is not here may.
+fn may_call_modally(context: &CheckContext<'_>) -> bool {
+    let is_unclear = |unit: &ProgramUnit<'_>| {
+        let is_computed =
+            |word: &LoweredWord| word.letter == b'G' && !matches!(word.value, WordOperand::G(..));
+        unit.role == Role::Resident
+            || unit.calls.iter().any(|call| call.is_modal || context.called_unit(call).is_none())
+            || unit.reached_ops().any(|(_, op)| matches!(op.kind(), OpKind::If { .. }))
+            || unit.reached_words().any(|(_, words)| words.list.iter().any(is_computed))
+    };
+    context.units.iter().any(is_unclear)
 }
 
 /// Returns true for the alarms that `stray-word` reports.
@@ -138,6 +165,21 @@ mod tests {
         assert_eq!(lines(&RULE, "O1\nG83 Z-5. R1. Q1. F9.\nG80\nG83 X2. Z-5. R1.\nM30\n"), [4]);
         assert_eq!(lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 5\nG73 Z-5. R1. Q1. F9.\nN5 G83 X2.\nM30\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\nG81 Z-5. R1. F9.\nM98 P2\nG28 Z5.\nM30\nO2\nG80\nM99\n"), NOWHERE);
+    }
+
+    #[test]
+    fn a_g67_alone_needs_a_g66() {
+        assert_eq!(lines(&RULE, "O1\nG00 X1.\nG67\nM30\n"), [3]);
+        for text in [
+            "O1\nG40 G80 G67\nM30\n",
+            "O1\nG66 P2\nG67\nM30\nO2\nM99\n",
+            "O1\nM98 P2\nG67\nM30\nO2\nG66 P3\nM99\nO3\nM99\n",
+            "O1\nM98 P9\nG67\nM30\n",
+            "O1\nG#1 X1.\nG67\nM30\n",
+            "O2\nG67\nM99\n",
+        ] {
+            assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
+        }
     }
 
     #[test]

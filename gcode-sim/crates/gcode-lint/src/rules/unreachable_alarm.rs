@@ -19,6 +19,7 @@ fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let of_any_call = OnceCell::new();
     let states = match unit.role {
         Role::Main => states_without_arguments(unit),
+        _ if unit.piece.is_some() => states_without_arguments(unit),
         Role::Called | Role::Resident => of_any_call.get_or_init(|| states(unit, Locals::ANYTHING)),
     };
     let mut found = Vec::new();

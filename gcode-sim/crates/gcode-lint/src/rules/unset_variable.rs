@@ -20,7 +20,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     match unit.role {
         Role::Resident => {}
         // Without an end it may be a part of a program, or a macro.
-        Role::Main if !unit.flow.block_successors.iter().any(|block| block.is_exit) => {}
+        Role::Main if unit.piece.is_none() && !unit.has_exit() => {}
         Role::Main => {
             unset.extend(unset_reads(unit, states_without_arguments(unit)));
         }

@@ -41,6 +41,9 @@ impl Lowering {
         if let Some(span) = block.short_word {
             self.record_syntax(DialectSyntax::ShortWord, span);
         }
+        if let ast::DoLine::Begins(span) = block.do_line {
+            self.record_syntax(DialectSyntax::StatementsBehindDo, span);
+        }
         if let Some(span) = block.behind_semicolon {
             self.record_syntax(DialectSyntax::BlockAfterSemicolon, span);
         }

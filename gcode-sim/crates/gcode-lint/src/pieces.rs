@@ -1,0 +1,504 @@
+//! Check of a long program in pieces: the trees and operations of one piece are in memory at a time.
+//!
+//! A piece ends where control passes in one way only, from its last block to the next one: no loop and no jump leads across.
+//! What the analyses know at its end is the start of the next piece. Where this does not hold (a jump over many blocks, a
+//! computed GOTO to numbers elsewhere, a modal macro), or a finding rests on the whole program, the program is checked as a
+//! whole.
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::program::{Library, Memory, OpIndex, OpKind, Program, ProgramId, Statement};
+use gcode_lang::source::Span;
+use gcode_lang::syntax::KnownBlocks;
+
+use super::ControlKnowledge;
+use super::context::{CheckContext, LoadedProgram, MACROS, ProgramUnit, Role};
+use super::control_flow::ControlFlowGraph;
+use super::literal;
+use super::loader::Loader;
+use super::locals::Locals;
+use super::modes::modes_before;
+use super::parameters::has_open_parameter_input;
+use super::piece::{Piece, PieceEntry, PieceStart};
+use super::rules::{
+    self, alarming_cancel, doubled_numbers, is_in_inch, limits_lookahead, pending_moves, sequence_numbers,
+};
+use super::suppression::{Suppression, suppressions};
+use super::unset_reads::entry_locals;
+use super::vacancy::states_without_arguments;
+
+/// Numbers of blocks that decide how a program is checked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PieceSizes {
+    /// Most blocks of a program that is checked as a whole.
+    pub whole: usize,
+    /// Blocks of a piece before its end is sought.
+    pub piece: usize,
+    /// Blocks among which the end of a piece is sought at a time.
+    pub window: usize,
+}
+
+impl PieceSizes {
+    pub(super) const USUAL: Self = Self { whole: 100_000, piece: 20_000, window: 500 };
+}
+
+/// Number of windows in which the end of a piece is sought.
+const MAX_WINDOWS: usize = 20;
+
+/// Most blocks behind a piece to which its jumps lead: mostly they are the ends and the alarms of a program.
+const MAX_FAR_TARGETS: usize = 200;
+
+/// What the pieces of a program have in common so far.
+#[derive(Default)]
+struct WholeProgram {
+    findings: Vec<Diagnostic>,
+    suppressions: Vec<Suppression>,
+    numbers: Vec<(u32, Span)>,
+    jumps: BTreeSet<u32>,
+    /// Blocks of calls: of those of the programs that are here one of each form.
+    calls: Vec<OpIndex>,
+    known_calls: BTreeSet<(ProgramId, bool, Locals)>,
+    returns: bool,
+    ends: bool,
+    has_exit: bool,
+}
+
+/// The check of a program in pieces is not possible.
+struct NotInPieces;
+
+/// Returns the findings of all programs; `None` if a long one has to be checked as a whole.
+pub(super) fn findings<L: Library>(
+    loader: &mut Loader<'_, L>,
+    knowledge: ControlKnowledge,
+    sizes: PieceSizes,
+) -> Option<Vec<Diagnostic>> {
+    let mut of_long = Vec::new();
+    for id in loader.long.clone() {
+        let found = findings_of_program(loader, id, knowledge, sizes).ok()?;
+        of_long.push((id, found));
+    }
+    let mut found = findings_of_others(loader, &mut of_long, knowledge);
+    for (id, mut program) in of_long {
+        rules::put_pieces_in_order(&mut program.findings, &program.suppressions);
+        found.push((id, program.findings));
+    }
+    let is_called = |id: &ProgramId| loader.is_called(*id);
+    found.sort_by_key(|(id, _)| if is_called(id) { ProgramId(u32::MAX) } else { *id });
+    Some(found.into_iter().flat_map(|(_, found)| found).collect())
+}
+
+/// Checks the programs that are loaded, with the calls of the long ones. Adds what is found of these calls together.
+fn findings_of_others<L: Library>(
+    loader: &mut Loader<'_, L>,
+    long: &mut [(ProgramId, WholeProgram)],
+    knowledge: ControlKnowledge,
+) -> Vec<(ProgramId, Vec<Diagnostic>)> {
+    let mut units = std::mem::take(&mut loader.loaded);
+    let others = units.len();
+    let mut whole = Vec::new();
+    for (id, found) in &*long {
+        let program = loader.memory.get(*id);
+        let mut is_left_out = vec![true; program.block_count()];
+        found.calls.iter().for_each(|block| is_left_out[*block] = false);
+        let short = program.without(&is_left_out);
+        whole.push((*id, loader.memory.replace(*id, short)));
+        let mut none = KnownBlocks::default();
+        units.push(LoadedProgram::new(loader.memory, *id, &mut none, loader.settings));
+    }
+    let context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+    let of_unit = |unit: &ProgramUnit<'_>| (unit.id, rules::findings_in_program(&context, unit));
+    let of_others = context.units[..others].iter().map(of_unit).collect();
+    for ((_, found), calls) in long.iter_mut().zip(&context.units[others..]) {
+        found.findings.extend(rules::missing_programs(&context, calls));
+    }
+    let mut units = context.into_loaded();
+    units.truncate(others);
+    loader.loaded = units;
+    for (id, program) in whole {
+        loader.memory.replace(id, program);
+    }
+    of_others
+}
+
+/// Checks a long program, first as a main program or a macro, whichever its end suggests.
+fn findings_of_program<L: Library>(
+    loader: &mut Loader<'_, L>,
+    id: ProgramId,
+    knowledge: ControlKnowledge,
+    sizes: PieceSizes,
+) -> Result<WholeProgram, NotInPieces> {
+    let whole = loader.memory.get(id);
+    let part = whole.part(0..0);
+    let whole = loader.memory.replace(id, part);
+    let mut result = Err(NotInPieces);
+    let roles = [Role::Main, Role::Resident];
+    for role in if is_macro(&whole) { [Role::Resident, Role::Main] } else { roles } {
+        result = findings_as(loader, (id, &whole, role), knowledge, sizes);
+        if result.as_ref().is_ok_and(|found| found.role(&whole) != role) {
+            continue;
+        }
+        break;
+    }
+    loader.memory.replace(id, whole);
+    result
+}
+
+fn is_macro(program: &Program) -> bool {
+    program.number().is_some_and(|number| MACROS.contains(&number))
+}
+
+impl WholeProgram {
+    fn role(&self, program: &Program) -> Role {
+        if is_macro(program) || self.returns && !self.ends { Role::Resident } else { Role::Main }
+    }
+}
+
+fn findings_as<L: Library>(
+    loader: &mut Loader<'_, L>,
+    (id, whole, role): (ProgramId, &Program, Role),
+    knowledge: ControlKnowledge,
+    sizes: PieceSizes,
+) -> Result<WholeProgram, NotInPieces> {
+    let mut found = WholeProgram::default();
+    let mut start = PieceStart::of_program(role);
+    let mut first = 0;
+    let mut far: BTreeMap<OpIndex, PieceEntry> = BTreeMap::new();
+    while first < whole.block_count() {
+        let end = piece_end(loader.memory, (id, whole), first, sizes).ok_or(NotInPieces)?;
+        let is_last = end == whole.block_count();
+        loader.memory.replace(id, whole.part(first..end));
+        let mut none = KnownBlocks::default();
+        let mut program = LoadedProgram::new(loader.memory, id, &mut none, loader.settings);
+        let behind = far.split_off(&end);
+        let entries = std::mem::replace(&mut far, behind).into_iter();
+        let entries = entries.map(|(target, entry)| PieceEntry { block: target - first, ..entry }).collect();
+        let (targets, far_jumps) = far_jumps(loader.memory.get(id), (whole, first..end));
+        if MAX_FAR_TARGETS < targets.len() || targets.iter().any(|target| whole.is_in_loop(*target)) {
+            return Err(NotInPieces);
+        }
+        program.piece = Some(Piece { role, start, entries, far_jumps, is_first: first == 0, is_last });
+        loader.find_called(id, &program.calls);
+        loader.load_found(&mut none, usize::MAX);
+        // The piece is the last unit.
+        let mut units = std::mem::take(&mut loader.loaded);
+        units.push(program);
+        let context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+        let result = match context.units.last() {
+            Some(unit) => found.add(&context, unit, (whole, first..end), &loader.long).inspect(|_| {
+                for (target, entry) in far_entries(&context, unit, &targets) {
+                    far.entry(target).and_modify(|known| known.join(entry)).or_insert(entry);
+                }
+            }),
+            None => Err(NotInPieces),
+        };
+        loader.loaded = context.into_loaded();
+        loader.loaded.pop();
+        start = result?;
+        first = end;
+    }
+    let has_unset = |finding: &Diagnostic| finding.kind == rules::UNSET_VARIABLE;
+    if role == Role::Main && !found.has_exit && found.findings.iter().any(has_unset) {
+        return Err(NotInPieces);
+    }
+    let numbers = std::mem::take(&mut found.numbers);
+    found.findings.extend(doubled_numbers(loader.memory.sources(), numbers, &found.jumps));
+    Ok(found)
+}
+
+impl WholeProgram {
+    /// Adds what is found in a piece. Returns the state behind it.
+    fn add(
+        &mut self,
+        context: &CheckContext<'_>,
+        unit: &ProgramUnit<'_>,
+        (whole, blocks): (&Program, Range<OpIndex>),
+        long: &[ProgramId],
+    ) -> Result<PieceStart, NotInPieces> {
+        let is_last = blocks.end == whole.block_count();
+        if leads_elsewhere(context, unit, (whole, &blocks), long) || !is_last && !unit.reaches_end {
+            return Err(NotInPieces);
+        }
+        let findings = rules::findings_in(context, unit);
+        if findings.iter().any(|finding| rests_on_whole(context, finding)) {
+            return Err(NotInPieces);
+        }
+        // The blocks before may have been judged in mm.
+        let is_inch = is_in_inch(unit);
+        if is_inch && unit.piece.as_ref().is_some_and(|piece| !piece.is_first && !piece.start.is_inch) {
+            return Err(NotInPieces);
+        }
+        let end = blocks.len();
+        let (returns, ends) = unit.returns_or_ends();
+        self.returns |= returns;
+        self.ends |= ends;
+        self.has_exit |= unit.has_exit();
+        // A program that is not found is one finding, whatever the number of its calls.
+        self.findings.extend(findings.into_iter().filter(|finding| finding.kind != rules::MISSING_PROGRAM));
+        self.suppressions.extend(suppressions(unit));
+        self.numbers.extend(sequence_numbers(unit));
+        self.jumps.extend(unit.flow.jumps.iter().filter(|jump| !jump.is_return).map(|jump| jump.number));
+        // What a called program knows of its calls is their arguments.
+        for call in &unit.calls {
+            let is_new = context.called_unit(call).is_none_or(|called| {
+                let form = (context.units[called].id, call.has_own_locals, entry_locals(call));
+                self.known_calls.insert(form)
+            });
+            self.calls.extend(is_new.then_some(blocks.start + call.block));
+        }
+        if is_last {
+            return Ok(PieceStart::of_program(unit.role));
+        }
+        Ok(PieceStart {
+            modes: modes_before(context, unit)[end].ok_or(NotInPieces)?,
+            locals: states_without_arguments(unit)[end].ok_or(NotInPieces)?,
+            is_inch,
+            pending_move: match limits_lookahead(context, unit) {
+                true => None,
+                false => pending_moves(context, unit)[end].flatten(),
+            },
+        })
+    }
+}
+
+/// Returns the blocks behind a piece to which it jumps, and the blocks that do, each with the index of its target.
+fn far_jumps(
+    part: &Program,
+    (whole, blocks): (&Program, Range<OpIndex>),
+) -> (Vec<OpIndex>, Vec<(OpIndex, usize)>) {
+    let mut targets = Vec::new();
+    let mut jumps = Vec::new();
+    for jump in ControlFlowGraph::new(part, &[]).jumps.iter().filter(|jump| !jump.is_return) {
+        let target = whole.find_number(jump.number, blocks.start + jump.block + 1);
+        let Some(target) = target.filter(|target| blocks.end <= *target) else { continue };
+        let place = targets.iter().position(|known| *known == target).unwrap_or_else(|| {
+            targets.push(target);
+            targets.len() - 1
+        });
+        jumps.push((jump.block, place));
+    }
+    (targets, jumps)
+}
+
+/// Returns the states that the jumps of a piece bring to blocks behind it.
+fn far_entries(
+    context: &CheckContext<'_>,
+    unit: &ProgramUnit<'_>,
+    targets: &[OpIndex],
+) -> Vec<(OpIndex, PieceEntry)> {
+    let (modes, locals) = (modes_before(context, unit), states_without_arguments(unit));
+    let pending = if limits_lookahead(context, unit) { Vec::new() } else { pending_moves(context, unit) };
+    let nodes = unit.flow.far_nodes().zip(targets).zip(&unit.reached_far);
+    let entries = nodes.filter(|(_, is_reached)| **is_reached).filter_map(|((node, target), _)| {
+        let pending_move = pending.get(node).copied().flatten().flatten();
+        Some((
+            *target,
+            PieceEntry { block: *target, modes: modes[node]?, locals: locals[node], pending_move },
+        ))
+    });
+    entries.collect()
+}
+
+/// Returns true for a finding, or the lack of one, that the other blocks of a program decide too.
+fn rests_on_whole(context: &CheckContext<'_>, finding: &Diagnostic) -> bool {
+    let is_haas = context.settings.codes == gcode_lang::control::Dialect::HaasNgc;
+    rules::OF_WHOLE_PROGRAM.contains(&finding.kind) || is_haas && finding.kind == rules::LIVE_POSITION
+}
+
+/// Returns true if control may come from other blocks than the one before the piece, or go to others than the next one.
+fn leads_elsewhere(
+    context: &CheckContext<'_>,
+    unit: &ProgramUnit<'_>,
+    (whole, blocks): (&Program, &Range<OpIndex>),
+    long: &[ProgramId],
+) -> bool {
+    let is_outside = |to: OpIndex| !blocks.contains(&to) || to == blocks.start && to != 0;
+    let leads_out = unit.flow.jumps.iter().filter(|jump| !jump.is_far).any(|jump| {
+        let from = if jump.is_return { 0 } else { blocks.start + jump.block + 1 };
+        let targets = [whole.find_number(jump.number, from), whole.find_number(jump.number, 0)];
+        let targets = if jump.is_return { &targets[..] } else { &targets[..1] };
+        targets.iter().flatten().any(|to| is_outside(*to))
+    });
+    let calls_own_blocks = |word: &gcode_lang::program::LoweredWord| {
+        word.letter == b'M' && (literal::word_count(word) == Some(97) || literal::word_count(word).is_none())
+    };
+    let is_computed = unit.flow.block_successors.iter().any(|block| block.jumps_anywhere);
+    let calls_long = |call: &super::calls::CallSite| {
+        call.start.is_some()
+            || call.is_modal
+            || call.target.find(context.memory, call.folder.as_ref()).is_some_and(|id| long.contains(&id))
+    };
+    let others = &context.units[..context.units.len() - 1];
+    leads_out
+        || is_computed && whole.has_number_outside(blocks)
+        || unit.reached_words().any(|(_, words)| words.list.iter().any(calls_own_blocks))
+        // A macro that is called modally elsewhere makes it right.
+        || unit.reached_words().any(|(_, words)| alarming_cancel(context, words).is_some())
+        || context.units.iter().flat_map(|unit| &unit.calls).any(calls_long)
+        || !unit.callers.is_empty()
+        || unit.entry_blocks.len() != 1 + unit.piece.as_ref().map_or(0, |piece| piece.entries.len())
+        || others.iter().any(|other| other.flow.jumps.iter().any(|jump| jump.is_return))
+        || has_open_parameter_input(unit.program)
+}
+
+/// Returns the end of the piece that begins at a block: no loop and no jump near it leads across. `None` if there is none.
+fn piece_end(
+    memory: &mut Memory,
+    (id, whole): (ProgramId, &Program),
+    first: OpIndex,
+    sizes: PieceSizes,
+) -> Option<OpIndex> {
+    let count = whole.block_count();
+    let wanted = first + sizes.piece;
+    if count <= wanted + sizes.window {
+        return Some(count);
+    }
+    for window in 0..MAX_WINDOWS {
+        let from = wanted + window * sizes.window;
+        let candidates = from..(from + sizes.window).min(count);
+        if candidates.is_empty() {
+            return Some(count);
+        }
+        let near = candidates.start.saturating_sub(sizes.window).max(first)
+            ..(candidates.end + sizes.window).min(count);
+        let crossed = crossed_places(memory, (id, whole), near.clone());
+        let is_end = |place: &OpIndex| !crossed[place - near.start] && !whole.is_in_loop(*place);
+        if let Some(end) = candidates.into_iter().find(is_end) {
+            return Some(end);
+        }
+    }
+    Some(count).filter(|count| *count <= first + 2 * sizes.whole)
+}
+
+/// Returns, for each of some blocks, whether a jump among them leads across its start or to it, or a loop begins there.
+fn crossed_places(
+    memory: &mut Memory,
+    (id, whole): (ProgramId, &Program),
+    blocks: Range<OpIndex>,
+) -> Vec<bool> {
+    memory.replace(id, whole.part(blocks.clone()));
+    let part = memory.lower_program(id);
+    let mut crossed: Vec<bool> = (part.ops().iter())
+        .map(|op| {
+            matches!(
+                op.kind(),
+                OpKind::Statement(Statement::While { .. } | Statement::Do { .. }) | OpKind::Alarm(_)
+            )
+        })
+        .collect();
+    for jump in ControlFlowGraph::new(part, &[]).jumps {
+        let from = blocks.start + jump.block;
+        let Some(to) = whole.find_number(jump.number, if jump.is_return { 0 } else { from + 1 }) else {
+            continue;
+        };
+        // A piece may jump to one far behind it.
+        if blocks.end <= to {
+            continue;
+        }
+        // The first block of a piece may be no target either.
+        let across = if from < to { from + 1..to + 1 } else { to..from + 1 };
+        let (start, end) = (across.start.max(blocks.start), across.end.min(blocks.end));
+        if start < end {
+            crossed[start - blocks.start..end - blocks.start].fill(true);
+        }
+    }
+    crossed
+}
+
+#[cfg(test)]
+mod tests {
+    use gcode_lang::control::Settings;
+    use gcode_lang::program::NoLibrary;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{CheckResult, check, check_sized};
+
+    /// Pieces of two blocks and more.
+    const SMALL: PieceSizes = PieceSizes { whole: 3, piece: 2, window: 4 };
+
+    fn memory(text: &str) -> Memory {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", text.as_bytes().to_vec());
+        memory
+    }
+
+    /// Returns the findings of a check in small pieces; `None` if a program has to be checked as a whole.
+    fn in_pieces(text: &str) -> Option<Vec<Diagnostic>> {
+        let (mut memory, settings, mut library) = (memory(text), Settings::default(), NoLibrary);
+        let mut loader = Loader::new(&mut memory, &settings, &mut library);
+        loader.load_found(&mut KnownBlocks::default(), SMALL.whole);
+        assert!(!loader.long.is_empty(), "{text}");
+        findings(&mut loader, ControlKnowledge::Stated, SMALL)
+    }
+
+    fn shown(findings: &[Diagnostic]) -> Vec<String> {
+        let each = findings.iter().map(|f| {
+            let place = (&f.backtrace, &f.span, &f.labels);
+            format!("{} {:?} {} {place:?} {:?} {:?}", f.kind, f.severity, f.message, f.help, f.notes)
+        });
+        each.collect()
+    }
+
+    fn of_whole(text: &str) -> Vec<String> {
+        shown(&check("O1.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary).findings)
+    }
+
+    #[test]
+    fn loops_and_jumps_within_pieces_are_checked_in_pieces() {
+        for text in [
+            "O1\n#100=0\nWHILE[#100LT3]DO1\n#100=#100+1\nEND1\n#101=1\n#102=1\n#103=#1\n#104=1\nM30\n",
+            "O1\nG1 F9.\n#1=2\n#101=#1\nIF[#101EQ2]GOTO5\nN5#102=#2\n#101=1\nX5.\n#3=#5041\nIF[#101EQ2]GOTO6\nN6#2=1\n\
+             #102=1\n#102=2\nM30\n",
+            "O1(CHECK-OFF UNSET-VARIABLE)\n#101=1\n#101=#1\n#101=2\n#101=#2\n#101=#3\nG1X1.\n#101=2\nN1\nN1\nM30\n",
+            "O1\n#101=1\n#101=2\n#101=3\n#101=2\nG65P2A1.\n#101=2\n#101=2\nG65P2B1.\n#101=2\nM30\nO2\nX#3\nM99\n",
+            "O1\n#101=1\n#101=2\nIF[#2EQ#0]GOTO90\n#101=#1\n#2=1\n#101=2\nX1.\nIF[#101EQ5.]GOTO90\n#101=2\n#101=2\nM30\n\
+             N90#101=#2\n#101=1\n#101=1\n#101=1\nM30\n",
+            "O1\nG1\n#101=1\n#101=2\nIF[#102EQ1]GOTO90\n#101=2\nF9.\n#101=2\n#101=2\n#101=2\n#101=2\nN90X5.\n#101=2\nM30\n",
+            "O9001\n#101=1\n#101=2\n#101=3\n#101=#1\n#101=2\n#101=2\nX1.\n#101=2\n#101=2\nM99\n",
+        ] {
+            let found = in_pieces(text);
+            assert!(found.is_some(), "{text}");
+            assert_eq!(shown(&found.unwrap_or_default()), of_whole(text), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_leads_far_is_checked_as_a_whole() {
+        for text in [
+            "O1\nN1#101=1\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nGOTO1\n",
+            "O1\nN1#101=1\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nGOTO#1\n",
+            "O1\nM30\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n",
+            "O1\nX1000\n#101=2\nX1.\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nM30\n",
+        ] {
+            assert!(in_pieces(text).is_none(), "{text}");
+        }
+    }
+
+    /// Blocks of all kinds, some of them with faults.
+    const BLOCKS: &str = "(N[1-4]0 ?)?(G0?[0-3] ?)?X[0-9]\\.(Y[0-9]{1,2}\\.)?( F[0-9]0\\.)?|M30|M99|G81Z-1\\.R1\\.|#1=#2|#[1-4]=#[1-4]\\+1\
+        |IF\\[#1EQ#0\\]GOTO[1-4]0|M98P2|G65P2A1\\.|WHILE\\[#1LT2\\]DO1|END1|\\(A\\)|O2|IF\\[#1EQ2\\]THEN#3000=1\\(A\\)|G4X#7|/2X1\\.\
+        |#34=#[1-4]|#100=#10[0-9]\\+1|#101=#450|#2=#[1-4]\\*3\\.14|#101=SQRT\\[-4\\]|#3=#5021|IF\\[#0EQ#0\\]GOTO20\
+        |\\(CHECK-OFF ROUNDED-PI\\)|X#101|G10L52|G11|N[1-9]0|G80|G66P2|G67|#33=#0";
+
+    proptest! {
+        #[test]
+        fn a_check_in_pieces_finds_what_a_check_of_the_whole_finds(
+            groups in vec((proptest::string::string_regex(BLOCKS).unwrap(), 0..4_usize), 1..25),
+            is_ended in any::<bool>(),
+        ) {
+            let group = |(block, plain): &(String, usize)| format!("{block}\n{}", "#110=#111+1.\n".repeat(*plain));
+            let blocks: String = groups.iter().map(group).collect();
+            let end = if is_ended { "M30\n" } else { "" };
+            let text = format!("O1\n{blocks}{end}(THE END OF THE WHOLE PROGRAM)\n");
+            let settings = Settings::default();
+            let control = (&settings, ControlKnowledge::Stated);
+            let CheckResult { findings, programs, .. } =
+                check_sized((memory(&text), KnownBlocks::default()), control, &mut NoLibrary, SMALL);
+            let whole = check("O1.nc", text.as_bytes(), &settings, &mut NoLibrary);
+            prop_assert_eq!(shown(&findings), shown(&whole.findings), "{}", text);
+            prop_assert_eq!(programs, whole.programs);
+        }
+    }
+}
