@@ -223,6 +223,11 @@ impl<'a> Algebra<'a> {
         };
         let Semantics { returns_signed_angles, .. } = self.arena.semantics();
         let unit = FUNCTION_ERROR * MARGIN + self.arena.widening();
+        if self.arena.widening() == 0.0
+            && let Some((inner, error)) = self.inverse(function, x)
+        {
+            return terms(&[(&[(inner, 1)], 1.0)], error);
+        }
         match function {
             // Both functions and both conversions, of 90° and 180° at most.
             Unary::Acos if returns_signed_angles || (self.hull)(x).lo() >= 0.0 => {
@@ -230,6 +235,25 @@ impl<'a> Algebra<'a> {
                     Some(sine) => terms(&[(&[(sine, 1)], -1.0), (&[], 90.0)], 600.0 * unit),
                     None => atom,
                 }
+            }
+            Unary::Ln if self.arena.widening() == 0.0 => {
+                // The product is rounded, and all three logarithms.
+                let (parts, sign) = match self.arena.node(x) {
+                    Node::Binary(Binary::Mul, a, b) => ([a, b], 1.0),
+                    Node::Binary(Binary::Div, a, b) => ([a, b], -1.0),
+                    _ => return atom,
+                };
+                let [Some(first), Some(second)] = parts.map(|part| find(Unary::Ln, part)) else {
+                    return atom;
+                };
+                let size = [node, first, second].map(|node| (self.hull)(node).magnitude());
+                // A logarithm of the arena may be one of a way where the part is positive.
+                let is_positive = parts.iter().all(|part| (self.hull)(*part).lo() > 0.0);
+                if first == second || !is_positive || (self.hull)(x).lo() < 1e-290 {
+                    return atom;
+                }
+                let error = (size.iter().sum::<f64>() + 2.0) * unit * MARGIN;
+                terms(&[(&[(first, 1)], 1.0), (&[(second, 1)], sign)], error)
             }
             Unary::Sin | Unary::Cos if self.arena.widening() == 0.0 => {
                 let Some(half) = self.half_of(x) else { return atom };
@@ -249,6 +273,35 @@ impl<'a> Algebra<'a> {
             }
             _ => atom,
         }
+    }
+
+    /// Returns x and an error for a function of its inverse function: SIN[ASIN[x]], COS[ACOS[x]], TAN[ATAN[x]], EXP[LN[x]],
+    /// LN[EXP[x]].
+    fn inverse(&self, function: Unary, of: NodeId) -> Option<(NodeId, f64)> {
+        let Node::Unary(inner, x) = self.arena.node(of) else { return None };
+        let (unit, size) = (FUNCTION_ERROR * MARGIN, (self.hull)(x).magnitude());
+        let error = match (function, inner) {
+            // The angle is off by 360 units at most, a turn's sum included: 6.3 of a radian, and the function's own.
+            (Unary::Sin, Unary::Asin) | (Unary::Cos, Unary::Acos) => 12.0 * unit,
+            // The slope of the tangent is 1 + x², and the angle is off by 90 units of a degree.
+            (Unary::Tan, Unary::Atan) if size <= 1e5 => (3.0 * (1.0 + size * size) + 2.0 * size) * unit,
+            (Unary::Exp, Unary::Ln) if (self.hull)(x).lo() >= 1e-290 => {
+                size * ((self.hull)(of).magnitude() + 1.0) * 1.01 * unit
+            }
+            (Unary::Ln, Unary::Exp) if size <= 600.0 => (size + 1.0) * 1.01 * unit,
+            _ => return None,
+        };
+        Some((x, error))
+    }
+
+    /// Returns x of COS[ASIN[x]] and SIN[ACOS[x]], whose square is 1 − x².
+    fn leg(&self, atom: NodeId) -> Option<NodeId> {
+        let Node::Unary(function, angle) = self.arena.node(atom) else { return None };
+        match (function, self.arena.node(angle)) {
+            (Unary::Cos, Node::Unary(Unary::Asin, x)) | (Unary::Sin, Node::Unary(Unary::Acos, x)) => Some(x),
+            _ => None,
+        }
+        .filter(|_| self.arena.widening() == 0.0)
     }
 
     /// Returns the node of which another is the double, without a rounding.
@@ -346,6 +399,7 @@ impl<'a> Algebra<'a> {
     fn has_square(&self, atom: NodeId) -> bool {
         match self.arena.node(atom) {
             Node::Unary(Unary::Sqrt | Unary::Abs, _) => true,
+            Node::Unary(Unary::Sin | Unary::Cos, _) if self.leg(atom).is_some() => true,
             Node::Unary(Unary::Sin, x) => self.arena.find_unary(Unary::Cos, x).is_some(),
             _ => false,
         }
@@ -365,6 +419,15 @@ impl<'a> Algebra<'a> {
             Node::Unary(Unary::Abs, x) => {
                 let x = self.node(x)?;
                 self.product(&x, &x)
+            }
+            Node::Unary(Unary::Sin | Unary::Cos, _) if self.leg(atom).is_some() => {
+                let leg = self.leg(atom)?;
+                let x = self.node(leg)?;
+                let minus = self.product(&x, &x).map(|square| self.scaled(&square, -1.0))?;
+                let mut square = self.sum(&Polynomial::constant(1.0), &minus);
+                // Twice the error of SIN[ASIN[x]].
+                square.error = add_up(square.error, 25.0 * FUNCTION_ERROR);
+                Some(square)
             }
             Node::Unary(Unary::Sin, x) => {
                 let cosine = self.node(self.arena.find_unary(Unary::Cos, x)?)?;

@@ -241,6 +241,11 @@ impl Arena {
         self.index.get(&Key::Binary(operator, a, b)).copied()
     }
 
+    /// Returns the node of a number if the arena has it.
+    pub(crate) fn find_constant(&self, value: f64) -> Option<NodeId> {
+        self.index.get(&Key::Constant(value.to_bits())).copied()
+    }
+
     /// Returns the sums that have been examined for identities.
     pub(crate) fn identities(&self) -> &Identities {
         &self.identities

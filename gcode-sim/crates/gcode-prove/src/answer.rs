@@ -135,6 +135,10 @@ pub struct Answer {
 /// Message of a thread that has panicked.
 const FAULT: &str = "the proof has stopped with a fault of the program: report it";
 
+/// What has kept a proof from its first box.
+const NO_TIME: &str =
+    "reading the program has taken all the time: prove its macro from a file of its own, or give more --time";
+
 /// Largest number of claims that are proved together.
 const MAX_CLAIMS: usize = 60;
 
@@ -472,6 +476,13 @@ impl<S: Setup> Prover<'_, S> {
         }
         self.answer.boxes = self.watch.boxes();
         self.answer.runs = self.watch.runs();
+        if self.answer.verdict == Verdict::Undecided
+            && self.answer.boxes == 0
+            && self.answer.unfollowed.is_empty()
+            && self.watch.is_over()
+        {
+            self.answer.unfollowed.push(NO_TIME.to_owned());
+        }
         self.answer
     }
 }

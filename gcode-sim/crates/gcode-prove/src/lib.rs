@@ -56,6 +56,7 @@ mod division;
 mod points;
 mod witness;
 
+mod joined;
 mod shared;
 
 mod search;

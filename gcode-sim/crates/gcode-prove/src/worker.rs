@@ -3,6 +3,7 @@ use gcode_enclosure::{Domain, Enclosures, Interval};
 use gcode_lang::program::Library;
 
 use crate::division::divide;
+use crate::joined::prove_joined;
 use crate::leaf::End;
 use crate::region::{ClaimSet, Finding, examine};
 use crate::search::Prober;
@@ -65,6 +66,15 @@ impl<L: Library> Prober<'_, L> {
         }
         if finding.is_included {
             self.shared.include(finding.has_end);
+        }
+        if finding.has_many_ways && self.joins_left > 0 {
+            self.joins_left -= 1;
+            let open = claims & !finding.proved & self.shared.open_claims();
+            let joined = prove_joined(&mut self.tree, &pending.domain, open, self.watch);
+            if joined != 0 {
+                finding.proved |= joined;
+                self.joins_left += 2;
+            }
         }
         let left = claims & !finding.proved;
         if left != 0 {
