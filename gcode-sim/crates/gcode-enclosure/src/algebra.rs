@@ -21,12 +21,12 @@ const MAX_NODES: usize = 120;
 /// Bound of what an operation loses to underflow.
 const LOST: f64 = 1e-300;
 /// Margin for the arithmetic of a bound.
-const MARGIN: f64 = 1.0 + 1e-9;
+pub(crate) const MARGIN: f64 = 1.0 + 1e-9;
 
 /// Algebra over the ranges of nodes.
 pub(crate) struct Algebra<'a> {
-    arena: &'a Arena,
-    hull: &'a dyn Fn(NodeId) -> Interval,
+    pub(crate) arena: &'a Arena,
+    pub(crate) hull: &'a dyn Fn(NodeId) -> Interval,
     known: HashMap<NodeId, Option<Rc<Polynomial>>>,
 }
 
@@ -136,7 +136,14 @@ impl<'a> Algebra<'a> {
                 let x = self.node(x)?;
                 Some(self.scaled(&x, -1.0))
             }
-            Node::Unary(function, x) => Some(self.function(node, function, x)),
+            Node::Unary(function, x) => match self.inverse(function, x) {
+                Some((inner, error)) => {
+                    let mut inner = (*self.node(inner)?).clone();
+                    inner.error = add_up(inner.error, error);
+                    Some(inner)
+                }
+                None => Some(self.function(node, function, x)),
+            },
             Node::Binary(operator, a, b) => self.operation(node, operator, a, b),
         }
     }
@@ -223,11 +230,6 @@ impl<'a> Algebra<'a> {
         };
         let Semantics { returns_signed_angles, .. } = self.arena.semantics();
         let unit = FUNCTION_ERROR * MARGIN + self.arena.widening();
-        if self.arena.widening() == 0.0
-            && let Some((inner, error)) = self.inverse(function, x)
-        {
-            return terms(&[(&[(inner, 1)], 1.0)], error);
-        }
         match function {
             // Both functions and both conversions, of 90° and 180° at most.
             Unary::Acos if returns_signed_angles || (self.hull)(x).lo() >= 0.0 => {
@@ -273,35 +275,6 @@ impl<'a> Algebra<'a> {
             }
             _ => atom,
         }
-    }
-
-    /// Returns x and an error for a function of its inverse function: SIN[ASIN[x]], COS[ACOS[x]], TAN[ATAN[x]], EXP[LN[x]],
-    /// LN[EXP[x]].
-    fn inverse(&self, function: Unary, of: NodeId) -> Option<(NodeId, f64)> {
-        let Node::Unary(inner, x) = self.arena.node(of) else { return None };
-        let (unit, size) = (FUNCTION_ERROR * MARGIN, (self.hull)(x).magnitude());
-        let error = match (function, inner) {
-            // The angle is off by 360 units at most, a turn's sum included: 6.3 of a radian, and the function's own.
-            (Unary::Sin, Unary::Asin) | (Unary::Cos, Unary::Acos) => 12.0 * unit,
-            // The slope of the tangent is 1 + x², and the angle is off by 90 units of a degree.
-            (Unary::Tan, Unary::Atan) if size <= 1e5 => (3.0 * (1.0 + size * size) + 2.0 * size) * unit,
-            (Unary::Exp, Unary::Ln) if (self.hull)(x).lo() >= 1e-290 => {
-                size * ((self.hull)(of).magnitude() + 1.0) * 1.01 * unit
-            }
-            (Unary::Ln, Unary::Exp) if size <= 600.0 => (size + 1.0) * 1.01 * unit,
-            _ => return None,
-        };
-        Some((x, error))
-    }
-
-    /// Returns x of COS[ASIN[x]] and SIN[ACOS[x]], whose square is 1 − x².
-    fn leg(&self, atom: NodeId) -> Option<NodeId> {
-        let Node::Unary(function, angle) = self.arena.node(atom) else { return None };
-        match (function, self.arena.node(angle)) {
-            (Unary::Cos, Node::Unary(Unary::Asin, x)) | (Unary::Sin, Node::Unary(Unary::Acos, x)) => Some(x),
-            _ => None,
-        }
-        .filter(|_| self.arena.widening() == 0.0)
     }
 
     /// Returns the node of which another is the double, without a rounding.

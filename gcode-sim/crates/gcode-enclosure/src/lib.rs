@@ -82,6 +82,7 @@ mod grain;
 mod hull;
 mod identities;
 mod interval;
+mod inverses;
 mod model;
 mod multiples;
 mod node;
@@ -90,6 +91,7 @@ mod polynomial_range;
 mod proof;
 mod ratio;
 mod rounding;
+mod squares;
 #[cfg(test)]
 mod tests;
 mod values;

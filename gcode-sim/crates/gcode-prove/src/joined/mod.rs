@@ -3,15 +3,22 @@
 //! A variable that differs between ways becomes an input of its own, whose range has its values on every way. What relates it
 //! to others is kept in two forms: its distance from another input, and conditions that hold on every way, found among
 //! those that the program asks. A second pass knows the conditions of the first from its first turn on. Nothing is refuted.
+mod substitution;
+#[cfg(test)]
+mod tests;
+mod way;
+
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use gcode_control::Limits;
-use gcode_control::symbolic::{Advance, Halt, Snapshot, SymbolicRun, Term, TermOperation, Terms, Test};
-use gcode_enclosure::{Arena, Condition, Domain, Enclosures, Interval, Node, NodeId, Relation};
+use gcode_control::symbolic::{Advance, Halt, Snapshot, SymbolicRun, Term, Test};
+use gcode_enclosure::{Condition, Domain, Enclosures, Interval, NodeId, Relation};
 use gcode_lang::program::Library;
 
+use self::substitution::{inputs_of, substitute};
+use self::way::{Way, WayTerms};
 use crate::leaf::{ClaimState, End, state_at};
-use crate::nodes::{Nodes, TestKey, is_finite, key, semantics};
+use crate::nodes::{Nodes, key, semantics};
 use crate::region::{ClaimSet, decide};
 use crate::request::Claim;
 use crate::tree::{Question, Tree, node_formula};
@@ -26,54 +33,17 @@ const MAX_WAYS: usize = 64;
 /// Largest number of turns.
 const MAX_TURNS: usize = 600;
 
+/// Largest number of nodes.
+const MAX_NODES: usize = 100_000;
+
 /// Largest number of passes.
 const MAX_PASSES: usize = 4;
 
 /// Largest number of conditions that are kept.
 const MAX_CONDITIONS: usize = 48;
 
-/// Run up to a block, with what is assumed of the values on its way.
-struct Way {
-    snapshot: Snapshot,
-    enclosures: Enclosures,
-    /// Answers to the questions of the next block.
-    answers: HashMap<TestKey, bool>,
-}
-
-/// Terms of the way that is followed.
-struct WayTerms {
-    nodes: Nodes,
-    enclosures: Enclosures,
-    answers: HashMap<TestKey, bool>,
-}
-
-impl Terms for WayTerms {
-    fn node(&mut self, operation: TermOperation, operands: [Term; 2]) -> Term {
-        self.nodes.node(operation, operands)
-    }
-
-    fn bounds(&mut self, term: Term) -> (f64, f64) {
-        let id = self.nodes.id(term);
-        let hull = self.enclosures.enclose(self.nodes.arena(), id);
-        (hull.lo(), hull.hi())
-    }
-
-    fn answer(&mut self, test: &Test) -> Option<bool> {
-        if let Some(answer) = self.answers.get(&key(test)) {
-            return Some(*answer);
-        }
-        match *test {
-            Test::Compare(relation, left, right) => {
-                let condition = self.nodes.condition(relation, left, right);
-                self.enclosures.decide(self.nodes.arena(), condition)
-            }
-            Test::Finite(term) => {
-                let id = self.nodes.id(term);
-                is_finite(self.nodes.arena(), &mut self.enclosures, id)
-            }
-        }
-    }
-}
+/// Largest part of the time.
+const MAX_PART: f64 = 0.08;
 
 /// Proof of one box.
 struct JoinedProof<'t, L> {
@@ -91,6 +61,8 @@ struct JoinedProof<'t, L> {
     candidates: Vec<Condition>,
     known: HashSet<Condition>,
     blocks: u64,
+    /// Part of the time at which the work is given up.
+    end_part: f64,
 }
 
 /// Returns the claims of a set that are proved of a box by joining its ways.
@@ -122,10 +94,12 @@ pub(crate) fn prove_joined<L: Library>(
         candidates: Vec::new(),
         known: HashSet::new(),
         blocks: 0,
+        end_part: watch.part() + MAX_PART,
     };
+    let mut proved = 0;
     for _ in 0..MAX_PASSES {
         let known = proof.known.len();
-        proof.proved = claims;
+        proof.proved = claims & !proved;
         proof.run.restore(&start);
         for (index, range) in question.ranges.iter().enumerate().take(inputs) {
             let input = proof.terms.nodes.input(index);
@@ -134,13 +108,14 @@ pub(crate) fn prove_joined<L: Library>(
             _ = proof.run.set_term(range.variable, term);
         }
         if proof.pass().is_none() {
-            return 0;
+            break;
         }
-        if proof.proved != 0 || proof.known.len() == known {
+        proved |= proof.proved;
+        if proved == claims || proof.known.len() == known {
             break;
         }
     }
-    proof.proved
+    proved
 }
 
 impl<L: Library> JoinedProof<'_, L> {
@@ -156,9 +131,6 @@ impl<L: Library> JoinedProof<'_, L> {
             let mut arrived = Vec::new();
             for way in ways {
                 self.follow(way, &mut arrived)?;
-                if self.watch.is_over() || self.terms.nodes.arena().len() > 100_000 {
-                    return None;
-                }
             }
             if arrived.is_empty() || self.proved == 0 {
                 return Some(());
@@ -166,6 +138,12 @@ impl<L: Library> JoinedProof<'_, L> {
             ways = self.join_all(arrived)?;
         }
         None
+    }
+
+    fn is_enough(&self) -> bool {
+        self.watch.is_over()
+            || self.watch.part() > self.end_part
+            || self.terms.nodes.arena().len() > MAX_NODES
     }
 
     /// Returns the ways on which the conditions of the request hold.
@@ -227,7 +205,7 @@ impl<L: Library> JoinedProof<'_, L> {
     fn follow(&mut self, way: Way, arrived: &mut Vec<Way>) -> Option<()> {
         let mut ways = vec![way];
         while let Some(way) = ways.pop() {
-            if ways.len() + arrived.len() > MAX_WAYS {
+            if ways.len() + arrived.len() > MAX_WAYS || self.is_enough() {
                 return None;
             }
             self.take(&way);
@@ -363,6 +341,9 @@ impl<L: Library> JoinedProof<'_, L> {
             enclosures.relate(input, other, difference);
         }
         for candidate in self.candidates.clone() {
+            if self.is_enough() {
+                return None;
+            }
             if self.holds_on_all(ways, &values, candidate)
                 && !enclosures.assume(self.terms.nodes.arena(), candidate)
             {
@@ -381,8 +362,8 @@ impl<L: Library> JoinedProof<'_, L> {
     ) -> Vec<(usize, usize, Interval)> {
         let mut relations = Vec::new();
         let mut others: Vec<(usize, Vec<NodeId>)> = Vec::new();
-        for index in 0..self.domain.ranges().len() {
-            if ranges[index].width() > 0.0 {
+        for (index, range) in self.domain.ranges().iter().enumerate() {
+            if range.width() > 0.0 {
                 let term = self.terms.nodes.input(index);
                 others.push((index, vec![self.terms.nodes.id(term); ways.len()]));
             }
@@ -492,52 +473,4 @@ impl<L: Library> JoinedProof<'_, L> {
         let right = substitute(arena, condition.right, map, is_kept, &mut done)?;
         Some(Condition { left, right, ..condition })
     }
-}
-
-/// Returns a node in which others are replaced; `None` if another input than those kept is left.
-fn substitute(
-    arena: &mut Arena,
-    node: NodeId,
-    map: &HashMap<NodeId, NodeId>,
-    is_kept: &dyn Fn(usize) -> bool,
-    done: &mut HashMap<NodeId, Option<NodeId>>,
-) -> Option<NodeId> {
-    if let Some(other) = map.get(&node) {
-        return Some(*other);
-    }
-    if let Some(known) = done.get(&node) {
-        return *known;
-    }
-    let result = match arena.node(node) {
-        Node::Constant(_) => Some(node),
-        Node::Input(input) => is_kept(input).then_some(node),
-        Node::Unary(function, x) => {
-            substitute(arena, x, map, is_kept, done).map(|x| arena.unary(function, x))
-        }
-        Node::Binary(operator, a, b) => substitute(arena, a, map, is_kept, done)
-            .zip(substitute(arena, b, map, is_kept, done))
-            .map(|(a, b)| arena.binary(operator, a, b)),
-    };
-    done.insert(node, result);
-    result
-}
-
-/// Iterates over the inputs of which a node is computed.
-fn inputs_of(arena: &Arena, node: NodeId) -> impl Iterator<Item = usize> {
-    let mut seen = HashSet::new();
-    let mut pending = vec![node];
-    std::iter::from_fn(move || {
-        while let Some(next) = pending.pop() {
-            if !seen.insert(next) {
-                continue;
-            }
-            match arena.node(next) {
-                Node::Constant(_) => {}
-                Node::Input(input) => return Some(input),
-                Node::Unary(_, x) => pending.push(x),
-                Node::Binary(_, a, b) => pending.extend([a, b]),
-            }
-        }
-        None
-    })
 }
