@@ -15,7 +15,7 @@ use crate::shared::{Pending, Rest, Shared};
 use crate::simplify::simplified;
 use crate::tree::{Question, Tree};
 use crate::variable_bounds::{Bound, Side, bound};
-use crate::watch::Watch;
+use crate::watch::{NO_TIME, Watch};
 use crate::witness::Witness;
 use crate::worker::{pending_box, starting_boxes};
 
@@ -134,10 +134,6 @@ pub struct Answer {
 
 /// Message of a thread that has panicked.
 const FAULT: &str = "the proof has stopped with a fault of the program: report it";
-
-/// What has kept a proof from its first box.
-const NO_TIME: &str =
-    "reading the program has taken all the time: prove its macro from a file of its own, or give more --time";
 
 /// Largest number of claims that are proved together.
 const MAX_CLAIMS: usize = 60;
@@ -474,15 +470,11 @@ impl<S: Setup> Prover<'_, S> {
             };
             self.answer.unread = ranges.filter(is_unread).map(|(_, range)| range.variable).collect();
         }
+        let has_nothing = self.answer.verdict == Verdict::Undecided && self.watch.ended_before_a_box();
         self.answer.boxes = self.watch.boxes();
         self.answer.runs = self.watch.runs();
-        if self.answer.verdict == Verdict::Undecided
-            && self.answer.boxes == 0
-            && self.answer.unfollowed.is_empty()
-            && self.watch.is_over()
-        {
-            self.answer.unfollowed.push(NO_TIME.to_owned());
-        }
+        let is_unexplained = has_nothing && self.answer.unfollowed.is_empty();
+        self.answer.unfollowed.extend(is_unexplained.then(|| NO_TIME.to_owned()));
         self.answer
     }
 }

@@ -45,8 +45,9 @@
 mod request;
 mod watch;
 
-mod leaf;
 mod nodes;
+
+mod leaf;
 mod tree;
 
 mod region;

@@ -10,7 +10,7 @@ use gcode_enclosure::{Condition, Domain, Node, NodeId, Unary};
 use gcode_lang::program::{Bytecode, Library};
 use gcode_lang::syntax::ast::BinaryOp;
 
-use crate::leaf::{BoundState, ClaimState, End, Leaf, NodeFormula, state_at};
+use crate::leaf::{BoundState, ClaimState, End, Leaf, NodeFormula, node_formula, state_at};
 use crate::nodes::{Nodes, semantics};
 use crate::request::{Claim, Range};
 use crate::watch::Watch;
@@ -479,31 +479,6 @@ impl<L: Library> Tree<L> {
             End::Excluded | End::Program | End::Alarm(_) | End::Endless => BoundState::None,
         };
         Leaf { end, blocks, claims, bounds: vec![bound; self.question.bounds.len()] }
-    }
-}
-
-/// Returns a formula over nodes.
-pub(crate) fn node_formula(nodes: &mut Nodes, formula: &Formula) -> NodeFormula {
-    match formula {
-        Formula::Known(known) => NodeFormula::Known(*known),
-        Formula::Compare(relation, left, right) => {
-            NodeFormula::Condition(nodes.condition(*relation, *left, *right))
-        }
-        Formula::Logic(op, left, right) => {
-            let (left, right) = (node_formula(nodes, left), node_formula(nodes, right));
-            match (op, &left, &right) {
-                (BinaryOp::And, NodeFormula::Known(true), _)
-                | (BinaryOp::Or, NodeFormula::Known(false), _) => right,
-                (BinaryOp::And, _, NodeFormula::Known(true))
-                | (BinaryOp::Or, _, NodeFormula::Known(false)) => left,
-                (BinaryOp::And, NodeFormula::Known(false), _)
-                | (BinaryOp::And, _, NodeFormula::Known(false)) => NodeFormula::Known(false),
-                (BinaryOp::Or, NodeFormula::Known(true), _) | (BinaryOp::Or, _, NodeFormula::Known(true)) => {
-                    NodeFormula::Known(true)
-                }
-                _ => NodeFormula::Logic(*op, Box::new(left), Box::new(right)),
-            }
-        }
     }
 }
 

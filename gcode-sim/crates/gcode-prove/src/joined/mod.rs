@@ -17,11 +17,11 @@ use gcode_lang::program::Library;
 
 use self::substitution::{inputs_of, substitute};
 use self::way::{Way, WayTerms};
-use crate::leaf::{ClaimState, End, state_at};
+use crate::leaf::{ClaimState, End, node_formula, state_at};
 use crate::nodes::{Nodes, key, semantics};
 use crate::region::{ClaimSet, decide};
 use crate::request::Claim;
-use crate::tree::{Question, Tree, node_formula};
+use crate::tree::{Question, Tree};
 use crate::watch::Watch;
 
 /// Largest number of variables that are inputs of their own.
