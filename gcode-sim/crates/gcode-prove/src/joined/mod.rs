@@ -15,7 +15,7 @@ use gcode_control::symbolic::{Advance, Halt, Snapshot, SymbolicRun, Term, Test};
 use gcode_enclosure::{Condition, Domain, Enclosures, Interval, NodeId, Relation};
 use gcode_lang::program::Library;
 
-use self::substitution::{inputs_of, substitute};
+use self::substitution::{has_values, inputs_of, substitute};
 use self::way::{Way, WayTerms};
 use crate::leaf::{ClaimState, End, node_formula, state_at};
 use crate::nodes::{Nodes, key, semantics};
@@ -453,7 +453,11 @@ impl<L: Library> JoinedProof<'_, L> {
             let Some(here) = self.substituted(condition, &map, &|input| input < inputs) else {
                 return false;
             };
-            if way.enclosures.decide_by_signs(self.terms.nodes.arena(), here) != Some(true) {
+            let arena = self.terms.nodes.arena();
+            let computed: HashSet<NodeId> = values.values().map(|ids| ids[place]).collect();
+            if !has_values(arena, &mut way.enclosures, here, computed)
+                || way.enclosures.decide_by_signs(arena, here) != Some(true)
+            {
                 return false;
             }
         }

@@ -1,7 +1,7 @@
 //! Nodes with others in their place, and the inputs of which a node is computed.
 use std::collections::{HashMap, HashSet};
 
-use gcode_enclosure::{Arena, Node, NodeId};
+use gcode_enclosure::{Arena, Condition, Enclosures, Node, NodeId};
 
 /// Returns a node in which others are replaced; `None` if another input than those kept is left.
 pub(super) fn substitute(
@@ -29,6 +29,33 @@ pub(super) fn substitute(
     };
     done.insert(node, result);
     result
+}
+
+/// Returns true if no operation of a condition can raise an alarm; those up to the computed nodes have been executed.
+///
+/// A way that never computes a root says nothing of it, and not that its argument has one.
+pub(super) fn has_values(
+    arena: &Arena,
+    enclosures: &mut Enclosures,
+    condition: Condition,
+    computed: HashSet<NodeId>,
+) -> bool {
+    let mut seen = computed;
+    let mut pending = vec![condition.left, condition.right];
+    while let Some(next) = pending.pop() {
+        if !seen.insert(next) {
+            continue;
+        }
+        match arena.node(next) {
+            Node::Constant(_) | Node::Input(_) => continue,
+            Node::Unary(_, x) => pending.push(x),
+            Node::Binary(_, a, b) => pending.extend([a, b]),
+        }
+        if !enclosures.alarms(arena, next).is_empty() {
+            return false;
+        }
+    }
+    true
 }
 
 /// Iterates over the inputs of which a node is computed.

@@ -71,3 +71,11 @@ fn what_one_branch_alone_sets_is_not_joined() {
     let program = "#3=0\nWHILE[#3 LT 3]DO1\nIF[#1 GT #3]THEN #4=1\n#3=#3+1\nEND1\n";
     assert_eq!(proved(program, "#1=0..2", &["#4 EQ 1", "#4 EQ #0"]), [false, false]);
 }
+
+#[test]
+fn a_root_that_one_way_never_computes_says_nothing_of_its_argument() {
+    // From −5 on, each turn adds 0.25: after 12 turns #4 is −5 + 11·0.25 = −2.25.
+    let program = "#3=0\n#5=#1\nWHILE[#3 LT 12]DO1\n#4=#5\nIF[#4 LT 0]GOTO1\nIF[SQRT[#4] GT 1.5]GOTO9\n\
+                   N1 IF[#5 GE 1]GOTO2\n#5=#5+0.25\nGOTO3\nN2 #5=#5-0.75\nN3 #3=#3+1\nEND1\nN9\n";
+    assert_eq!(proved(program, "#1=-5..1", &["#4 GE 0", "#4 GE -5", "#4 LE 1.25"]), [false, true, true]);
+}
