@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
 use crate::arena::Arena;
-use crate::hull::FUNCTION_ERROR;
+use crate::hull::{FUNCTION_ERROR, SINE_ERROR};
 use crate::interval::{Interval, add_up};
 use crate::model::{HALF_ULP, is_power_of_two};
 use crate::node::{Binary, Node, NodeId, Semantics, Unary};
@@ -258,7 +258,9 @@ impl<'a> Algebra<'a> {
                 terms(&[(&[(first, 1)], 1.0), (&[(second, 1)], sign)], error)
             }
             Unary::Sin | Unary::Cos if self.arena.widening() == 0.0 => {
-                let Some(half) = self.half_of(x) else { return atom };
+                let Some(half) = self.half_of(x) else {
+                    return self.of_angle_sum(function, x).unwrap_or(atom);
+                };
                 let (sine, cosine) = (find(Unary::Sin, half), find(Unary::Cos, half));
                 match (function, sine, cosine) {
                     (Unary::Cos, Some(sine), _) => terms(&[(&[], 1.0), (&[(sine, 2)], -2.0)], 8.0 * unit),
@@ -275,17 +277,6 @@ impl<'a> Algebra<'a> {
             }
             _ => atom,
         }
-    }
-
-    /// Returns the node of which another is the double, without a rounding.
-    fn half_of(&self, x: NodeId) -> Option<NodeId> {
-        let of_product = match self.arena.node(x) {
-            Node::Binary(Binary::Mul, a, b) if self.arena.as_constant(a) == Some(2.0) => Some(b),
-            Node::Binary(Binary::Mul, a, b) if self.arena.as_constant(b) == Some(2.0) => Some(a),
-            Node::Binary(Binary::Add, a, b) if a == b => Some(a),
-            _ => None,
-        };
-        of_product.or_else(|| self.arena.find_half(x))
     }
 
     /// Returns a polynomial × a number.
@@ -406,7 +397,7 @@ impl<'a> Algebra<'a> {
                 let cosine = self.node(self.arena.find_unary(Unary::Cos, x)?)?;
                 let minus = self.product(&cosine, &cosine).map(|square| self.scaled(&square, -1.0))?;
                 let mut square = self.sum(&Polynomial::constant(1.0), &minus);
-                square.error = add_up(square.error, 2.1 * (FUNCTION_ERROR + widening));
+                square.error = add_up(square.error, 2.1 * (SINE_ERROR + widening));
                 Some(square)
             }
             _ => None,

@@ -32,6 +32,9 @@ pub struct Enclosures {
     differences: Vec<(usize, usize, Interval)>,
 }
 
+/// Values of any sine.
+const SINES: Interval = Interval::of_ends(-1.0, 1.0);
+
 /// Largest number of inputs with a variable; the others are ranges only.
 const MAX_INPUTS: usize = 10;
 
@@ -247,6 +250,8 @@ impl Enclosures {
             let hull = |other: NodeId| match self.forms.get(other.index()) {
                 _ if other == node => range,
                 Some(Some(form)) => form.hull,
+                // A function of a part of the angle, which the node itself isn't computed of.
+                _ if matches!(arena.node(other), Node::Unary(Unary::Sin | Unary::Cos, _)) => SINES,
                 _ => Interval::ALL,
             };
             range = algebra::range_of(arena, node, &hull).map_or(range, |identity| range.intersect(identity));

@@ -66,6 +66,7 @@
 
 mod alarms;
 mod algebra;
+mod angle_sums;
 mod apply;
 mod approximation;
 mod arena;

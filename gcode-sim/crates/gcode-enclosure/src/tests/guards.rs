@@ -239,3 +239,51 @@ fn a_point_on_the_surface_keeps_its_equation() {
     assert!(bounds.is_complete);
     assert!(bounds.range.lo() > 1.0 - 2e-9 && bounds.range.hi() < 1.0 + 2e-9, "{:?}", bounds.range);
 }
+
+#[test]
+fn whole_numbers_are_left_out_one_by_one() {
+    // FIX[#1]+1 over 0.5…2.5 is 1, 2 or 3.
+    let mut path = Path::new(&[(0.5, 2.5)]);
+    let x = path.arena.input(0);
+    let fixed = path.arena.unary(Unary::Fix, x);
+    let whole = path.of(Binary::Add, fixed, Arena::ONE);
+    let [two, three] = [2.0, 3.0].map(|value| path.arena.constant(value));
+    path.assume(Relation::Ne, whole, Arena::ONE);
+    assert_eq!(path.enclosures.enclose(&path.arena, whole), Interval::new(2.0, 3.0));
+    path.assume(Relation::Ne, whole, three);
+    assert_eq!(path.decide(Relation::Eq, whole, two), Some(true));
+    assert!(!path.enclosures.assume(&path.arena, Condition::new(Relation::Ne, whole, two)));
+    // A half more is no whole number: 1.5, 2.5 and 3.5 are left where 1 is left out.
+    let mut path = Path::new(&[(0.5, 2.5)]);
+    let x = path.arena.input(0);
+    let (fixed, part) = (path.arena.unary(Unary::Fix, x), path.arena.constant(1.5));
+    let sum = path.of(Binary::Add, fixed, part);
+    path.assume(Relation::Gt, sum, part);
+    assert_eq!(path.enclosures.enclose(&path.arena, sum).hi(), 3.5);
+}
+
+#[test]
+fn a_direction_near_the_axis_is_near_0_or_near_a_turn() {
+    for (is_beyond, least, most) in [(true, 354.0, 360.0), (false, 0.0, 6.0)] {
+        // The direction of (10, −1…1): 5.71° and 354.29° are the ends.
+        let mut path = Path::new(&[(-1.0, 1.0)]);
+        let (y, x) = (path.arena.input(0), path.arena.constant(10.0));
+        let angle = path.of(Binary::Atan, y, x);
+        assert_eq!(path.enclosures.enclose(&path.arena, angle).lo(), 0.0);
+        let half = path.arena.constant(180.0);
+        path.assume(if is_beyond { Relation::Gt } else { Relation::Le }, angle, half);
+        let range = path.enclosures.enclose(&path.arena, angle);
+        assert!(range.lo() >= least && range.hi() <= most, "{range:?}");
+        assert!(range.width() >= 5.71, "{range:?}");
+    }
+}
+
+#[test]
+fn an_exponential_of_no_positive_number_is_1_at_most() {
+    for (hi, is_limited) in [(0.0, true), (1e-9, false)] {
+        let mut path = Path::new(&[(-1.0, hi)]);
+        let x = path.arena.input(0);
+        let value = path.arena.unary(Unary::Exp, x);
+        assert_eq!(path.decide(Relation::Le, value, Arena::ONE) == Some(true), is_limited);
+    }
+}
