@@ -189,17 +189,23 @@ impl<'a> Algebra<'a> {
             false => Interval::new(0.0, 360.0),
         };
         let range = (self.hull)(angle);
+        // An angle below 0 has a turn more; nearer to a whole turn, its sine may be rounded to the other sign.
+        let is_below =
+            turn.lo() == 0.0 && range.lo() >= -359.99 && range.hi() <= -1e-200;
         // Neither coordinate underflows or overflows, but that of an angle below any rounding.
         let is_moderate =
             |radius: NodeId| (self.hull)(radius).lo() >= 1e-10 && (self.hull)(radius).hi() <= 1e100;
         if (radius, angle) != of_x
-            || range.intersect(turn) != range
+            || range.intersect(turn) != range && !is_below
             || !radius.is_none_or(is_moderate)
             || self.arena.widening() > 0.0
         {
             return None;
         }
         let mut direction = (*self.node(angle)?).clone();
+        if is_below {
+            direction = self.sum(&direction, &Polynomial::constant(360.0));
+        }
         // Together: the conversion of at most 360°, two functions and two products as parts of a radian, the arc tangent
         // and its conversion of at most 180°, the sum with a turn.
         direction.error = add_up(direction.error, 6000.0 * f64::EPSILON);
@@ -262,15 +268,17 @@ impl<'a> Algebra<'a> {
                     return self.of_angle_sum(function, x).unwrap_or(atom);
                 };
                 let (sine, cosine) = (find(Unary::Sin, half), find(Unary::Cos, half));
+                // That of the double angle, and of a product that is counted twice: both angles convert alike.
+                let error = 6.0 * SINE_ERROR * MARGIN;
                 match (function, sine, cosine) {
-                    (Unary::Cos, Some(sine), _) => terms(&[(&[], 1.0), (&[(sine, 2)], -2.0)], 8.0 * unit),
+                    (Unary::Cos, Some(sine), _) => terms(&[(&[], 1.0), (&[(sine, 2)], -2.0)], error),
                     (Unary::Cos, None, Some(cosine)) => {
-                        terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], 8.0 * unit)
+                        terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], error)
                     }
                     (Unary::Sin, Some(sine), Some(cosine)) => {
                         let both =
                             if sine < cosine { [(sine, 1), (cosine, 1)] } else { [(cosine, 1), (sine, 1)] };
-                        terms(&[(&both, 2.0)], 8.0 * unit)
+                        terms(&[(&both, 2.0)], error)
                     }
                     _ => atom,
                 }

@@ -2,7 +2,7 @@
 use gcode_lang::units::Deg;
 
 use crate::algebra::{Algebra, MARGIN};
-use crate::hull::FUNCTION_ERROR;
+use crate::hull::SINE_ERROR;
 use crate::node::{Binary, Node, NodeId, Unary};
 use crate::polynomial::{Monomial, Polynomial, merged};
 
@@ -32,7 +32,7 @@ impl Algebra<'_> {
         // The conversion of each angle, the rounding of the sum, and five functions of which each is 1 at most.
         let radians = (1.5 * of_sum + of_parts) * f64::EPSILON * 0.017_454;
         let mut sum =
-            Polynomial { error: (radians + 6.0 * FUNCTION_ERROR) * MARGIN, ..Polynomial::default() };
+            Polynomial { error: (radians + 6.0 * SINE_ERROR) * MARGIN, ..Polynomial::default() };
         for ((left, x), (right, y), sign) in products {
             // A coefficient that is the product of two numbers is rounded.
             let coefficient = x * y * sign;

@@ -13,8 +13,9 @@ impl Algebra<'_> {
         }
         let (unit, size) = (FUNCTION_ERROR * MARGIN, (self.hull)(x).magnitude());
         let error = match (function, inner) {
-            // The angle is off by 360 units at most, a turn's sum included: 6.3 of a radian, and the function's own.
-            (Unary::Sin, Unary::Asin) | (Unary::Cos, Unary::Acos) => 12.0 * unit,
+            // As parts of a radian, with an error of one unit in each function: 1.6 of the arc, 1.6 of its degrees, 2.3 of a
+            // turn's sum, 6.3 of the radians, 1 of the sine. Together they are less than four of the bound of a function.
+            (Unary::Sin, Unary::Asin) | (Unary::Cos, Unary::Acos) => 8.0 * unit,
             // The slope of the tangent is 1 + x², and the angle is off by 90 units of a degree.
             (Unary::Tan, Unary::Atan) if size <= 1e5 => (3.0 * (1.0 + size * size) + 2.0 * size) * unit,
             (Unary::Exp, Unary::Ln) if (self.hull)(x).lo() >= 1e-290 => {

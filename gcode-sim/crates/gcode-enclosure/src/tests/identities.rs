@@ -135,6 +135,14 @@ fn the_direction_of_polar_coordinates() {
         let rest = f.of(Binary::Sub, angle, t);
         let turn = if is_signed { (-180.0, 180.0) } else { (0.0, 360.0) };
         assert!(enclosed(&f, rest, &[(0.5, 10.0), turn]).magnitude() < 1e-11);
+        // Below 0 a turn is added, and taken away again here.
+        if !is_signed {
+            let whole = f.0.constant(360.0);
+            let less = f.of(Binary::Sub, angle, whole);
+            let rest = f.of(Binary::Sub, less, t);
+            assert!(enclosed(&f, rest, &[(0.5, 10.0), (-359.0, -1e-9)]).magnitude() < 1e-11);
+            assert!(enclosed(&f, rest, &[(0.5, 10.0), (-360.0, 0.0)]).magnitude() >= 359.0);
+        }
         // Beyond the turn, and for a negative radius, the direction is another one.
         let beyond = enclosed(&f, rest, &[(0.5, 10.0), (turn.0, turn.1 + 1.0)]);
         assert!(beyond.lo() <= -359.0, "{beyond:?}");
