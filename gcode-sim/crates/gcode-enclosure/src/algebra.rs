@@ -190,8 +190,7 @@ impl<'a> Algebra<'a> {
         };
         let range = (self.hull)(angle);
         // An angle below 0 has a turn more; nearer to a whole turn, its sine may be rounded to the other sign.
-        let is_below =
-            turn.lo() == 0.0 && range.lo() >= -359.99 && range.hi() <= -1e-200;
+        let is_below = turn.lo() == 0.0 && range.lo() >= -359.99 && range.hi() <= -1e-200;
         // Neither coordinate underflows or overflows, but that of an angle below any rounding.
         let is_moderate =
             |radius: NodeId| (self.hull)(radius).lo() >= 1e-10 && (self.hull)(radius).hi() <= 1e100;
@@ -272,9 +271,7 @@ impl<'a> Algebra<'a> {
                 let error = 6.0 * SINE_ERROR * MARGIN;
                 match (function, sine, cosine) {
                     (Unary::Cos, Some(sine), _) => terms(&[(&[], 1.0), (&[(sine, 2)], -2.0)], error),
-                    (Unary::Cos, None, Some(cosine)) => {
-                        terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], error)
-                    }
+                    (Unary::Cos, None, Some(cosine)) => terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], error),
                     (Unary::Sin, Some(sine), Some(cosine)) => {
                         let both =
                             if sine < cosine { [(sine, 1), (cosine, 1)] } else { [(cosine, 1), (sine, 1)] };

@@ -31,8 +31,7 @@ impl Algebra<'_> {
         }
         // The conversion of each angle, the rounding of the sum, and five functions of which each is 1 at most.
         let radians = (1.5 * of_sum + of_parts) * f64::EPSILON * 0.017_454;
-        let mut sum =
-            Polynomial { error: (radians + 6.0 * SINE_ERROR) * MARGIN, ..Polynomial::default() };
+        let mut sum = Polynomial { error: (radians + 6.0 * SINE_ERROR) * MARGIN, ..Polynomial::default() };
         for ((left, x), (right, y), sign) in products {
             // A coefficient that is the product of two numbers is rounded.
             let coefficient = x * y * sign;

@@ -83,6 +83,8 @@ impl Enclosures {
             .or_else(|| self.decide_difference(arena, relation, left, right))
             .or_else(|| self.decide_quotient(arena, relation, left, right))
             .or_else(|| self.decide_quotient(arena, relation.swapped(), right, left))
+            .or_else(|| self.decide_product(arena, relation, left, right))
+            .or_else(|| self.decide_product(arena, relation.swapped(), right, left))
     }
 
     /// Decides a condition like [`Enclosures::decide`]; where a magnitude's argument has both signs, for each of them.
@@ -243,8 +245,14 @@ impl Enclosures {
         for Condition { relation, left, right } in conditions {
             let Some(difference) = self.difference(arena, left, right) else { continue };
             match relation {
-                Relation::Ge | Relation::Gt => facts.push(difference),
-                Relation::Le | Relation::Lt => facts.push(difference.neg()),
+                Relation::Ge | Relation::Gt => {
+                    facts.push(difference);
+                    facts.extend(self.facts_of_magnitude(arena, left, right));
+                }
+                Relation::Le | Relation::Lt => {
+                    facts.push(difference.neg());
+                    facts.extend(self.facts_of_magnitude(arena, right, left));
+                }
                 Relation::Eq => facts.extend([difference.neg(), difference]),
                 Relation::Ne => {}
             }

@@ -77,6 +77,7 @@ mod decisions;
 mod domain;
 mod elementary;
 mod enclosures;
+mod factor_signs;
 mod factors;
 mod form;
 mod grain;

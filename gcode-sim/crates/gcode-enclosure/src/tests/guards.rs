@@ -287,3 +287,34 @@ fn an_exponential_of_no_positive_number_is_1_at_most() {
         assert_eq!(path.decide(Relation::Le, value, Arena::ONE) == Some(true), is_limited);
     }
 }
+
+#[test]
+fn the_sides_of_a_triangle_are_guarded_by_sums_and_by_a_magnitude() {
+    // Heron's product s·(s − a)·(s − b)·(s − c) of sides from 1 to 9, each guard with a margin of 1e-6.
+    for (has_sum, has_magnitude) in [(true, true), (false, true), (true, false)] {
+        let mut path = Path::new(&[(1.0, 9.0), (1.0, 9.0), (1.0, 9.0)]);
+        let [a, b, c] = [0, 1, 2].map(|input| path.arena.input(input));
+        let margin = path.arena.constant(1e-6);
+        let sum = path.of(Binary::Add, a, b);
+        if has_sum {
+            let least = path.of(Binary::Sub, sum, margin);
+            path.assume(Relation::Le, c, least);
+        }
+        if has_magnitude {
+            let difference = path.of(Binary::Sub, a, b);
+            let magnitude = path.arena.unary(Unary::Abs, difference);
+            let most = path.of(Binary::Add, magnitude, margin);
+            path.assume(Relation::Ge, c, most);
+        }
+        let perimeter = path.of(Binary::Add, sum, c);
+        let two = path.arena.constant(2.0);
+        let s = path.of(Binary::Div, perimeter, two);
+        let mut product = s;
+        for side in [a, b, c] {
+            let rest = path.of(Binary::Sub, s, side);
+            product = path.of(Binary::Mul, product, rest);
+        }
+        let root = path.arena.unary(Unary::Sqrt, product);
+        assert_eq!(path.alarms(root).is_empty(), has_sum && has_magnitude);
+    }
+}
