@@ -2,8 +2,8 @@
 use std::hint::cold_path;
 
 use super::functions::{
-    ExecResult, angle, atan2, binary, compare, compare_numbers, function_alarm, function_value, integer,
-    is_finite, locate, power, variable_number,
+    ExecResult, angle, atan2, binary, compare, function_alarm, function_value, integer, is_finite, locate,
+    power, variable_number,
 };
 use super::notes::Note;
 use super::registers::Registers;
@@ -60,7 +60,7 @@ impl Registers {
             return compare(relation, left, self.fetch(right, last));
         }
         let left = self.fetch_number(left, last);
-        compare_numbers(relation, left, self.fetch_number(right, last))
+        relation.holds(left, self.fetch_number(right, last))
     }
 
     /// Returns the value of an operand; `last` is the result of the preceding instruction.

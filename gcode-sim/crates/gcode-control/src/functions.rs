@@ -75,20 +75,7 @@ pub(super) fn compare(relation: Relation, left: Value, right: Value) -> bool {
     match relation {
         Relation::Eq => left == right,
         Relation::Ne => left != right,
-        _ => compare_numbers(relation, left.number(), right.number()),
-    }
-}
-
-/// Compares two values that aren't vacant.
-#[inline(always)]
-pub(super) fn compare_numbers(relation: Relation, left: f64, right: f64) -> bool {
-    match relation {
-        Relation::Eq => left == right,
-        Relation::Ne => left != right,
-        Relation::Gt => left > right,
-        Relation::Ge => left >= right,
-        Relation::Lt => left < right,
-        Relation::Le => left <= right,
+        _ => relation.holds(left.number(), right.number()),
     }
 }
 

@@ -55,9 +55,14 @@ impl Registers {
 
     /// Returns true if a program that continues from here can't distinguish the two, except by a clock that it reads.
     pub(super) fn continues_like(&self, other: &Self) -> bool {
+        self.continues_like_but_for_variables(other) && self.variables.has_same_values(&other.variables)
+    }
+
+    /// Returns true if a program can't distinguish the two but by its variables and a clock.
+    pub(super) fn continues_like_but_for_variables(&self, other: &Self) -> bool {
         let Self {
             data,
-            variables,
+            variables: _,
             state,
             lookahead,
             panel,
@@ -69,7 +74,6 @@ impl Registers {
             plain_basis: _,
         } = self;
         **state == *other.state
-            && variables.has_same_values(&other.variables)
             && *lookahead == other.lookahead
             && *panel == other.panel
             && clock.continues_like(&other.clock)

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
 use crate::arena::Arena;
-use crate::hull::FUNCTION_ERROR;
+use crate::hull::{FUNCTION_ERROR, SINE_ERROR};
 use crate::interval::{Interval, add_up};
 use crate::model::{HALF_ULP, is_power_of_two};
 use crate::node::{Binary, Node, NodeId, Semantics, Unary};
@@ -21,12 +21,12 @@ const MAX_NODES: usize = 120;
 /// Bound of what an operation loses to underflow.
 const LOST: f64 = 1e-300;
 /// Margin for the arithmetic of a bound.
-const MARGIN: f64 = 1.0 + 1e-9;
+pub(crate) const MARGIN: f64 = 1.0 + 1e-9;
 
 /// Algebra over the ranges of nodes.
 pub(crate) struct Algebra<'a> {
-    arena: &'a Arena,
-    hull: &'a dyn Fn(NodeId) -> Interval,
+    pub(crate) arena: &'a Arena,
+    pub(crate) hull: &'a dyn Fn(NodeId) -> Interval,
     known: HashMap<NodeId, Option<Rc<Polynomial>>>,
 }
 
@@ -136,7 +136,14 @@ impl<'a> Algebra<'a> {
                 let x = self.node(x)?;
                 Some(self.scaled(&x, -1.0))
             }
-            Node::Unary(function, x) => Some(self.function(node, function, x)),
+            Node::Unary(function, x) => match self.inverse(function, x) {
+                Some((inner, error)) => {
+                    let mut inner = (*self.node(inner)?).clone();
+                    inner.error = add_up(inner.error, error);
+                    Some(inner)
+                }
+                None => Some(self.function(node, function, x)),
+            },
             Node::Binary(operator, a, b) => self.operation(node, operator, a, b),
         }
     }
@@ -182,17 +189,22 @@ impl<'a> Algebra<'a> {
             false => Interval::new(0.0, 360.0),
         };
         let range = (self.hull)(angle);
+        // An angle below 0 has a turn more; nearer to a whole turn, its sine may be rounded to the other sign.
+        let is_below = turn.lo() == 0.0 && range.lo() >= -359.99 && range.hi() <= -1e-200;
         // Neither coordinate underflows or overflows, but that of an angle below any rounding.
         let is_moderate =
             |radius: NodeId| (self.hull)(radius).lo() >= 1e-10 && (self.hull)(radius).hi() <= 1e100;
         if (radius, angle) != of_x
-            || range.intersect(turn) != range
+            || range.intersect(turn) != range && !is_below
             || !radius.is_none_or(is_moderate)
             || self.arena.widening() > 0.0
         {
             return None;
         }
         let mut direction = (*self.node(angle)?).clone();
+        if is_below {
+            direction = self.sum(&direction, &Polynomial::constant(360.0));
+        }
         // Together: the conversion of at most 360°, two functions and two products as parts of a radian, the arc tangent
         // and its conversion of at most 180°, the sum with a turn.
         direction.error = add_up(direction.error, 6000.0 * f64::EPSILON);
@@ -231,35 +243,45 @@ impl<'a> Algebra<'a> {
                     None => atom,
                 }
             }
+            Unary::Ln if self.arena.widening() == 0.0 => {
+                // The product is rounded, and all three logarithms.
+                let (parts, sign) = match self.arena.node(x) {
+                    Node::Binary(Binary::Mul, a, b) => ([a, b], 1.0),
+                    Node::Binary(Binary::Div, a, b) => ([a, b], -1.0),
+                    _ => return atom,
+                };
+                let [Some(first), Some(second)] = parts.map(|part| find(Unary::Ln, part)) else {
+                    return atom;
+                };
+                let size = [node, first, second].map(|node| (self.hull)(node).magnitude());
+                // A logarithm of the arena may be one of a way where the part is positive.
+                let is_positive = parts.iter().all(|part| (self.hull)(*part).lo() > 0.0);
+                if first == second || !is_positive || (self.hull)(x).lo() < 1e-290 {
+                    return atom;
+                }
+                let error = (size.iter().sum::<f64>() + 2.0) * unit * MARGIN;
+                terms(&[(&[(first, 1)], 1.0), (&[(second, 1)], sign)], error)
+            }
             Unary::Sin | Unary::Cos if self.arena.widening() == 0.0 => {
-                let Some(half) = self.half_of(x) else { return atom };
+                let Some(half) = self.half_of(x) else {
+                    return self.of_angle_sum(function, x).unwrap_or(atom);
+                };
                 let (sine, cosine) = (find(Unary::Sin, half), find(Unary::Cos, half));
+                // That of the double angle, and of a product that is counted twice: both angles convert alike.
+                let error = 6.0 * SINE_ERROR * MARGIN;
                 match (function, sine, cosine) {
-                    (Unary::Cos, Some(sine), _) => terms(&[(&[], 1.0), (&[(sine, 2)], -2.0)], 8.0 * unit),
-                    (Unary::Cos, None, Some(cosine)) => {
-                        terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], 8.0 * unit)
-                    }
+                    (Unary::Cos, Some(sine), _) => terms(&[(&[], 1.0), (&[(sine, 2)], -2.0)], error),
+                    (Unary::Cos, None, Some(cosine)) => terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], error),
                     (Unary::Sin, Some(sine), Some(cosine)) => {
                         let both =
                             if sine < cosine { [(sine, 1), (cosine, 1)] } else { [(cosine, 1), (sine, 1)] };
-                        terms(&[(&both, 2.0)], 8.0 * unit)
+                        terms(&[(&both, 2.0)], error)
                     }
                     _ => atom,
                 }
             }
             _ => atom,
         }
-    }
-
-    /// Returns the node of which another is the double, without a rounding.
-    fn half_of(&self, x: NodeId) -> Option<NodeId> {
-        let of_product = match self.arena.node(x) {
-            Node::Binary(Binary::Mul, a, b) if self.arena.as_constant(a) == Some(2.0) => Some(b),
-            Node::Binary(Binary::Mul, a, b) if self.arena.as_constant(b) == Some(2.0) => Some(a),
-            Node::Binary(Binary::Add, a, b) if a == b => Some(a),
-            _ => None,
-        };
-        of_product.or_else(|| self.arena.find_half(x))
     }
 
     /// Returns a polynomial × a number.
@@ -346,6 +368,7 @@ impl<'a> Algebra<'a> {
     fn has_square(&self, atom: NodeId) -> bool {
         match self.arena.node(atom) {
             Node::Unary(Unary::Sqrt | Unary::Abs, _) => true,
+            Node::Unary(Unary::Sin | Unary::Cos, _) if self.leg(atom).is_some() => true,
             Node::Unary(Unary::Sin, x) => self.arena.find_unary(Unary::Cos, x).is_some(),
             _ => false,
         }
@@ -366,11 +389,20 @@ impl<'a> Algebra<'a> {
                 let x = self.node(x)?;
                 self.product(&x, &x)
             }
+            Node::Unary(Unary::Sin | Unary::Cos, _) if self.leg(atom).is_some() => {
+                let leg = self.leg(atom)?;
+                let x = self.node(leg)?;
+                let minus = self.product(&x, &x).map(|square| self.scaled(&square, -1.0))?;
+                let mut square = self.sum(&Polynomial::constant(1.0), &minus);
+                // Twice the error of SIN[ASIN[x]].
+                square.error = add_up(square.error, 25.0 * FUNCTION_ERROR);
+                Some(square)
+            }
             Node::Unary(Unary::Sin, x) => {
                 let cosine = self.node(self.arena.find_unary(Unary::Cos, x)?)?;
                 let minus = self.product(&cosine, &cosine).map(|square| self.scaled(&square, -1.0))?;
                 let mut square = self.sum(&Polynomial::constant(1.0), &minus);
-                square.error = add_up(square.error, 2.1 * (FUNCTION_ERROR + widening));
+                square.error = add_up(square.error, 2.1 * (SINE_ERROR + widening));
                 Some(square)
             }
             _ => None,

@@ -16,6 +16,8 @@ pub struct Arena {
     nodes: Vec<Node>,
     index: HashMap<Key, NodeId>,
     factors: Vec<Factors>,
+    /// By node, whether it has whole numbers only.
+    whole: Vec<bool>,
     semantics: Semantics,
     widening: f64,
     identities: Identities,
@@ -44,6 +46,7 @@ impl Arena {
             nodes: Vec::new(),
             index: HashMap::new(),
             factors: Vec::new(),
+            whole: Vec::new(),
             semantics,
             widening: 0.0,
             identities: Identities::default(),
@@ -214,7 +217,12 @@ impl Arena {
 
     /// Returns true for a node that has whole numbers only, whatever its inputs.
     pub fn is_whole(&self, id: NodeId) -> bool {
-        match self.node(id) {
+        self.whole[id.index()]
+    }
+
+    /// Returns true if a new node has whole numbers only.
+    fn has_whole_values(&self, node: Node) -> bool {
+        match node {
             Node::Constant(value) => value.trunc() == value,
             Node::Input(_) => false,
             Node::Unary(function, x) => match function {
@@ -239,6 +247,11 @@ impl Arena {
     /// Returns the node of an operator if the arena has it.
     pub(crate) fn find_binary(&self, operator: Binary, a: NodeId, b: NodeId) -> Option<NodeId> {
         self.index.get(&Key::Binary(operator, a, b)).copied()
+    }
+
+    /// Returns the node of a number if the arena has it.
+    pub(crate) fn find_constant(&self, value: f64) -> Option<NodeId> {
+        self.index.get(&Key::Constant(value.to_bits())).copied()
     }
 
     /// Returns the sums that have been examined for identities.
@@ -347,6 +360,7 @@ impl Arena {
         }
         let id = NodeId(self.nodes.len() as u32);
         self.factors.push(Factors::of(id, node, &self.factors));
+        self.whole.push(self.has_whole_values(node));
         self.nodes.push(node);
         self.index.insert(key, id);
         id

@@ -47,6 +47,15 @@ impl Enclosures {
             if narrower == form.hull {
                 continue;
             }
+            let narrower = match arena.node(node) {
+                Node::Binary(Binary::Atan, y, x) if arena.widening() == 0.0 => {
+                    hull::angles_within(self.hull(y), self.hull(x), narrower, arena.semantics())
+                }
+                _ if arena.is_whole(node) && arena.widened(node, narrower) == narrower => {
+                    whole_part(narrower)
+                }
+                _ => narrower,
+            };
             self.set_hull(node, narrower);
             changed[node.index()] = true;
             if narrower.is_empty() {
@@ -82,6 +91,9 @@ impl Enclosures {
                 Node::Binary(Binary::Div, a, b) if self.hull(b).contains(0.0) => {
                     self.quotient_hull(arena, a, b)
                 }
+                Node::Binary(Binary::Atan, a, b) if arena.widening() == 0.0 => {
+                    hull::angles_within(self.hull(a), self.hull(b), form.hull, semantics)
+                }
                 Node::Binary(operator, a, b) => hull::binary(operator, self.hull(a), self.hull(b), semantics),
             };
             let narrower = form.hull.intersect(arena.widened(id, range));
@@ -91,6 +103,12 @@ impl Enclosures {
             }
         }
     }
+}
+
+/// Returns the range of the whole numbers in a range.
+fn whole_part(range: Interval) -> Interval {
+    let (first, last) = (range.lo().ceil(), range.hi().floor());
+    if first <= last { Interval::new(first, last) } else { Interval::EMPTY }
 }
 
 /// Returns a range of real numbers that round to doubles of a range.

@@ -3,7 +3,7 @@ use crate::alarms::{self, PossibleAlarm};
 use crate::arena::Arena;
 use crate::enclosures::Enclosures;
 use crate::hull;
-use crate::interval::Interval;
+use crate::interval::{Interval, sub_down, sub_up};
 use crate::model::Model;
 use crate::node::{AlarmKind, Binary, Condition, Node, NodeId, Relation, Unary};
 use crate::proof::Prover;
@@ -81,6 +81,10 @@ impl Enclosures {
                 Prover::new(arena, &hulls, &self.conditions).decide(relation, left, right)
             })
             .or_else(|| self.decide_difference(arena, relation, left, right))
+            .or_else(|| self.decide_quotient(arena, relation, left, right))
+            .or_else(|| self.decide_quotient(arena, relation.swapped(), right, left))
+            .or_else(|| self.decide_product(arena, relation, left, right))
+            .or_else(|| self.decide_product(arena, relation.swapped(), right, left))
     }
 
     /// Decides a condition like [`Enclosures::decide`]; where a magnitude's argument has both signs, for each of them.
@@ -154,17 +158,70 @@ impl Enclosures {
         let difference = self.difference(arena, left, right)?;
         let zero = Interval::point(0.0);
         let range = difference.range(&self.basis);
-        if let Some(decided) = hull::decide(relation, range, zero) {
-            return Some(decided);
-        }
-        // The least and the greatest difference under the conditions of the path.
+        hull::decide(relation, range, zero)
+            .or_else(|| hull::decide(relation, self.range_by_facts(arena, &difference, range)?, zero))
+    }
+
+    /// Returns the range of a model under the conditions of the path, from that without them; `None` without conditions.
+    fn range_by_facts(&mut self, arena: &Arena, model: &Model, range: Interval) -> Option<Interval> {
         let facts = self.facts(arena);
         if facts.is_empty() {
             return None;
         }
-        let lo = self.lower_bound(&difference, range.lo(), &facts);
-        let hi = -self.lower_bound(&difference.neg(), -range.hi(), &facts);
-        hull::decide(relation, Interval::new(lo, hi), zero)
+        let lo = self.lower_bound(model, range.lo(), &facts);
+        let hi = -self.lower_bound(&model.neg(), -range.hi(), &facts);
+        Some(Interval::new(lo, hi))
+    }
+
+    /// Returns a range of the real difference between two nodes.
+    pub fn difference_range(&mut self, arena: &Arena, left: NodeId, right: NodeId) -> Interval {
+        let (a, b) = (self.enclose(arena, left), self.enclose(arena, right));
+        if a.is_empty() || b.is_empty() {
+            return Interval::EMPTY;
+        }
+        let by_hulls = match (a.as_point(), b.as_point()) {
+            (Some(x), Some(y)) if is_exact_difference(x, y) => Interval::point(x - y),
+            _ => Interval::new(sub_down(a.lo(), b.hi()), sub_up(a.hi(), b.lo())),
+        };
+        let Some(difference) = self.difference(arena, left, right) else { return by_hulls };
+        let range = difference.range(&self.basis).intersect(by_hulls);
+        self.range_by_facts(arena, &difference, range).map_or(range, |closer| range.intersect(closer))
+    }
+
+    /// Decides whether a/b stands in a relation to another value by the sign of a less the value × b.
+    ///
+    /// The value is a double: a quotient that isn't above it doesn't round to one above it.
+    fn decide_quotient(
+        &mut self,
+        arena: &Arena,
+        relation: Relation,
+        quotient: NodeId,
+        value: NodeId,
+    ) -> Option<bool> {
+        let Node::Binary(Binary::Div, a, b) = arena.node(quotient) else { return None };
+        if self.basis.degree() == 0 || arena.widening() > 0.0 {
+            return None;
+        }
+        let divisor = self.hull(b);
+        let sign = match (divisor.lo() > 0.0, divisor.hi() < 0.0) {
+            (true, _) => 1.0,
+            (_, true) => -1.0,
+            _ => return None,
+        };
+        let [a, b, value] = [a, b, value].map(|node| self.forms[node.index()].clone()?.as_model());
+        let product = value?.mul(&b?, &mut self.basis);
+        let rest = a?.sub(&product).scale(sign);
+        if !rest.is_finite() {
+            return None;
+        }
+        let range = rest.range(&self.basis);
+        match relation {
+            Relation::Le if range.hi() <= 0.0 => Some(true),
+            Relation::Gt if range.hi() <= 0.0 => Some(false),
+            Relation::Ge if range.lo() >= 0.0 => Some(true),
+            Relation::Lt if range.lo() >= 0.0 => Some(false),
+            _ => None,
+        }
     }
 
     /// Returns the model of a real difference between two nodes.
@@ -188,8 +245,14 @@ impl Enclosures {
         for Condition { relation, left, right } in conditions {
             let Some(difference) = self.difference(arena, left, right) else { continue };
             match relation {
-                Relation::Ge | Relation::Gt => facts.push(difference),
-                Relation::Le | Relation::Lt => facts.push(difference.neg()),
+                Relation::Ge | Relation::Gt => {
+                    facts.push(difference);
+                    facts.extend(self.facts_of_magnitude(arena, left, right));
+                }
+                Relation::Le | Relation::Lt => {
+                    facts.push(difference.neg());
+                    facts.extend(self.facts_of_magnitude(arena, right, left));
+                }
                 Relation::Eq => facts.extend([difference.neg(), difference]),
                 Relation::Ne => {}
             }
@@ -224,4 +287,12 @@ impl Enclosures {
         }
         best
     }
+}
+
+/// Returns true if a difference of two numbers isn't rounded.
+fn is_exact_difference(x: f64, y: f64) -> bool {
+    let difference = x - y;
+    // The error of a sum of two doubles is a double (Knuth, The Art of Computer Programming, 4.2.2).
+    let back = x - difference;
+    difference.is_finite() && (x - (difference + back)) + (back - y) == 0.0
 }

@@ -28,7 +28,12 @@ pub struct Enclosures {
     pub(crate) next_variable: usize,
     /// Nodes whose own variables follow those of the inputs.
     sources: Vec<NodeId>,
+    /// Inputs that are another input and a difference: by input, the other and the range of the difference.
+    differences: Vec<(usize, usize, Interval)>,
 }
+
+/// Values of any sine.
+const SINES: Interval = Interval::of_ends(-1.0, 1.0);
 
 /// Largest number of inputs with a variable; the others are ranges only.
 const MAX_INPUTS: usize = 10;
@@ -68,7 +73,15 @@ impl Enclosures {
             variables,
             next_variable,
             sources: Vec::new(),
+            differences: Vec::new(),
         }
+    }
+
+    /// Assumes that an input is another one and a real number of a range, before anything is enclosed.
+    ///
+    /// The other input must not be given by a difference from this one.
+    pub fn relate(&mut self, input: usize, other: usize, difference: Interval) {
+        self.differences.push((input, other, difference));
     }
 
     /// Returns the box.
@@ -237,6 +250,8 @@ impl Enclosures {
             let hull = |other: NodeId| match self.forms.get(other.index()) {
                 _ if other == node => range,
                 Some(Some(form)) => form.hull,
+                // A function of a part of the angle, which the node itself isn't computed of.
+                _ if matches!(arena.node(other), Node::Unary(Unary::Sin | Unary::Cos, _)) => SINES,
                 _ => Interval::ALL,
             };
             range = algebra::range_of(arena, node, &hull).map_or(range, |identity| range.intersect(identity));
@@ -295,9 +310,26 @@ impl Enclosures {
     /// Returns the form of an input.
     fn input(&mut self, input: usize) -> Form {
         let hull = self.domain.range(input);
-        let variable = self.variables.get(input).copied().flatten();
-        let model = variable.map(|variable| Model::of_variable(&mut self.basis, variable, hull));
+        let model = self.input_model(input, hull);
         Form { hull, model: model.filter(Model::is_finite) }
+    }
+
+    fn input_model(&mut self, input: usize, hull: Interval) -> Option<Model> {
+        let variable = self.variables.get(input).copied().flatten()?;
+        let relation = self.differences.iter().find(|(of, ..)| *of == input).copied();
+        if let Some((_, other, difference)) = relation {
+            let range = self.domain.range(other);
+            let base = match range.as_point() {
+                Some(value) => Model::constant(value),
+                None => self.input_model(other, range)?,
+            };
+            let difference = match difference.as_point() {
+                Some(value) => Model::constant(value),
+                None => Model::of_variable(&mut self.basis, variable, difference),
+            };
+            return Some(base.add(&difference));
+        }
+        Some(Model::of_variable(&mut self.basis, variable, hull))
     }
 
     /// Returns the input whose variation changes a node that has been enclosed most: the one to divide.

@@ -12,6 +12,9 @@ use crate::values::{self, BCD_MAX, RESIDUE};
 /// log, asin, acos, atan and pow, and less than two for atan2. A conversion of degrees adds less than one.
 pub(crate) const FUNCTION_ERROR: f64 = 4.0 * f64::EPSILON;
 
+/// Bound of the relative error of a sine or a cosine of radians: one unit in the last place, as stated and measured.
+pub(crate) const SINE_ERROR: f64 = f64::EPSILON;
+
 /// Bound of the absolute error of a function where its result underflows.
 pub(crate) const UNDERFLOW: f64 = 1e-320;
 
@@ -42,7 +45,7 @@ pub(crate) fn unary(function: Unary, x: Interval, semantics: Semantics) -> Inter
         Unary::Atan => {
             increasing(x, |tangent| degrees(libm::atan(tangent))).intersect(Interval::new(-90.0, 90.0))
         }
-        Unary::Exp => increasing(x, libm::exp).intersect(POSITIVE),
+        Unary::Exp => exponential(x),
         // LN of the largest double is below 710.
         Unary::Ln => increasing(x.intersect(POSITIVE), libm::log).intersect(Interval::new(-746.0, 710.0)),
         Unary::Fix | Unary::Fup | Unary::Round => {
@@ -84,6 +87,12 @@ fn radians(x: Interval) -> Interval {
 fn increasing(x: Interval, function: impl Fn(f64) -> f64) -> Interval {
     // An infinite value at the lower end doesn't exclude the largest double between the ends.
     with_function_error(x.map(|end| function(end).clamp(-f64::MAX, f64::MAX)))
+}
+
+/// Returns the values of EXP: of 0 and less at most 1, since the double above 1 is more than a unit in the last place away.
+fn exponential(x: Interval) -> Interval {
+    let limit = if x.hi() <= 0.0 { 1.0 } else { f64::MAX };
+    increasing(x, libm::exp).intersect(Interval::new(0.0, limit))
 }
 
 /// Returns a range that is wider by twice the error of a function: that of the ends, and that of the values between.
@@ -245,13 +254,25 @@ fn bitwise(operator: Binary, a: Interval, b: Interval) -> Interval {
 
 /// Returns the angles of points (x, y).
 fn angles(y: Interval, x: Interval, semantics: Semantics) -> Interval {
+    angles_within(y, x, Interval::ALL, semantics)
+}
+
+/// Returns the angles of points (x, y) that lie in a range: those above the x axis, and those below it.
+///
+/// Beside the x axis there are angles near 0 and near a whole turn, and none in between.
+pub(crate) fn angles_within(y: Interval, x: Interval, range: Interval, semantics: Semantics) -> Interval {
+    let parts = angle_parts(y, x, semantics).map(|part| part.intersect(range));
+    parts.into_iter().fold(Interval::EMPTY, Interval::hull)
+}
+
+/// Returns the angles of points (x, y): above the x axis and on it, 0 by itself, and below.
+fn angle_parts(y: Interval, x: Interval, semantics: Semantics) -> [Interval; 3] {
+    if y.is_empty() || x.is_empty() {
+        return [Interval::EMPTY; 3];
+    }
     let half_turn = Interval::new(-180.0, 180.0);
-    let origin = if y.contains(0.0) && x.contains(0.0) && !semantics.atan_of_zeros_alarms {
-        Interval::point(0.0)
-    } else {
-        Interval::EMPTY
-    };
-    // Above the x axis, on it, and below: in each half the angle is monotone in either value.
+    let has_origin = y.contains(0.0) && x.contains(0.0) && !semantics.atan_of_zeros_alarms;
+    // In each half the angle is monotone in either value.
     let upper = y.intersect(POSITIVE);
     let lower = y.intersect(Interval::new(-f64::MAX, -f64::from_bits(1)));
     let direction = |y: f64, x: f64| degrees(libm::atan2(y, x));
@@ -261,14 +282,15 @@ fn angles(y: Interval, x: Interval, semantics: Semantics) -> Interval {
     let below = with_function_error(if lower.is_empty() { lower } else { below }).intersect(half_turn);
     let lower = Interval::new(-below.hi(), -below.lo()).intersect(Interval::new(-180.0, -0.0));
     let lower = if below.is_empty() { below } else { lower };
-    let lower = if semantics.returns_signed_angles || lower.is_empty() {
-        lower
-    } else {
-        let turned = Interval::new(lower.lo() + 360.0, (lower.hi() + 360.0).min(360.0));
-        // A negative angle that underflows stays 0.
-        if lower.hi() < 0.0 { turned } else { turned.hull(Interval::point(0.0)) }
+    let is_turned = !semantics.returns_signed_angles && !lower.is_empty();
+    // A negative angle that underflows stays 0.
+    let has_zero = has_origin || is_turned && lower.hi() >= 0.0;
+    let zero = if has_zero { Interval::point(0.0) } else { Interval::EMPTY };
+    let lower = match is_turned {
+        true => Interval::new(lower.lo() + 360.0, (lower.hi() + 360.0).min(360.0)),
+        false => lower,
     };
-    upper.hull(lower).hull(origin)
+    [upper, zero, lower]
 }
 
 /// Returns the angles of points that aren't below the x axis.

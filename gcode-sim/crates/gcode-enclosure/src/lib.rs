@@ -66,6 +66,7 @@
 
 mod alarms;
 mod algebra;
+mod angle_sums;
 mod apply;
 mod approximation;
 mod arena;
@@ -76,12 +77,14 @@ mod decisions;
 mod domain;
 mod elementary;
 mod enclosures;
+mod factor_signs;
 mod factors;
 mod form;
 mod grain;
 mod hull;
 mod identities;
 mod interval;
+mod inverses;
 mod model;
 mod multiples;
 mod node;
@@ -90,6 +93,7 @@ mod polynomial_range;
 mod proof;
 mod ratio;
 mod rounding;
+mod squares;
 #[cfg(test)]
 mod tests;
 mod values;

@@ -11,9 +11,9 @@ use crate::node::{Binary, Condition, Node, NodeId, Relation, Unary};
 
 /// A number whose square doesn't underflow: the root of its square is the number itself (Boldo, Stupid is as stupid
 /// does: taking the square root of the square of a floating-point number).
-const SQUARABLE: f64 = 1e-150;
+pub(crate) const SQUARABLE: f64 = 1e-150;
 /// A number whose square doesn't overflow.
-const MAX_SQUARABLE: f64 = 1e150;
+pub(crate) const MAX_SQUARABLE: f64 = 1e150;
 
 /// Largest depth of a proof.
 const DEPTH: u32 = 6;
@@ -27,7 +27,7 @@ pub(crate) struct Prover<'a> {
     conditions: &'a [Condition],
     steps: Cell<u32>,
     /// Operations round as doubles do; otherwise their results are off, and only the order of the conditions holds.
-    is_exact: bool,
+    pub(crate) is_exact: bool,
 }
 
 impl<'a> Prover<'a> {
@@ -60,7 +60,7 @@ impl<'a> Prover<'a> {
         depth.checked_sub(1).filter(|_| self.steps.get() < STEPS)
     }
 
-    fn range(&self, node: NodeId) -> Interval {
+    pub(crate) fn range(&self, node: NodeId) -> Interval {
         (self.hull)(node)
     }
 
@@ -88,7 +88,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Returns the conditions as pairs x ≥ y; true for x > y.
-    fn facts(&self) -> impl Iterator<Item = (NodeId, NodeId, bool)> {
+    pub(crate) fn facts(&self) -> impl Iterator<Item = (NodeId, NodeId, bool)> {
         self.conditions.iter().flat_map(|&Condition { relation, left, right }| {
             let forwards = match relation {
                 Relation::Ge | Relation::Eq => Some((left, right, false)),
@@ -192,6 +192,11 @@ impl<'a> Prover<'a> {
                         || self.is_negative(b, depth) && self.ge(a, y, depth)
                 }
                 (Binary::Mul, Node::Binary(Binary::Mul, c, d)) if self.product_ge([a, b], [c, d], depth) => {
+                    true
+                }
+                (Binary::Mul, Node::Binary(Binary::Div | Binary::Mul, ..))
+                    if a == b && self.ge_scaled_square(a, y, depth) =>
+                {
                     true
                 }
                 (Binary::Mul, _) => {
@@ -336,8 +341,8 @@ impl<'a> Prover<'a> {
     }
 
     /// Proves |a| ≥ |b|.
-    fn abs_ge(&self, a: NodeId, b: NodeId, depth: u32) -> bool {
-        if a == b || self.range(a).mignitude() >= self.range(b).magnitude() {
+    pub(crate) fn abs_ge(&self, a: NodeId, b: NodeId, depth: u32) -> bool {
+        if a == b || self.range(a).mignitude() >= self.range(b).magnitude() || self.has_larger_square(a, b) {
             return true;
         }
         let Some(depth) = self.deeper(depth) else { return false };

@@ -15,7 +15,7 @@ use crate::shared::{Pending, Rest, Shared};
 use crate::simplify::simplified;
 use crate::tree::{Question, Tree};
 use crate::variable_bounds::{Bound, Side, bound};
-use crate::watch::Watch;
+use crate::watch::{NO_TIME, Watch};
 use crate::witness::Witness;
 use crate::worker::{pending_box, starting_boxes};
 
@@ -470,8 +470,11 @@ impl<S: Setup> Prover<'_, S> {
             };
             self.answer.unread = ranges.filter(is_unread).map(|(_, range)| range.variable).collect();
         }
+        let has_nothing = self.answer.verdict == Verdict::Undecided && self.watch.ended_before_a_box();
         self.answer.boxes = self.watch.boxes();
         self.answer.runs = self.watch.runs();
+        let is_unexplained = has_nothing && self.answer.unfollowed.is_empty();
+        self.answer.unfollowed.extend(is_unexplained.then(|| NO_TIME.to_owned()));
         self.answer
     }
 }

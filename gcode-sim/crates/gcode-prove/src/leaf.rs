@@ -1,8 +1,10 @@
 //! End of a way through a program, and what the claims and bounds are there.
+use gcode_control::symbolic::Formula;
 use gcode_control::{Control, Outcome};
 use gcode_enclosure::{Condition, NodeId};
 use gcode_lang::syntax::ast::BinaryOp;
 
+use crate::nodes::Nodes;
 use crate::request::Claim;
 
 /// End of a way.
@@ -61,6 +63,31 @@ pub(crate) enum NodeFormula {
     Known(bool),
     Condition(Condition),
     Logic(BinaryOp, Box<Self>, Box<Self>),
+}
+
+/// Returns a formula over nodes.
+pub(crate) fn node_formula(nodes: &mut Nodes, formula: &Formula) -> NodeFormula {
+    match formula {
+        Formula::Known(known) => NodeFormula::Known(*known),
+        Formula::Compare(relation, left, right) => {
+            NodeFormula::Condition(nodes.condition(*relation, *left, *right))
+        }
+        Formula::Logic(op, left, right) => {
+            let (left, right) = (node_formula(nodes, left), node_formula(nodes, right));
+            match (op, &left, &right) {
+                (BinaryOp::And, NodeFormula::Known(true), _)
+                | (BinaryOp::Or, NodeFormula::Known(false), _) => right,
+                (BinaryOp::And, _, NodeFormula::Known(true))
+                | (BinaryOp::Or, _, NodeFormula::Known(false)) => left,
+                (BinaryOp::And, NodeFormula::Known(false), _)
+                | (BinaryOp::And, _, NodeFormula::Known(false)) => NodeFormula::Known(false),
+                (BinaryOp::Or, NodeFormula::Known(true), _) | (BinaryOp::Or, _, NodeFormula::Known(true)) => {
+                    NodeFormula::Known(true)
+                }
+                _ => NodeFormula::Logic(*op, Box::new(left), Box::new(right)),
+            }
+        }
+    }
 }
 
 /// State of a variable at the end of a way.

@@ -38,15 +38,16 @@
 //! ```
 //!
 //! The modules stand in the order in which they use one another: a request is read (`request`), `tree` follows the ways of the
-//! program over `nodes`, `region` examines a box and `division` divides it, `points` and `witness` single points; `search` and `worker` are the work of a
+//! program over `nodes`, `region` examines a box, `joined` one whose ways are too many, and `division` divides it, `points` and `witness` single points; `search` and `worker` are the work of a
 //! thread on the `shared` queue. `trace` lists the ways of a box with their moves, for proofs that compare them with a part.
 #![warn(missing_docs)]
 
 mod request;
 mod watch;
 
-mod leaf;
 mod nodes;
+
+mod leaf;
 mod tree;
 
 mod region;
@@ -56,6 +57,7 @@ mod division;
 mod points;
 mod witness;
 
+mod joined;
 mod shared;
 
 mod search;

@@ -40,9 +40,10 @@ pub(crate) struct Nodes {
 }
 
 /// Test as a key: what is asked, and the bits of its terms.
-type TestKey = (u8, u64, u64);
+pub(crate) type TestKey = (u8, u64, u64);
 
-fn key(test: &Test) -> TestKey {
+/// Returns a test as a key.
+pub(crate) fn key(test: &Test) -> TestKey {
     let bits = |term: Term| match term {
         Term::Number(number) => number.to_bits(),
         // No number has the bits of a NaN.
@@ -250,19 +251,8 @@ impl Nodes {
     }
 
     /// Returns the condition of a comparison.
-    pub(crate) fn condition(&mut self, relation: ast::Relation, left: Term, right: Term) -> Condition {
-        Condition::new(relation_of(relation), self.id(left), self.id(right))
-    }
-}
-
-fn relation_of(relation: ast::Relation) -> Relation {
-    match relation {
-        ast::Relation::Eq => Relation::Eq,
-        ast::Relation::Ne => Relation::Ne,
-        ast::Relation::Gt => Relation::Gt,
-        ast::Relation::Ge => Relation::Ge,
-        ast::Relation::Lt => Relation::Lt,
-        ast::Relation::Le => Relation::Le,
+    pub(crate) fn condition(&mut self, relation: Relation, left: Term, right: Term) -> Condition {
+        Condition::new(relation, self.id(left), self.id(right))
     }
 }
 

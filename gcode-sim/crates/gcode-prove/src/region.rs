@@ -45,6 +45,8 @@ pub(crate) struct Finding {
     /// Nodes of the last way that has values for them.
     pub(crate) bound_nodes: Vec<Option<NodeId>>,
     pub(crate) is_stopped: bool,
+    /// The box has too many ways.
+    pub(crate) has_many_ways: bool,
 }
 
 /// Examines a box for the claims of a set.
@@ -101,6 +103,7 @@ impl Region {
                     self.ways += 1;
                     self.leaf(tree, &leaf, &mut enclosures, last);
                     if self.ways > MAX_WAYS && !pending.is_empty() {
+                        self.finding.has_many_ways = true;
                         return self.give_up();
                     }
                     continue;
@@ -130,6 +133,7 @@ impl Region {
                         no = other.assume(arena, condition.negated());
                     }
                     if self.forks > MAX_FORKS {
+                        self.finding.has_many_ways = true;
                         return self.give_up();
                     }
                     // The way on which the run continues is often the one on which a claim fails.
@@ -224,7 +228,7 @@ impl Region {
 }
 
 /// Decides a condition over nodes; those that aren't decided are collected.
-fn decide(
+pub(crate) fn decide(
     formula: &NodeFormula,
     arena: &Arena,
     enclosures: &mut Enclosures,

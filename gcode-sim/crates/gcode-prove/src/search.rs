@@ -27,6 +27,8 @@ pub(crate) struct Prober<'s, L> {
     compared: u32,
     /// Number of boxes that weren't decided.
     pub(crate) undecided_boxes: u64,
+    /// Part of the time that joins have taken which decided nothing.
+    pub(crate) joining_part: f64,
 }
 
 /// Number of points whose run by the control is compared with the tree.
@@ -61,6 +63,7 @@ impl<'s, L: Library> Prober<'s, L> {
             watch,
             compared: 0,
             undecided_boxes: 0,
+            joining_part: 0.0,
         }
     }
 

@@ -10,7 +10,7 @@ use gcode_enclosure::{Condition, Domain, Node, NodeId, Unary};
 use gcode_lang::program::{Bytecode, Library};
 use gcode_lang::syntax::ast::BinaryOp;
 
-use crate::leaf::{BoundState, ClaimState, End, Leaf, NodeFormula, state_at};
+use crate::leaf::{BoundState, ClaimState, End, Leaf, NodeFormula, node_formula, state_at};
 use crate::nodes::{Nodes, semantics};
 use crate::request::{Claim, Range};
 use crate::watch::Watch;
@@ -159,6 +159,8 @@ pub(crate) struct Tree<L> {
     pub(crate) nodes: Nodes,
     segments: Vec<Segment>,
     question: Arc<Question>,
+    /// State before the first block.
+    start: Rc<Snapshot>,
     /// Number of blocks without a question after which a way is left alone for now.
     pub(crate) patience: u64,
 }
@@ -174,14 +176,34 @@ impl<L: Library> Tree<L> {
             _ = run.set_term(range.variable, term);
         }
         let snapshot = Rc::new(run.snapshot());
+        let start = Rc::clone(&snapshot);
         let open = Open { snapshot, phase: Phase::Conditions(0), answers: Vec::new() };
         let root = Segment { parent: None, state: SegmentState::Open(open) };
-        Self { run, library, nodes, segments: vec![root], question, patience: u64::MAX }
+        Self { run, library, nodes, segments: vec![root], question, start, patience: u64::MAX }
     }
 
     /// Returns the number of variables whose bounds are wanted.
     pub(crate) fn bound_count(&self) -> usize {
         self.question.bounds.len()
+    }
+
+    /// Returns what is asked of every way.
+    pub(crate) fn question(&self) -> Arc<Question> {
+        Arc::clone(&self.question)
+    }
+
+    /// Returns the state before the first block.
+    pub(crate) fn start(&self) -> Rc<Snapshot> {
+        Rc::clone(&self.start)
+    }
+
+    pub(crate) fn control(&self) -> &Control {
+        self.run.control()
+    }
+
+    /// Returns the run and its library, for ways that don't belong to the tree; the run is restored before the tree uses it.
+    pub(crate) fn run_and_library(&mut self) -> (&mut SymbolicRun, &mut L) {
+        (&mut self.run, &mut self.library)
     }
 
     /// Returns for each input whether the conditions of the request let it have whole numbers only: `#1 EQ ROUND[#1]`.
@@ -365,7 +387,7 @@ impl<L: Library> Tree<L> {
                         match result {
                             Ok((formula, used)) => {
                                 open.count(used);
-                                match self.formula(&formula) {
+                                match node_formula(&mut self.nodes, &formula) {
                                     NodeFormula::Known(true) => ClaimState::Holds,
                                     NodeFormula::Known(false) => ClaimState::Fails,
                                     formula => ClaimState::Depends(formula),
@@ -457,29 +479,6 @@ impl<L: Library> Tree<L> {
             End::Excluded | End::Program | End::Alarm(_) | End::Endless => BoundState::None,
         };
         Leaf { end, blocks, claims, bounds: vec![bound; self.question.bounds.len()] }
-    }
-
-    fn formula(&mut self, formula: &Formula) -> NodeFormula {
-        match formula {
-            Formula::Known(known) => NodeFormula::Known(*known),
-            Formula::Compare(relation, left, right) => {
-                NodeFormula::Condition(self.nodes.condition(*relation, *left, *right))
-            }
-            Formula::Logic(op, left, right) => {
-                let (left, right) = (self.formula(left), self.formula(right));
-                match (op, &left, &right) {
-                    (BinaryOp::And, NodeFormula::Known(true), _)
-                    | (BinaryOp::Or, NodeFormula::Known(false), _) => right,
-                    (BinaryOp::And, _, NodeFormula::Known(true))
-                    | (BinaryOp::Or, _, NodeFormula::Known(false)) => left,
-                    (BinaryOp::And, NodeFormula::Known(false), _)
-                    | (BinaryOp::And, _, NodeFormula::Known(false)) => NodeFormula::Known(false),
-                    (BinaryOp::Or, NodeFormula::Known(true), _)
-                    | (BinaryOp::Or, _, NodeFormula::Known(true)) => NodeFormula::Known(true),
-                    _ => NodeFormula::Logic(*op, Box::new(left), Box::new(right)),
-                }
-            }
-        }
     }
 }
 

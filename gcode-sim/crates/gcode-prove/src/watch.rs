@@ -2,6 +2,10 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
+/// What has kept a proof from its first box.
+pub(crate) const NO_TIME: &str =
+    "reading the program has taken all the time: prove its macro from a file of its own, or give more --time";
+
 /// Clock, limit and progress of a proof.
 pub struct Watch<'a> {
     clock: &'a (dyn Fn() -> Duration + Sync),
@@ -58,6 +62,11 @@ impl<'a> Watch<'a> {
     /// Returns true if the work is to end.
     pub(crate) fn is_over(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.part() * 1000.0 >= self.part.load(Ordering::Relaxed) as f64
+    }
+
+    /// Returns true if the time was over before a box was examined.
+    pub(crate) fn ended_before_a_box(&self) -> bool {
+        self.boxes() == 0 && self.is_over()
     }
 
     /// Lets the present work end after this part of the time, in thousandths.

@@ -3,6 +3,7 @@ use gcode_enclosure::{Domain, Enclosures, Interval};
 use gcode_lang::program::Library;
 
 use crate::division::divide;
+use crate::joined::prove_joined;
 use crate::leaf::End;
 use crate::region::{ClaimSet, Finding, examine};
 use crate::search::Prober;
@@ -15,6 +16,9 @@ const MAX_DOUBLES: u64 = 48;
 
 /// Largest number of boxes of whole numbers with which the work begins.
 const MAX_WHOLE: f64 = 4096.0;
+
+/// Largest part of the time for joins that decide nothing.
+const JOINING_PART: f64 = 0.15;
 
 /// Largest number of divisions down to single points.
 const MAX_DIVE: u32 = 300;
@@ -65,6 +69,16 @@ impl<L: Library> Prober<'_, L> {
         }
         if finding.is_included {
             self.shared.include(finding.has_end);
+        }
+        if finding.has_many_ways && self.joining_part < JOINING_PART {
+            let begin = self.watch.part();
+            let open = claims & !finding.proved & self.shared.open_claims();
+            let joined = prove_joined(&mut self.tree, &pending.domain, open, self.watch);
+            if joined != 0 {
+                finding.proved |= joined;
+            } else {
+                self.joining_part += self.watch.part() - begin;
+            }
         }
         let left = claims & !finding.proved;
         if left != 0 {

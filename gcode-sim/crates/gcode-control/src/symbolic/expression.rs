@@ -1,6 +1,6 @@
 //! Evaluates expressions and conditions to terms, with the alarms of the control.
 use super::super::evaluation::RoundingTarget;
-use super::super::functions::{binary, compare, compare_numbers, locate, power, variable_number};
+use super::super::functions::{binary, compare, locate, power, variable_number};
 use super::super::registers::Registers;
 use super::super::variables::{Accumulator, Value, VariableClass};
 use super::oracle::{Halt, Oracle, Symbolic};
@@ -200,9 +200,7 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
         }
         let (left, right) = (self.term(left)?, self.term(right)?);
         Ok(SymbolicValue::Truth(match (left, right) {
-            (Term::Number(left), Term::Number(right)) => {
-                Formula::Known(compare_numbers(relation, left, right))
-            }
+            (Term::Number(left), Term::Number(right)) => Formula::Known(relation.holds(left, right)),
             _ => Formula::Compare(relation, left, right),
         }))
     }

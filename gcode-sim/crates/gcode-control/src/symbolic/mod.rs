@@ -10,6 +10,7 @@ mod bits;
 mod cycles;
 mod expression;
 mod functions;
+mod join;
 mod moves;
 mod oracle;
 mod positions;

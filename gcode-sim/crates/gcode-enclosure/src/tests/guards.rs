@@ -239,3 +239,82 @@ fn a_point_on_the_surface_keeps_its_equation() {
     assert!(bounds.is_complete);
     assert!(bounds.range.lo() > 1.0 - 2e-9 && bounds.range.hi() < 1.0 + 2e-9, "{:?}", bounds.range);
 }
+
+#[test]
+fn whole_numbers_are_left_out_one_by_one() {
+    // FIX[#1]+1 over 0.5…2.5 is 1, 2 or 3.
+    let mut path = Path::new(&[(0.5, 2.5)]);
+    let x = path.arena.input(0);
+    let fixed = path.arena.unary(Unary::Fix, x);
+    let whole = path.of(Binary::Add, fixed, Arena::ONE);
+    let [two, three] = [2.0, 3.0].map(|value| path.arena.constant(value));
+    path.assume(Relation::Ne, whole, Arena::ONE);
+    assert_eq!(path.enclosures.enclose(&path.arena, whole), Interval::new(2.0, 3.0));
+    path.assume(Relation::Ne, whole, three);
+    assert_eq!(path.decide(Relation::Eq, whole, two), Some(true));
+    assert!(!path.enclosures.assume(&path.arena, Condition::new(Relation::Ne, whole, two)));
+    // A half more is no whole number: 1.5, 2.5 and 3.5 are left where 1 is left out.
+    let mut path = Path::new(&[(0.5, 2.5)]);
+    let x = path.arena.input(0);
+    let (fixed, part) = (path.arena.unary(Unary::Fix, x), path.arena.constant(1.5));
+    let sum = path.of(Binary::Add, fixed, part);
+    path.assume(Relation::Gt, sum, part);
+    assert_eq!(path.enclosures.enclose(&path.arena, sum).hi(), 3.5);
+}
+
+#[test]
+fn a_direction_near_the_axis_is_near_0_or_near_a_turn() {
+    for (is_beyond, least, most) in [(true, 354.0, 360.0), (false, 0.0, 6.0)] {
+        // The direction of (10, −1…1): 5.71° and 354.29° are the ends.
+        let mut path = Path::new(&[(-1.0, 1.0)]);
+        let (y, x) = (path.arena.input(0), path.arena.constant(10.0));
+        let angle = path.of(Binary::Atan, y, x);
+        assert_eq!(path.enclosures.enclose(&path.arena, angle).lo(), 0.0);
+        let half = path.arena.constant(180.0);
+        path.assume(if is_beyond { Relation::Gt } else { Relation::Le }, angle, half);
+        let range = path.enclosures.enclose(&path.arena, angle);
+        assert!(range.lo() >= least && range.hi() <= most, "{range:?}");
+        assert!(range.width() >= 5.71, "{range:?}");
+    }
+}
+
+#[test]
+fn an_exponential_of_no_positive_number_is_1_at_most() {
+    for (hi, is_limited) in [(0.0, true), (1e-9, false)] {
+        let mut path = Path::new(&[(-1.0, hi)]);
+        let x = path.arena.input(0);
+        let value = path.arena.unary(Unary::Exp, x);
+        assert_eq!(path.decide(Relation::Le, value, Arena::ONE) == Some(true), is_limited);
+    }
+}
+
+#[test]
+fn the_sides_of_a_triangle_are_guarded_by_sums_and_by_a_magnitude() {
+    // Heron's product s·(s − a)·(s − b)·(s − c) of sides from 1 to 9, each guard with a margin of 1e-6.
+    for (has_sum, has_magnitude) in [(true, true), (false, true), (true, false)] {
+        let mut path = Path::new(&[(1.0, 9.0), (1.0, 9.0), (1.0, 9.0)]);
+        let [a, b, c] = [0, 1, 2].map(|input| path.arena.input(input));
+        let margin = path.arena.constant(1e-6);
+        let sum = path.of(Binary::Add, a, b);
+        if has_sum {
+            let least = path.of(Binary::Sub, sum, margin);
+            path.assume(Relation::Le, c, least);
+        }
+        if has_magnitude {
+            let difference = path.of(Binary::Sub, a, b);
+            let magnitude = path.arena.unary(Unary::Abs, difference);
+            let most = path.of(Binary::Add, magnitude, margin);
+            path.assume(Relation::Ge, c, most);
+        }
+        let perimeter = path.of(Binary::Add, sum, c);
+        let two = path.arena.constant(2.0);
+        let s = path.of(Binary::Div, perimeter, two);
+        let mut product = s;
+        for side in [a, b, c] {
+            let rest = path.of(Binary::Sub, s, side);
+            product = path.of(Binary::Mul, product, rest);
+        }
+        let root = path.arena.unary(Unary::Sqrt, product);
+        assert_eq!(path.alarms(root).is_empty(), has_sum && has_magnitude);
+    }
+}

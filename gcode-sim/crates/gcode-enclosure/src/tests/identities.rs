@@ -135,6 +135,14 @@ fn the_direction_of_polar_coordinates() {
         let rest = f.of(Binary::Sub, angle, t);
         let turn = if is_signed { (-180.0, 180.0) } else { (0.0, 360.0) };
         assert!(enclosed(&f, rest, &[(0.5, 10.0), turn]).magnitude() < 1e-11);
+        // Below 0 a turn is added, and taken away again here.
+        if !is_signed {
+            let whole = f.0.constant(360.0);
+            let less = f.of(Binary::Sub, angle, whole);
+            let rest = f.of(Binary::Sub, less, t);
+            assert!(enclosed(&f, rest, &[(0.5, 10.0), (-359.0, -1e-9)]).magnitude() < 1e-11);
+            assert!(enclosed(&f, rest, &[(0.5, 10.0), (-360.0, 0.0)]).magnitude() >= 359.0);
+        }
         // Beyond the turn, and for a negative radius, the direction is another one.
         let beyond = enclosed(&f, rest, &[(0.5, 10.0), (turn.0, turn.1 + 1.0)]);
         assert!(beyond.lo() <= -359.0, "{beyond:?}");
@@ -188,4 +196,58 @@ fn a_widening_widens_an_identity() {
     // At x = 100 and y = 1 a product of 101 · 99 that is off by a part of 1e-9 is off by 1e-5.
     assert!(of(0.0).magnitude() < 1e-10);
     assert!((1e-5..1e-3).contains(&of(1e-9).magnitude()), "{:?}", of(1e-9));
+}
+
+/// Returns r·f[x ± y] − r·(its two products by the functions of x and y), where one sign may be wrong.
+fn angle_sum_rest(f: &mut Formulas, function: Unary, operator: Binary, is_wrong: bool) -> NodeId {
+    let [x, y, r] = [0, 1, 2].map(|input| f.0.input(input));
+    let [sine_x, cosine_x] = [Unary::Sin, Unary::Cos].map(|function| f.0.unary(function, x));
+    let [sine_y, cosine_y] = [Unary::Sin, Unary::Cos].map(|function| f.0.unary(function, y));
+    let angle = f.of(operator, x, y);
+    let of_sum = f.0.unary(function, angle);
+    let left = f.of(Binary::Mul, r, of_sum);
+    let (first, second, is_plus) = match function {
+        Unary::Sin => ((sine_x, cosine_y), (cosine_x, sine_y), operator == Binary::Add),
+        _ => ((cosine_x, cosine_y), (sine_x, sine_y), operator == Binary::Sub),
+    };
+    let [first, second] = [first, second].map(|(a, b)| f.of(Binary::Mul, a, b));
+    let combined = if is_plus != is_wrong { Binary::Add } else { Binary::Sub };
+    let sum = f.of(combined, first, second);
+    let right = f.of(Binary::Mul, r, sum);
+    f.of(Binary::Sub, left, right)
+}
+
+#[test]
+fn the_sine_and_cosine_of_sums_and_differences_of_angles() {
+    for function in [Unary::Sin, Unary::Cos] {
+        for operator in [Binary::Add, Binary::Sub] {
+            let ranges = [(0.0, 360.0), (-90.0, 90.0), (1.0, 500.0)];
+            let mut f = Formulas(Arena::default());
+            let rest = angle_sum_rest(&mut f, function, operator, false);
+            let range = enclosed(&f, rest, &ranges);
+            // 500 × (some 30 units of 1, and the rounding of 450° as a part of a radian).
+            assert!(range.magnitude() < 1e-11, "{function:?} {operator:?}: {range:?}");
+            let mut f = Formulas(Arena::default());
+            let rest = angle_sum_rest(&mut f, function, operator, true);
+            // At x = y = 45° the products differ by 500 · 2 · 1/2.
+            assert!(enclosed(&f, rest, &ranges).magnitude() >= 500.0);
+        }
+    }
+}
+
+#[test]
+fn a_quarter_turn_added_to_an_angle() {
+    let mut f = Formulas(Arena::default());
+    let x = f.0.input(0);
+    let [_, cosine] = [Unary::Sin, Unary::Cos].map(|function| f.0.unary(function, x));
+    for (turn, is_equal) in [(90.0, true), (90.001, false)] {
+        let turn = f.0.constant(turn);
+        let angle = f.of(Binary::Add, x, turn);
+        let sine = f.0.unary(Unary::Sin, angle);
+        let rest = f.of(Binary::Sub, sine, cosine);
+        let range = enclosed(&f, rest, &[(-720.0, 720.0)]);
+        // 0.001° is 1.745e-5 of a radian.
+        assert_eq!(range.magnitude() < 1e-13, is_equal, "{range:?}");
+        assert!(is_equal || range.magnitude() >= 1.74e-5, "{range:?}");
+    }
 }

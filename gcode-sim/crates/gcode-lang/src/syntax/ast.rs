@@ -7,6 +7,7 @@ use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
 
 pub use super::program_name::{Folder, ProgramName, ProgramPath};
+pub use super::relation::Relation;
 
 /// One O-program of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -401,23 +402,6 @@ impl Relation {
         (Self::Gt, "GT", ">"),
         (Self::Lt, "LT", "<"),
     ];
-}
-
-/// Relation between two values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Relation {
-    /// Equal.
-    Eq,
-    /// Not equal.
-    Ne,
-    /// Greater.
-    Gt,
-    /// Greater or equal.
-    Ge,
-    /// Less.
-    Lt,
-    /// Less or equal.
-    Le,
 }
 
 /// Macro statement.

@@ -19,6 +19,7 @@ mod program_name;
 #[cfg(test)]
 mod property_tests;
 mod read_blocks;
+mod relation;
 mod shift;
 mod statement;
 mod token;

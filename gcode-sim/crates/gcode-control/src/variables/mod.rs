@@ -1,4 +1,6 @@
 //! Local and common variables, and the operands that wait in an expression. Vacant is neither 0 nor a number.
+mod joined;
+
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
