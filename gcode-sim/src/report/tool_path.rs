@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::count;
 use super::top::side_along_holes;
+use super::work_zeros::zeros;
 use gcode_draw::{
     DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, Side, Sign, TopView, TravelLimit,
 };
@@ -96,7 +97,7 @@ pub(crate) fn of_path(
 /// Returns name and diameter of a tool.
 fn tool(number: Option<u32>, machine: &Machine) -> DrawnTool {
     let Some(number) = number else {
-        return DrawnTool { name: "feed before a tool change".to_owned(), diameter: None };
+        return DrawnTool { name: "feed, no tool called before".to_owned(), diameter: None };
     };
     let known = machine.tools.iter().find(|tool| tool.number == number).copied();
     let Tool { kind, diameter, .. } = known.unwrap_or_default();
@@ -118,22 +119,6 @@ fn places(path: &ToolPath, simulation: &Simulation) -> Vec<PathPlace> {
     };
     let stops = path.stops.iter().filter_map(|stop| place(Sign::Stop, stop.at, stop.kind.name().to_owned()));
     start.into_iter().chain(end).chain(stops).collect()
-}
-
-/// Returns the work zeros: those of the machine file, or the origin of the part, from which positions then count.
-pub(crate) fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
-    if !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_)) {
-        return Vec::new();
-    }
-    if machine.offsets.is_empty() {
-        return vec![("zero".to_owned(), [0.0; 3])];
-    }
-    let zero = |values: &[(usize, f64)]| {
-        let mut at = Position::default();
-        values.iter().for_each(|(axis, value)| at[*axis] = *value);
-        machine.forward(&at, &Setup::default()).tip.coords.into()
-    };
-    machine.offsets.iter().map(|offset| (offset.system.name(), zero(&offset.values))).collect()
 }
 
 /// Returns the travel limits of the tip, where no head and no stated table rotates. That of Z is one for each tool whose

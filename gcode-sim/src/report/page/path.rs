@@ -10,7 +10,7 @@ use super::rows::HoleRowState;
 use super::words::{count, shown};
 use super::{Page, ReviewSide, exact_path, heading, stock_edges};
 use crate::report::figures::short;
-use crate::report::tool_path;
+use crate::report::work_zeros::zeros;
 use gcode_draw::{HoleStatus, Mark, Pen, Scene, Shape, Stroke};
 use gcode_inspect::machine::{HeadKind, Machine};
 use gcode_part::Hole;
@@ -34,7 +34,29 @@ pub(super) struct Data {
     stock: Vec<Vec<[f64; 3]>>,
     /// Work zeros: name and place, mm.
     zeros: Vec<(String, [f64; 3])>,
+    /// Lowest and highest coordinate of the feeds along `up`, mm, where shades show it.
+    heights: Option<[f64; 2]>,
     sides: Vec<SidePath>,
+}
+
+/// Least difference of heights that shades show, mm.
+const LEAST_HEIGHT: f64 = 0.01;
+
+/// Returns the lowest and the highest coordinate of the feeds; `None` for a comparison, whose colours say what differs, and
+/// where all are alike.
+fn heights(sides: &[SidePath], up: char) -> Option<[f64; 2]> {
+    let [side] = sides else { return None };
+    let axis = usize::from(up == 'z') + 1;
+    let feeds = side.scene.strokes.iter().filter(|stroke| stroke.pen == Pen::Feed);
+    let points = feeds.flat_map(|stroke| match &stroke.shape {
+        Shape::Line(points) => points.as_slice(),
+        _ => &[],
+    });
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for point in points {
+        (low, high) = (low.min(point[axis]), high.max(point[axis]));
+    }
+    (LEAST_HEIGHT < high - low).then(|| [low, high].map(|mm| rounded(mm, 1e3)))
 }
 
 /// One side: the scene that is drawn, and the links from it to the listing and the table.
@@ -105,11 +127,13 @@ pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable)
     let drawn =
         sides.iter().enumerate().map(|(side_index, side)| drawn(page, side_index, side, table, sides.len()));
     let stock = page.reference.and_then(|reference| reference.stock.as_ref()).or(page.machine.stock.as_ref());
+    let sides: Vec<SidePath> = drawn.collect();
     Data {
         up,
+        heights: heights(&sides, up),
         stock: stock.map(stock_edges::edges).unwrap_or_default(),
-        zeros: tool_path::zeros(page.machine),
-        sides: drawn.collect(),
+        zeros: zeros(page.machine),
+        sides,
     }
 }
 
@@ -324,7 +348,11 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
         div #under {
             ul.legend {
                 @if data.has_pen(Pen::Rapid) { li.rapid { "rapid" } }
-                @if data.has_pen(Pen::Feed) { li.feed { "feed, arc" } }
+                @if let Some([low, high]) = data.heights {
+                    li.depth { "feed, arc: " (data.up) " from " (short(low)) " to " (short(high)) " mm, deeper is darker" }
+                } @else if data.has_pen(Pen::Feed) {
+                    li.feed { "feed, arc" }
+                }
                 @if data.has_pen(Pen::Probe) { li.probe { "probing move" } }
                 @if sides.len() == 2 {
                     li.changed { "different from the other program" }

@@ -4,7 +4,7 @@ use super::top::{DrawnHole, TopView};
 use crate::scene::{Align, Pen, Point, Shape, Stroke};
 use crate::side::{Projection, Side};
 use crate::ticks::Ticks;
-use gcode_part::{Stock, StockAxis};
+use gcode_part::{Hole, Stock, StockAxis};
 
 /// Margin of the box about the feeds, in parts of its largest edge.
 const MARGIN: f64 = 0.08;
@@ -17,6 +17,9 @@ const TICK: f64 = 0.008;
 
 /// Width of a frame under which its name would meet the letter of its upright axis, in parts of the largest extent of all views.
 const NARROW: f64 = 0.15;
+
+/// Least width of a picture of holes alone, in radii of the largest.
+const LEAST_RADII: f64 = 20.0;
 
 /// The box that the views show, in the coordinates of the top view: right, up, and towards the reader.
 #[derive(Clone, Copy, Debug)]
@@ -202,6 +205,30 @@ impl Frames {
         );
         let extent = (second_column + widths[1]).max(second_row + heights[1]);
         Self { views: placed.collect(), extent, shown }
+    }
+
+    /// Frames a top view alone, with the part's coordinates on the sheet, about the holes and the points given. A small hole
+    /// leaves room about itself.
+    pub(super) fn in_place(view: &TopView, path: &PathView, corners: &[Point]) -> Self {
+        let mut shown = ViewBox::of(view.side, view, path);
+        let edges = [0, 1].map(|axis| shown.high[axis] - shown.low[axis]);
+        let radius = |hole: &Hole| hole.diameter.unwrap_or(0.0) / 2.0;
+        let radii = view.holes.iter().filter_map(DrawnHole::shown).map(radius);
+        let least = LEAST_RADII * radii.fold(0.0, f64::max);
+        let missing = ((least - edges[0].max(edges[1])) / 2.0).max(0.0);
+        for axis in [0, 1] {
+            shown.low[axis] -= missing;
+            shown.high[axis] += missing;
+            for corner in corners {
+                shown.low[axis] = shown.low[axis].min(corner[axis]);
+                shown.high[axis] = shown.high[axis].max(corner[axis]);
+            }
+        }
+        let frame = shown.extent(view.side);
+        let [[left, bottom], [right, top]] = frame;
+        let extent = (right - left).max(top - bottom);
+        let placed = PlacedView { kind: StandardView::Top, side: view.side, frame, shift: [0.0, 0.0] };
+        Self { views: vec![placed], extent, shown }
     }
 
     /// Draws the frame of a view with its scales and, among others, its name.
