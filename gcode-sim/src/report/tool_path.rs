@@ -1,14 +1,14 @@
 //! Contents of the picture of a tool path: runs, tools, stops, work zeros and stock.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::figures::count;
+use super::figures::{as_on_control, count};
 use super::top::side_along_holes;
 use super::work_zeros::zeros;
 use gcode_draw::{
     DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, Side, Sign, TopView, TravelLimit,
 };
 use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool};
-use gcode_inspect::tool_path::{PathKind, StretchAxis, ToolPath};
+use gcode_inspect::tool_path::{PathKind, PathStop, StretchAxis, ToolPath};
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Position;
@@ -89,7 +89,7 @@ pub(crate) fn of_path(
         zeros: zeros(machine),
         limits: strokes.map_or_else(Vec::new, |strokes| travel_limits(&path, machine, &strokes)),
         stock,
-        notes: notes(&path),
+        notes: notes(&path, simulation),
         points: path.points,
     }
 }
@@ -150,10 +150,18 @@ fn travel_limits(path: &ToolPath, machine: &Machine, strokes: &StrokeLimits) -> 
 }
 
 /// Returns what the picture lacks, and the texts of the first stops.
-fn notes(path: &ToolPath) -> Vec<String> {
+fn notes(path: &ToolPath, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
-    let texts = path.stops.iter().filter(|stop| !stop.text.is_empty());
-    notes.extend(texts.take(MAX_STOP_TEXTS).map(|stop| format!("stop {}: {}", stop.kind.name(), stop.text)));
+    // The control and the path record the same stops in their order.
+    let variables = simulation.run.control.stops().iter().map(|stop| stop.variables.as_slice());
+    let texts = path.stops.iter().zip(variables).filter(|(stop, _)| !stop.text.is_empty());
+    let value = |(number, value): &(u32, f64)| format!("#{number} = {}", as_on_control(*value));
+    let line = |(stop, variables): (&PathStop, &[(u32, f64)])| {
+        let values: Vec<String> = variables.iter().map(value).collect();
+        let values = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
+        format!("stop {}: {}{values}", stop.kind.name(), stop.text)
+    };
+    notes.extend(texts.take(MAX_STOP_TEXTS).map(line));
     if 0 < path.unplaced_feeds {
         let feeds = count(path.unplaced_feeds, "feed");
         notes.push(format!("{feeds} from or to an unknown position not drawn"));

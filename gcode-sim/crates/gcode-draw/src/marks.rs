@@ -62,11 +62,15 @@ fn draw_dial(
     let text = frame.text_size;
     let centre = frame.scale.px(mark.position);
     let hole = (mark.radius * frame.scale.factor).max(0.28 * text);
-    let mut inks = vec![
-        DrawCommand::Disc { centre, radius: zone, color: palette::PAPER },
+    let mut inks = Vec::new();
+    // A zone within its hole would hide the path there, and the circles of its features.
+    if mark.rim == 0.0 && hole < zone {
+        inks.push(DrawCommand::Disc { centre, radius: zone, color: palette::PAPER });
+    }
+    inks.extend([
         DrawCommand::Ring { centre, radius: zone, ink: palette::zone(text) },
         DrawCommand::Ring { centre, radius: hole, ink: palette::thin(text, palette::TEXT) },
-    ];
+    ]);
     let (mut cut, mut strayed) = (false, false);
     match mark.actual.map(|found| frame.scale.px(found)) {
         Some(found) if 2.0 * zone < centre.distance(found) => {

@@ -117,9 +117,14 @@ pub(super) fn sign(of: Sign, at: Px, radius: f64) -> Vec<DrawCommand> {
     match of {
         // Holes are round, and an extra one is a triangle that points up.
         Sign::Start => {
-            let corners = [[-0.75, -1.05], [1.15, 0.0], [-0.75, 1.05]];
-            let rim = Ink::solid(width, palette::PAPER);
-            vec![DrawCommand::outline(points(at, radius, &corners), rim), area(at, radius, &corners, color)]
+            let corners = [[-0.7, -1.0], [1.1, 0.0], [-0.7, 1.0]];
+            let corners = points(at, radius, &corners);
+            let rim = Ink::solid(3.0 * width, palette::PAPER);
+            vec![
+                DrawCommand::outline(corners.clone(), rim),
+                DrawCommand::Area { points: corners.clone(), color: palette::PAPER },
+                DrawCommand::outline(corners, ink),
+            ]
         }
         Sign::End => vec![area(at, radius, &square, color)],
         Sign::Stop => vec![

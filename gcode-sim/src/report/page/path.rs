@@ -2,6 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::holes::HoleTable;
@@ -48,13 +49,19 @@ fn heights(sides: &[SidePath], up: char) -> Option<[f64; 2]> {
     let [side] = sides else { return None };
     let axis = usize::from(up == 'z') + 1;
     let feeds = side.scene.strokes.iter().filter(|stroke| stroke.pen == Pen::Feed);
-    let points = feeds.flat_map(|stroke| match &stroke.shape {
-        Shape::Line(points) => points.as_slice(),
-        _ => &[],
-    });
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for point in points {
-        (low, high) = (low.min(point[axis]), high.max(point[axis]));
+    let pairs = feeds.flat_map(|stroke| match &stroke.shape {
+        Shape::Line(points) => points.windows(2),
+        _ => [].windows(2),
+    });
+    for pair in pairs {
+        let ends = [pair[0][axis], pair[1][axis]];
+        low = low.min(ends[0]).min(ends[1]);
+        // A feed towards the part or out of it begins or ends above what is cut.
+        let way = (Vector3::from(pair[1]) - Vector3::from(pair[0])).norm();
+        if (ends[1] - ends[0]).abs() < 0.999 * way {
+            high = high.max(ends[0]).max(ends[1]);
+        }
     }
     (LEAST_HEIGHT < high - low).then(|| [low, high].map(|mm| rounded(mm, 1e3)))
 }
@@ -65,7 +72,7 @@ struct SidePath {
     word: &'static str,
     /// A stroke for each move, a mark for each hole.
     scene: Scene<3>,
-    /// Kinds of moves with their feed rates, mm/min: `rapid`, `arc F200`.
+    /// Kinds of moves with their feed rates, in the unit of the program: `rapid`, `arc F200`.
     kinds: Vec<String>,
     /// Index of each move's kind.
     kind: Vec<usize>,
@@ -201,6 +208,8 @@ fn drawn(
             blocks.len() - 1
         }));
     }
+    let is_inch = side.observed.revision.simulation.run.control.is_inch();
+    let kind = |leg: &Leg| kind(leg, is_inch);
     let kinds: Vec<String> = legs.iter().map(kind).collect::<BTreeSet<_>>().into_iter().collect();
     let different = match (page.old, sides) {
         (Some((_, difference)), 2) => difference.compared.steps[side_index].as_slice(),
@@ -212,7 +221,6 @@ fn drawn(
     };
     let joined: Vec<usize> =
         if legs.len() < all_moves { legs.iter().map(|leg| leg.moves).collect() } else { Vec::new() };
-    let is_inch = side.observed.revision.simulation.run.control.is_inch();
     SidePath {
         word: side.word,
         axes: (0..page.machine.axes.len()).map(|axis| page.machine.axes.letter(axis).to_string()).collect(),
@@ -264,9 +272,11 @@ fn stroke(leg: &Leg) -> Stroke<3> {
     Stroke::new(pen, Shape::Line(leg.points.iter().map(|point| point.coords.into()).collect()))
 }
 
-fn kind(leg: &Leg) -> String {
+/// Returns the kind of a move with its feed rate in the unit of the program.
+fn kind(leg: &Leg, is_inch: bool) -> String {
+    let unit = if is_inch { MM_PER_INCH } else { 1.0 };
     match leg.feed {
-        Some(feed) if feed != 0.0 => format!("{} F{}", leg.kind, short(rounded(feed, 1e3))),
+        Some(feed) if feed != 0.0 => format!("{} F{}", leg.kind, short(rounded(feed / unit, 1e3))),
         _ => leg.kind.to_owned(),
     }
 }
@@ -349,7 +359,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
             ul.legend {
                 @if data.has_pen(Pen::Rapid) { li.rapid { "rapid" } }
                 @if let Some([low, high]) = data.heights {
-                    li.depth { "feed, arc: " (data.up) " from " (short(low)) " to " (short(high)) " mm, deeper is darker" }
+                    li.depth { "feed, arc: " (data.up) " from " (signed(low)) " to " (signed(high)) " mm, deeper is darker" }
                 } @else if data.has_pen(Pen::Feed) {
                     li.feed { "feed, arc" }
                 }
@@ -367,6 +377,8 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                 @if !data.zeros.is_empty() { li.zero { "work zero" } }
                 @if data.sides.iter().any(|side| !side.scene.strokes.is_empty()) {
                     li.start { "start" }
+                }
+                @if data.sides.iter().any(|side| !side.scene.strokes.is_empty() && !side.ends_with_alarm) {
                     li.end { "end" }
                 }
                 @if data.sides.iter().any(|side| side.ends_with_alarm) { li.alarm-end { "position at the alarm" } }
@@ -381,6 +393,11 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
             noscript { p { "The drawing needs scripts; everything else on this page works without them." } }
         }
     }
+}
+
+/// Formats a number with a true minus sign.
+fn signed(value: f64) -> String {
+    short(value).replace('-', "−")
 }
 
 /// Returns the controls that play the path move by move.

@@ -310,12 +310,20 @@ class Side {
     const [startX, startY] = inside(0);
     context.beginPath();
     if (!hasAlarm) context.rect(endX - 5, endY - 5, 10, 10);
+    context.stroke();
+    context.fill();
+    // Open, so that it is seen on the black quarters of a work zero.
+    context.beginPath();
     context.moveTo(startX - 5, startY - 7);
     context.lineTo(startX + 8, startY);
     context.lineTo(startX - 5, startY + 7);
     context.closePath();
-    context.stroke();
-    context.fill();
+    context.fillStyle = colours.paper;
+    for (const [strokeStyle, lineWidth] of [[colours.paper, 6], [colours.ink, 2]]) {
+      Object.assign(context, { strokeStyle, lineWidth });
+      context.stroke();
+      context.fill();
+    }
   }
 
   // Draws the whole part small in a corner, with a cross at the place that the drawing shows larger.

@@ -20,6 +20,9 @@ const PATHS: [(Pen, &str); 5] = [
     (Pen::Old, "changed cut, old"),
 ];
 
+/// Number of holes beyond which good ones have no number.
+const MAX_LABELLED: usize = 200;
+
 /// Largest number of construction circles; more would hide the holes.
 const MAX_CIRCLES: usize = 12;
 
@@ -30,15 +33,18 @@ pub fn top_view(view: &TopView) -> Picture {
     // The part of a family has its own axes; others have a frame with coordinates.
     let is_framed = view.outline.is_none() && view.cylinder.is_none() && !view.holes.is_empty();
     let is_framed = is_framed && view.purpose == PicturePurpose::Verdict;
+    let is_empty = view.outline.is_none() && view.holes.is_empty() && view.path.is_empty();
     let axes = unit.map(|(name, direction)| Axis { name: name.to_owned(), direction });
     let part = Scene {
-        axes: if is_framed { Vec::new() } else { axes.into() },
+        axes: if is_framed || is_empty { Vec::new() } else { axes.into() },
         strokes: view.path.clone(),
         marks: near.into_iter().filter_map(|hole| hole_mark(hole, view)).collect(),
         zone: view.tolerance,
     };
     let mut scene = part.seen_from(view.side);
-    if view.cylinder.is_some() || view.purpose == PicturePurpose::Change {
+    // Of thousands of holes few would have a number, each on a leader.
+    let is_dense = MAX_LABELLED < scene.marks.len();
+    if view.cylinder.is_some() || view.purpose == PicturePurpose::Change || is_dense {
         number_few(&mut scene.marks);
     }
     scene.strokes.extend(view.feature_circles(view.side));
@@ -129,6 +135,8 @@ fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{HoleStatus, ZoneDeviation};
+    use crate::side::deviation;
 
     fn hole(entry: [f64; 3], axis: [f64; 3]) -> Hole {
         Hole { id: None, entry, axis, depth: 15.0, diameter: Some(6.0), ..Hole::default() }
@@ -150,10 +158,63 @@ mod tests {
             rotary_angle: Some(-72.0),
             ..DrawnHole::default()
         }];
-        let scene = top_view(&TopView { holes, rotary: "B".to_owned(), ..TopView::default() }).scene;
+        let view = TopView { holes, rotary: "B".to_owned(), outline: Some(10.0), ..TopView::default() };
+        let scene = top_view(&view).scene;
         assert_eq!(scene.marks[0].position, [0.0, -5.0]);
         assert_eq!(scene.marks[0].label, ["1", "B −72°", "Φ0.020"]);
         assert_eq!(scene.axes[1].direction, [0.0, -1.0]);
+    }
+
+    /// Two holes of 6 at x 10 and 110 in a plate seen along z, and zero near them. A part with an outline has its axes instead.
+    #[test]
+    fn holes_without_an_outline_have_a_frame_with_coordinates_and_the_work_zero() {
+        let drawn =
+            |x: f64| DrawnHole { actual: Some(hole([x, 0.0, 0.0], [0.0, 0.0, 1.0])), ..DrawnHole::default() };
+        let holes = vec![drawn(10.0), drawn(110.0)];
+        let zeros = vec![("G54".to_owned(), [0.0; 3])];
+        let view = TopView { holes, zeros, side: Side::Z, ..TopView::default() };
+        let of = |view: &TopView| {
+            let scene = top_view(view).scene;
+            let frame = scene.strokes.iter().find_map(|stroke| match &stroke.shape {
+                Shape::Line(points) if stroke.pen == Pen::Scale => Some(points.clone()),
+                _ => None,
+            });
+            let names = scene.strokes.iter().filter(|stroke| stroke.pen == Pen::Ruler);
+            let names: Vec<String> = names.filter_map(|stroke| stroke.caption.clone()).collect();
+            let has_zero = scene.strokes.iter().any(|stroke| stroke.shape == Shape::Zero([0.0, 0.0]));
+            (frame, names, has_zero, scene.axes.len())
+        };
+        let (frame, names, has_zero, axes) = of(&view);
+        let frame = frame.unwrap();
+        // From zero, which the frame holds, to 113, and 8 % of 113 mm.
+        assert!((frame[0][0] + 9.04).abs() < 1e-9 && (frame[1][0] - 122.04).abs() < 1e-9, "{frame:?}");
+        assert!(
+            has_zero
+                && axes == 0
+                && ["x", "y", "0", "20", "100"].iter().all(|name| names.contains(&(*name).to_owned())),
+            "{names:?}"
+        );
+        let (frame, _, has_zero, axes) = of(&TopView { outline: Some(200.0), ..view });
+        assert_eq!((frame, has_zero, axes), (None, false, 2));
+    }
+
+    /// The shaft's sides are 60 mm above and below its axis, and 15 mm longer than its holes at each end; seen along its axis it
+    /// has none.
+    #[test]
+    fn a_shaft_has_its_sides() {
+        let drawn = |x: f64| DrawnHole {
+            nominal: Some(hole([x, 0.0, 60.0], [0.0, 0.0, 1.0])),
+            ..DrawnHole::default()
+        };
+        let view = TopView {
+            holes: vec![drawn(10.0), drawn(40.0)],
+            shaft: Some(60.0),
+            side: Side::Z,
+            ..TopView::default()
+        };
+        let outlines = |view: &TopView| view.outlines().flat_map(|shape| shape.points()).collect::<Vec<_>>();
+        assert_eq!(outlines(&view), [[-8.0, 60.0], [58.0, 60.0], [-8.0, -60.0], [58.0, -60.0]]);
+        assert!(outlines(&TopView { side: Side::X, ..view }).is_empty());
     }
 
     #[test]

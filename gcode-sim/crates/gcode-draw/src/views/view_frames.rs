@@ -224,6 +224,9 @@ impl Frames {
                 shown.high[axis] = shown.high[axis].max(corner[axis]);
             }
         }
+        if !corners.is_empty() {
+            shown = shown.grown(0.5 * MARGIN * shown.largest());
+        }
         let frame = shown.extent(view.side);
         let [[left, bottom], [right, top]] = frame;
         let extent = (right - left).max(top - bottom);
@@ -289,7 +292,9 @@ impl Frames {
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let (end, along) = if 0.0 < sign { (to, 1.0) } else { (from, -1.0) };
         let direction = [(to[0] - from[0]) / length * along, (to[1] - from[1]) / length * along];
-        line(vec![end, further(end, direction, tick)], Pen::Ruler, Some(name.to_string()));
+        // Below an axis that counts downwards its letter would stand among the numbers of the other.
+        let beside = if direction[1] < -0.9 { outwards } else { direction };
+        line(vec![end, further(end, beside, tick)], Pen::Ruler, Some(name.to_string()));
         let most = (14.0 * length / self.extent).clamp(3.0, 10.0);
         let (first, last) = if 0.0 < sign { (low, high) } else { (-high, -low) };
         let ticks = Ticks::over(first, last, most);

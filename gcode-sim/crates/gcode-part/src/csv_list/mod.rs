@@ -170,7 +170,9 @@ impl Cells<'_> {
         let (count, expected) = (self.record.len(), self.columns.names.len());
         let has_more = self.record.iter().skip(expected).any(|cell| !cell.trim().is_empty());
         if count < expected || has_more {
-            return Err(format!("{count} columns, the header has {expected}"));
+            let has_doubt = self.columns.separator == ',' && expected < count;
+            let help = if has_doubt { ": decimal commas need semicolons between the columns" } else { "" };
+            return Err(format!("{count} columns, the header has {expected}{help}"));
         }
         let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
         let axis =

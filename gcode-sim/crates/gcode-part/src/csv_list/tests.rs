@@ -111,7 +111,10 @@ fn an_error_shows_a_line_that_is_right() {
         ),
         ("x,y,i,j,depth\n1,2,0,0,5\n", "line 1: column 'k' is missing: i, j and k together are the axis; "),
         ("id,x,y,depth\n1,2\n", "line 2: 2 columns, the header has 4; a right line: 1,30.5,10,15"),
-        ("id,x,y,depth\n1,2,3,4,5\n", "line 2: 5 columns, the header has 4; a right line: 1,30.5,10,15"),
+        (
+            "id,x,y,depth\n1,2,3,4,5\n",
+            "line 2: 5 columns, the header has 4: decimal commas need semicolons between the columns; a right line: 1,30.5,10,15",
+        ),
         (
             "\nid;x;y;depth\n\n1;2.5;3,5;4\n",
             "line 4: column 'y' is '3,5': the list has commas and points in its numbers; a right line: 1;30,5;10;15",
