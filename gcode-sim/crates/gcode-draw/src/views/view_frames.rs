@@ -248,9 +248,12 @@ impl Frames {
             line(floor.map(|[a, b]| at([a, b, false])).into(), Pen::Scale, None);
             line(vec![at([false; 3]), at([false, false, true])], Pen::Scale, None);
             let origin = [false; 3];
-            self.scale([at(origin), at([true, false, false])], 0, [0.0, -1.0], &mut line);
-            self.scale([at([true, false, false]), at([true, true, false])], 1, [0.0, -1.0], &mut line);
-            self.scale([at(origin), at([false, false, true])], 2, [-1.0, 0.0], &mut line);
+            let scales = [
+                ([at(origin), at([true, false, false])], 0, [0.0, -1.0]),
+                ([at([true, false, false]), at([true, true, false])], 1, [0.0, -1.0]),
+                ([at(origin), at([false, false, true])], 2, [-1.0, 0.0]),
+            ];
+            self.scales(&scales, &mut line);
         } else {
             let corners = [[left, bottom], [right, bottom], [right, top], [left, top], [left, bottom]];
             line(corners.into(), Pen::Scale, None);
@@ -259,8 +262,11 @@ impl Frames {
                 StandardView::Front => (0, 2),
                 StandardView::Right => (1, 2),
             };
-            self.scale([[left, bottom], [right, bottom]], across, [0.0, -1.0], &mut line);
-            self.scale([[left, bottom], [left, top]], upwards, [-1.0, 0.0], &mut line);
+            let scales = [
+                ([[left, bottom], [right, bottom]], across, [0.0, -1.0]),
+                ([[left, bottom], [left, top]], upwards, [-1.0, 0.0]),
+            ];
+            self.scales(&scales, &mut line);
         }
         if self.views.len() == 1 {
             return strokes;
@@ -273,11 +279,25 @@ impl Frames {
         strokes
     }
 
-    /// Draws a scale along an edge of the box, `edge` of the top view's directions, with ticks towards `outwards`.
+    /// Draws scales along edges of the box: their ends, the number of the top view's direction, and where their ticks point. The
+    /// letters of all axes come before the numbers, which give way to them.
+    fn scales(
+        &self,
+        scales: &[([Point; 2], usize, [f64; 2])],
+        line: &mut impl FnMut(Vec<Point>, Pen, Option<String>),
+    ) {
+        for is_letter in [true, false] {
+            for (ends, edge, outwards) in scales {
+                self.scale(*ends, (*edge, is_letter), *outwards, line);
+            }
+        }
+    }
+
+    /// Draws the letter of a scale, or its ticks.
     fn scale(
         &self,
         [from, to]: [Point; 2],
-        edge: usize,
+        (edge, is_letter): (usize, bool),
         outwards: [f64; 2],
         line: &mut impl FnMut(Vec<Point>, Pen, Option<String>),
     ) {
@@ -294,7 +314,10 @@ impl Frames {
         let direction = [(to[0] - from[0]) / length * along, (to[1] - from[1]) / length * along];
         // Below an axis that counts downwards its letter would stand among the numbers of the other.
         let beside = if direction[1] < -0.9 { outwards } else { direction };
-        line(vec![end, further(end, beside, tick)], Pen::Ruler, Some(name.to_string()));
+        if is_letter {
+            line(vec![end, further(end, beside, tick)], Pen::Ruler, Some(name.to_string()));
+            return;
+        }
         let most = (14.0 * length / self.extent).clamp(3.0, 10.0);
         let (first, last) = if 0.0 < sign { (low, high) } else { (-high, -low) };
         let ticks = Ticks::over(first, last, most);
