@@ -156,11 +156,10 @@ impl TopView {
             (low, high) = (low.min(hole.entry[0] - radius), high.max(hole.entry[0] + radius));
         }
         let is_seen = low < high && self.side.axis_of_coordinate(0) == Some(('x', 1.0));
-        let sides = self.shaft.filter(|_| is_seen).into_iter().flat_map(move |radius| {
+        self.shaft.filter(|_| is_seen).into_iter().flat_map(move |radius| {
             let beyond = 0.25 * radius;
             [radius, -radius].map(|up| Shape::Line(vec![[low - beyond, up], [high + beyond, up]]))
-        });
-        sides
+        })
     }
 
     /// Draws the diameters of the features of holes along the line of sight, those of threads broken.

@@ -312,10 +312,8 @@ impl Frames {
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let (end, along) = if 0.0 < sign { (to, 1.0) } else { (from, -1.0) };
         let direction = [(to[0] - from[0]) / length * along, (to[1] - from[1]) / length * along];
-        // Below an axis that counts downwards its letter would stand among the numbers of the other.
-        let beside = if direction[1] < -0.9 { outwards } else { direction };
         if is_letter {
-            line(vec![end, further(end, beside, tick)], Pen::Ruler, Some(name.to_string()));
+            line(vec![end, further(end, direction, tick)], Pen::Ruler, Some(name.to_string()));
             return;
         }
         let most = (14.0 * length / self.extent).clamp(3.0, 10.0);
