@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
-use encoding_rs::{UTF_16BE, UTF_16LE};
+use encoding_rs::{UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 use super::UsageError;
 use gcode_lang::source::Bytes;
@@ -115,6 +115,7 @@ fn to_utf8(bytes: Vec<u8>) -> Bytes {
         [low, 0, next, 0, ..] if low != 0 && next != 0 => UTF_16LE,
         [0, high, 0, next, ..] if high != 0 && next != 0 => UTF_16BE,
         _ if std::str::from_utf8(&bytes).is_ok() => return bytes.into(),
+        _ if is_western(&bytes) => WINDOWS_1252,
         _ => {
             let mut detector = EncodingDetector::new(Iso2022JpDetection::Deny);
             detector.feed(&bytes, true);
@@ -123,6 +124,21 @@ fn to_utf8(bytes: Vec<u8>) -> Bytes {
     };
     let text = encoding.decode_with_bom_removal(&bytes).0.into_owned();
     Bytes::converted(text, bytes)
+}
+
+/// Returns true for a text with few letters beyond ASCII that all stand alone and are those of drawings and of German and Danish
+/// headers in Windows-1252, such as `Ø` and `ä`. So few bytes are too few for a guess.
+fn is_western(bytes: &[u8]) -> bool {
+    const LETTERS: &[u8] = &[
+        0xd8, 0xf8, 0xdf, 0xe4, 0xf6, 0xfc, 0xc4, 0xd6, 0xdc, 0xc5, 0xe5, 0xe6, 0xc6, 0xe9, 0xe8, 0xb0, 0xb1,
+        0xb5,
+    ];
+    let mut before = 0u8;
+    bytes.iter().all(|byte| {
+        let is_alone = byte.is_ascii() || before.is_ascii() && LETTERS.contains(byte);
+        before = *byte;
+        is_alone
+    })
 }
 
 /// Returns the entries of a folder, sorted by name.

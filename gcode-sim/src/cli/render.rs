@@ -291,7 +291,12 @@ fn hole_picture(
     let views = style.views.as_slice();
     match views {
         [View::Development] => {
-            let missing = "--view development unrolls a cylinder: give its job with --reference";
+            let missing = match holes.shaft {
+                Some(_) => {
+                    "--view development shows the rows of a honeycomb; holes of a pattern are drawn by --view top,front"
+                }
+                None => "--view development unrolls a cylinder: give the job of a honeycomb with --reference",
+            };
             return gcode_draw::development(&holes).ok_or_else(|| UsageError::new(missing));
         }
         [View::Side | View::Tip | View::Helix] => {
@@ -354,8 +359,12 @@ fn flute_picture(view: View, drawn: &FluteView) -> Result<Picture, UsageError> {
     }
 }
 
-/// Returns the file name of the program without its folder.
+/// Returns the file name of the program without its folder, and the program chosen among several of the file.
 pub(super) fn name(request: &Request) -> String {
     let file = Path::new(&request.name).file_name();
-    file.map_or_else(|| request.name.clone(), |name| name.to_string_lossy().into_owned())
+    let file = file.map_or_else(|| request.name.clone(), |name| name.to_string_lossy().into_owned());
+    match &request.main {
+        Some(main) => format!("{file}, {}", main.name.label()),
+        None => file,
+    }
 }

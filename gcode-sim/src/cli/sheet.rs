@@ -14,6 +14,10 @@ use gcode_inspect::tool_path::PathRecorder;
 use gcode_part::Assumption;
 use gcode_session::{Criteria, HoleJudgement};
 
+/// Width and height of the picture, pixels: on paper its letters are 2 mm high.
+const WIDTH: u32 = 1100;
+const HEIGHT: u32 = 825;
+
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The sheet to write
@@ -73,7 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             &findings,
             reference,
         )?;
-        Some(gcode_draw::draw(&drawn, Size::default(), FileFormat::Png)?)
+        Some(gcode_draw::draw(&drawn, Size::new(WIDTH, HEIGHT)?, FileFormat::Png)?)
     };
     let documents = page::documents(&program.conditions, path.as_deref())?;
     let files: Vec<(&str, String, Vec<u8>)> =

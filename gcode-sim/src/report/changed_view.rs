@@ -98,6 +98,8 @@ pub fn of_changes(
         }),
         path: path.cuts,
         lines,
+        zeros: Vec::new(),
+        shaft: None,
     }
 }
 

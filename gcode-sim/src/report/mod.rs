@@ -24,3 +24,4 @@ pub(crate) mod test_report;
 pub(crate) mod tool_path;
 pub mod top;
 pub mod verdict_table;
+mod work_zeros;

@@ -1,13 +1,14 @@
 //! Contents of the picture of a tool path: runs, tools, stops, work zeros and stock.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::figures::count;
+use super::figures::{as_on_control, count};
 use super::top::side_along_holes;
+use super::work_zeros::zeros;
 use gcode_draw::{
     DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, Side, Sign, TopView, TravelLimit,
 };
 use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool};
-use gcode_inspect::tool_path::{PathKind, StretchAxis, ToolPath};
+use gcode_inspect::tool_path::{PathKind, PathStop, StretchAxis, ToolPath};
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Position;
@@ -88,7 +89,7 @@ pub(crate) fn of_path(
         zeros: zeros(machine),
         limits: strokes.map_or_else(Vec::new, |strokes| travel_limits(&path, machine, &strokes)),
         stock,
-        notes: notes(&path),
+        notes: notes(&path, simulation),
         points: path.points,
     }
 }
@@ -96,7 +97,7 @@ pub(crate) fn of_path(
 /// Returns name and diameter of a tool.
 fn tool(number: Option<u32>, machine: &Machine) -> DrawnTool {
     let Some(number) = number else {
-        return DrawnTool { name: "feed before a tool change".to_owned(), diameter: None };
+        return DrawnTool { name: "feed, no tool called before".to_owned(), diameter: None };
     };
     let known = machine.tools.iter().find(|tool| tool.number == number).copied();
     let Tool { kind, diameter, .. } = known.unwrap_or_default();
@@ -118,22 +119,6 @@ fn places(path: &ToolPath, simulation: &Simulation) -> Vec<PathPlace> {
     };
     let stops = path.stops.iter().filter_map(|stop| place(Sign::Stop, stop.at, stop.kind.name().to_owned()));
     start.into_iter().chain(end).chain(stops).collect()
-}
-
-/// Returns the work zeros: those of the machine file, or the origin of the part, from which positions then count.
-pub(crate) fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
-    if !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_)) {
-        return Vec::new();
-    }
-    if machine.offsets.is_empty() {
-        return vec![("zero".to_owned(), [0.0; 3])];
-    }
-    let zero = |values: &[(usize, f64)]| {
-        let mut at = Position::default();
-        values.iter().for_each(|(axis, value)| at[*axis] = *value);
-        machine.forward(&at, &Setup::default()).tip.coords.into()
-    };
-    machine.offsets.iter().map(|offset| (offset.system.name(), zero(&offset.values))).collect()
 }
 
 /// Returns the travel limits of the tip, where no head and no stated table rotates. That of Z is one for each tool whose
@@ -165,10 +150,18 @@ fn travel_limits(path: &ToolPath, machine: &Machine, strokes: &StrokeLimits) -> 
 }
 
 /// Returns what the picture lacks, and the texts of the first stops.
-fn notes(path: &ToolPath) -> Vec<String> {
+fn notes(path: &ToolPath, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
-    let texts = path.stops.iter().filter(|stop| !stop.text.is_empty());
-    notes.extend(texts.take(MAX_STOP_TEXTS).map(|stop| format!("stop {}: {}", stop.kind.name(), stop.text)));
+    // The control and the path record the same stops in their order.
+    let variables = simulation.run.control.stops().iter().map(|stop| stop.variables.as_slice());
+    let texts = path.stops.iter().zip(variables).filter(|(stop, _)| !stop.text.is_empty());
+    let value = |(number, value): &(u32, f64)| format!("#{number} = {}", as_on_control(*value));
+    let line = |(stop, variables): (&PathStop, &[(u32, f64)])| {
+        let values: Vec<String> = variables.iter().map(value).collect();
+        let values = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
+        format!("stop {}: {}{values}", stop.kind.name(), stop.text)
+    };
+    notes.extend(texts.take(MAX_STOP_TEXTS).map(line));
     if 0 < path.unplaced_feeds {
         let feeds = count(path.unplaced_feeds, "feed");
         notes.push(format!("{feeds} from or to an unknown position not drawn"));

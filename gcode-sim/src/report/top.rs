@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector3;
 
 use super::figures::{count, with_sign};
+use super::work_zeros::zeros;
 use gcode_draw::{Cylinder, DrawnHole, HoleStatus, Side, TopView};
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::machine::{AxisLink, HeadKind, LinkMotion, Machine};
@@ -51,6 +52,7 @@ pub fn of_holes(
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
+        zeros: zeros(machine),
         ..TopView::default()
     }
 }
@@ -129,6 +131,8 @@ pub fn of_verdict(
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
+        zeros: zeros(machine),
+        shaft: shaft(reference),
         ..TopView::default()
     }
 }
@@ -202,6 +206,14 @@ pub(super) fn cylinder(reference: &Reference) -> Option<Cylinder> {
             let Pattern { diameter, length, rows, .. } = pattern;
             Some(Cylinder { outer: radius, radius: diameter / 2.0, length, rows })
         }
+        _ => None,
+    }
+}
+
+/// Returns the radius of a cylinder whose length is unknown.
+fn shaft(reference: &Reference) -> Option<f64> {
+    match (reference.surface, reference.pattern) {
+        (Some(Surface::Cylinder { radius }), None) => Some(radius),
         _ => None,
     }
 }

@@ -33,6 +33,12 @@ const SYMBOL: f64 = 1.4;
 const MIN_ROWS: usize = 3;
 
 impl HoleTable {
+    /// Returns the height of all rows with their head beside a text of this height; 0 without rows.
+    pub(super) fn height(&self, text: f64) -> f64 {
+        let lines = if self.rows.is_empty() { 0 } else { self.rows.len() + 2 };
+        LEADING * (TEXT * text).max(LEAST_TEXT) * lines as f64
+    }
+
     /// Draws as many rows as fit, those out of tolerance before the others if not all do.
     pub(super) fn draw(&self, area: Rect, font: &Font, text: f64) -> Vec<DrawCommand> {
         let mut size = (TEXT * text).max(LEAST_TEXT);

@@ -105,13 +105,14 @@ pub use views::development::development;
 pub use views::flute_view::{Fault, FlutePoint, FluteView, HelixCourses, HelixPoint};
 pub use views::flutes::{side_view, tip_view};
 pub use views::helix::helix_graph;
+pub use views::hole_picture::top_view;
 pub use views::path_picture::path_picture;
 pub use views::path_view::{
     Arrangement, ColorBy, DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, StandardView,
     TravelLimit,
 };
 pub use views::purpose::PicturePurpose;
-pub use views::top::{Cylinder, DrawnHole, TopView, top_view};
+pub use views::top::{Cylinder, DrawnHole, TopView};
 
 /// An error in making or comparing pictures.
 #[derive(Debug, thiserror::Error)]

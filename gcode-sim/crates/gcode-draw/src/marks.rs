@@ -62,11 +62,15 @@ fn draw_dial(
     let text = frame.text_size;
     let centre = frame.scale.px(mark.position);
     let hole = (mark.radius * frame.scale.factor).max(0.28 * text);
-    let mut inks = vec![
-        DrawCommand::Disc { centre, radius: zone, color: palette::PAPER },
+    let mut inks = Vec::new();
+    // A zone within its hole would hide the path there, and the circles of its features.
+    if mark.rim == 0.0 && hole < zone {
+        inks.push(DrawCommand::Disc { centre, radius: zone, color: palette::PAPER });
+    }
+    inks.extend([
         DrawCommand::Ring { centre, radius: zone, ink: palette::zone(text) },
         DrawCommand::Ring { centre, radius: hole, ink: palette::thin(text, palette::TEXT) },
-    ];
+    ]);
     let (mut cut, mut strayed) = (false, false);
     match mark.actual.map(|found| frame.scale.px(found)) {
         Some(found) if 2.0 * zone < centre.distance(found) => {
@@ -98,7 +102,7 @@ fn draw_dial(
     field.block(Obstacle::Disc { centre: at, radius: badge * 1.2 });
     DrawnMark {
         centre,
-        label_clearance: zone + 0.15 * text,
+        label_clearance: zone.max(rim(mark, frame)) + 0.15 * text,
         is_crowded: false,
         commands: inks,
         is_truncated: cut,
@@ -214,13 +218,22 @@ fn draw_sign(
     }
     DrawnMark {
         centre,
-        label_clearance: radius * 1.2 + 0.15 * text,
+        label_clearance: (radius * 1.2).max(rim(mark, frame)) + 0.15 * text,
         is_crowded: dials.is_crowded(index, text),
         commands: inks,
         is_truncated: false,
         has_displacement_line: strayed,
         has_axis_arrow: directed,
     }
+}
+
+/// Radius of a circle beyond which a label has room inside it, in text heights.
+const WIDE_RIM: f64 = 3.0;
+
+/// Returns the radius of the largest circle about a hole that labels must leave clear, pixels.
+fn rim(mark: &Mark, frame: &Frame) -> f64 {
+    let radius = mark.rim.max(mark.radius) * frame.scale.factor;
+    if radius < WIDE_RIM * frame.text_size { radius } else { 0.0 }
 }
 
 /// Returns the sheet direction of the hole axis and its projected length; `None` if it points at the reader.

@@ -94,7 +94,8 @@ impl Panel {
         };
         let (_, title) = flow(&title_rows(picture, text), column, font, text, MOST_VERDICT_LINES);
         let (_, legend) = flow(&legend_rows(picture, all, &notes, text), column, font, text, MOST_LINES);
-        let height = title.max(legend) + 2.0 * space;
+        let table = picture.table.height(text);
+        let height = title.max(legend).max(title.min(legend) + text + table) + 2.0 * space;
         let top = (page.bottom - height).max(page.top + 0.55 * page.height()).round();
         let column = |left: f64, right: f64| Rect {
             left: left + space,
@@ -125,8 +126,16 @@ impl Panel {
         if let Some(column) = self.legend {
             commands.push(rule(px(drawing.left, drawing.bottom), px(drawing.right, drawing.bottom)));
             commands.push(rule(px(page.centre().x, drawing.bottom), px(page.centre().x, page.bottom)));
-            commands.extend(fitted(self.title, frame, title).0);
-            commands.extend(fitted(column, frame, legend).0);
+            let mut rest: Vec<Rect> = Vec::new();
+            for (column, (inks, height)) in
+                [(self.title, fitted(self.title, frame, title)), (column, fitted(column, frame, legend))]
+            {
+                commands.extend(inks);
+                rest.push(Rect { top: column.top + height + frame.text_size, ..column });
+            }
+            let roomiest = rest.into_iter().max_by(|a, b| a.height().total_cmp(&b.height()));
+            let table = roomiest.map(|rest| picture.table.draw(rest, &frame.font, frame.text_size));
+            commands.extend(table.into_iter().flatten());
         } else {
             commands.push(rule(px(drawing.right, drawing.top), px(drawing.right, drawing.bottom)));
             let both =
@@ -293,7 +302,7 @@ fn shades(bar: Rect, (low, high): (f64, f64), font: &Font, text: f64) -> Vec<Dra
         })
         .collect();
     // Fewer than three numbers are no scale.
-    let of = |most: &f64| Ticks::over(low, high, *most);
+    let of = |most: &f64| Ticks::over(low.min(high), high.max(low), *most);
     let fine = [4.0, 6.0, 8.0].iter().map(of).find(|ticks| 3 <= ticks.all().count());
     let ticks = fine.unwrap_or_else(|| of(&10.0));
     for value in ticks.all() {

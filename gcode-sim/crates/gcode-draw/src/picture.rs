@@ -60,7 +60,7 @@ pub(super) enum Sample {
     Sign(Sign),
     /// Symbol of a zero point.
     Zero,
-    /// Scale of shades between two values, the text above it.
+    /// Scale of shades from the value of the darkest to that of the lightest, the text above it.
     Shades(f64, f64),
     /// Symbol of ISO 5456-2 for the arrangement of the views.
     Projection(Projection),

@@ -246,6 +246,9 @@ pub struct Mark<const D: usize = 2> {
     pub position: [f64; D],
     /// Radius of the hole, mm.
     pub radius: f64,
+    /// Radius of the widest circle drawn round it, mm; labels lie beyond it.
+    #[serde(skip)]
+    pub rim: f64,
     /// Depth of the hole against `direction`, mm.
     #[serde(skip_serializing_if = "is_zero")]
     pub depth: f64,
@@ -324,6 +327,7 @@ impl<const D: usize> Mark<D> {
         Self {
             position,
             radius: 0.0,
+            rim: 0.0,
             depth: 0.0,
             status,
             label,

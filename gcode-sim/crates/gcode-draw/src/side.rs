@@ -196,6 +196,7 @@ impl Mark<3> {
         Mark {
             position: side.project(self.position),
             radius: self.radius,
+            rim: self.rim,
             depth: self.depth,
             status: self.status,
             label: self.label.clone(),

@@ -108,17 +108,24 @@ pub(super) fn zero(at: Px, radius: f64, ink: Ink) -> Vec<DrawCommand> {
     ]
 }
 
-/// Draws the symbol of a place on a tool path: a ring at the start, a square at the end, a pause in a square at a stop,
+/// Draws the symbol of a place on a tool path: a triangle at the start, a square at the end, a pause in a square at a stop,
 /// a cross at an alarm.
 pub(super) fn sign(of: Sign, at: Px, radius: f64) -> Vec<DrawCommand> {
     let (color, width) = (palette::TEXT, (radius * 0.3).max(1.2));
     let ink = Ink::solid(width, color);
     let square = [[-0.8, -0.8], [0.8, -0.8], [0.8, 0.8], [-0.8, 0.8]];
     match of {
-        Sign::Start => vec![
-            DrawCommand::Disc { centre: at, radius, color: palette::PAPER },
-            DrawCommand::Ring { centre: at, radius: radius - width / 2.0, ink },
-        ],
+        // Holes are round, and an extra one is a triangle that points up.
+        Sign::Start => {
+            let corners = [[-0.7, -1.0], [1.1, 0.0], [-0.7, 1.0]];
+            let corners = points(at, radius, &corners);
+            let rim = Ink::solid(3.0 * width, palette::PAPER);
+            vec![
+                DrawCommand::outline(corners.clone(), rim),
+                DrawCommand::Area { points: corners.clone(), color: palette::PAPER },
+                DrawCommand::outline(corners, ink),
+            ]
+        }
         Sign::End => vec![area(at, radius, &square, color)],
         Sign::Stop => vec![
             area(at, radius, &square, palette::PAPER),

@@ -125,14 +125,16 @@ impl Feature {
 
     /// Returns the name with the sizes: `counterbore Φ10×5`, `tap M10×1.5, 22 deep`.
     pub fn describe(&self) -> String {
-        let Self { kind, diameter, .. } = *self;
-        match (kind, self.pitch, self.angle) {
+        // Lengths of a list in inches have sixteen digits.
+        let short = |mm: f64| (mm * 1e4).round() / 1e4;
+        let (kind, diameter, bottom) = (self.kind, short(self.diameter), short(self.bottom()));
+        match (kind, self.pitch.map(short), self.angle) {
             (FeatureKind::Tap, Some(pitch), _) => {
                 let hand = if self.hand == Hand::Left { "left-hand " } else { "" };
-                format!("{hand}thread {diameter}×{pitch}, {} deep", self.bottom())
+                format!("{hand}thread {diameter}×{pitch}, {bottom} deep")
             }
             (FeatureKind::Countersink, _, Some(angle)) => format!("countersink Φ{diameter}, {angle}°"),
-            _ => format!("{} Φ{diameter}×{}", kind.name(), self.bottom()),
+            _ => format!("{} Φ{diameter}×{bottom}", kind.name()),
         }
     }
 

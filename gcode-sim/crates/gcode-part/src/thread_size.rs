@@ -1,4 +1,4 @@
-//! Designations of threads as drawings have them: `M10`, `M10x1`, `1/4-20`, `#10-24`.
+//! Designations of threads as drawings have them: `M10`, `M10x1`, `1/4-20`, `#10-24`, `G1/4`.
 
 /// Nominal diameters and pitches of the coarse series, mm (ISO 261, table 1, first and second choice).
 const COARSE: [(f64, f64); 30] = [
@@ -34,8 +34,25 @@ const COARSE: [(f64, f64); 30] = [
     (56.0, 5.5),
 ];
 
+/// Sizes, diameters in mm and threads an inch of pipe threads where pressure-tight joints are not made on the threads (ISO 228-1,
+/// table 1).
+const PIPE: [(&str, f64, f64); 12] = [
+    ("1/16", 7.723, 28.0),
+    ("1/8", 9.728, 28.0),
+    ("1/4", 13.157, 19.0),
+    ("3/8", 16.662, 19.0),
+    ("1/2", 20.955, 14.0),
+    ("5/8", 22.911, 14.0),
+    ("3/4", 26.441, 14.0),
+    ("1", 33.249, 11.0),
+    ("1 1/4", 41.910, 11.0),
+    ("1 1/2", 47.803, 11.0),
+    ("2", 59.614, 11.0),
+    ("3", 87.884, 11.0),
+];
+
 /// Returns the diameter and the pitch of a thread by its designation, mm: a metric one, whose pitch is the coarse one where
-/// it is left out, or one of the Unified series by diameter and threads an inch (ASME B1.1).
+/// it is left out, one of the Unified series by diameter and threads an inch (ASME B1.1), or a pipe thread `G1/4`.
 ///
 /// # Errors
 /// What is wrong with a text that begins as a designation; `None` for any other text.
@@ -52,6 +69,10 @@ pub(crate) fn parse(text: &str) -> Option<Result<(f64, f64), String>> {
             Some(pitch) => Ok((diameter, number(pitch)?)),
             None => coarse(diameter),
         });
+    }
+    if let Some(size) = text.strip_prefix('g') {
+        let (_, diameter, turns) = PIPE.iter().find(|(name, ..)| *name == size.trim())?;
+        return Some(Ok((*diameter, 25.4 / turns)));
     }
     let (size, turns) = text.split_once('-')?;
     let turns: f64 =
@@ -100,6 +121,8 @@ mod tests {
             ("#10-24", 4.826, 25.4 / 24.0),
             ("1 1/8-7", 28.575, 25.4 / 7.0),
             (".25-28", 6.35, 25.4 / 28.0),
+            ("G1/4", 13.157, 25.4 / 19.0),
+            ("G 1 1/2", 47.803, 25.4 / 11.0),
         ] {
             assert_eq!(parse(text), Some(Ok((diameter, pitch))), "{text}");
         }
@@ -107,7 +130,7 @@ mod tests {
 
     #[test]
     fn other_texts_are_no_designations() {
-        for text in ["10", "8.5", "M", "Mx1", "M10x", "-5", "1/4-", "G1/4", "1/0-0", ""] {
+        for text in ["10", "8.5", "M", "Mx1", "M10x", "-5", "1/4-", "G1/7", "Rc1/4", "1/0-0", ""] {
             assert_eq!(parse(text), None, "{text}");
         }
         let message = parse("M9.5").unwrap().unwrap_err();

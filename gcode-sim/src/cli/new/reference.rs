@@ -8,7 +8,7 @@ use super::{ExitStatus, OutputFile, UsageError};
 use crate::cli::conditions::{ProgramArguments, RunConditions};
 use crate::cli::{common, options, output, progress};
 use crate::report::holes as report;
-use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
+use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT, MAIN_PROGRAM};
 use gcode_inspect::holes::DrilledHole;
 use gcode_lang::diag::Diagnostic;
 use gcode_part::{Hole, HoleList};
@@ -50,6 +50,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     }
     let (list, entries) = list(&simulation, &request, arguments.clearance)?;
     if list.holes.is_empty() {
+        let of_choice: Vec<Diagnostic> =
+            simulation.run.findings().filter(|finding| finding.kind == &MAIN_PROGRAM).collect();
+        super::super::findings(&of_choice, &simulation.run);
         output::print_message("error: nothing is written: the program makes no hole\n");
         return Ok(ExitStatus::Failed);
     }

@@ -145,6 +145,18 @@ impl Case {
             let both = format!("{} and {}", one.display(), other.display());
             return Err(UsageError::new(format!("{both}: both are references; delete one")));
         }
+        // A reference of the folder would be that of none of its programs.
+        if self.label.is_some()
+            && let Some(unused) = ["reference.json", "reference.csv"].into_iter().find_map(there)
+        {
+            let name = unused.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let right = self.own_file(&name);
+            let right = right.file_name().unwrap_or_default().to_string_lossy();
+            return Err(UsageError::new(format!(
+                "{}: the folder has several main programs, and this names none: call that of this one {right}",
+                unused.display()
+            )));
+        }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(own);
         let reference = reference.or_else(|| project.reference());
         let read = |path: &Path| options::read_nominal(path, &request, &mut folders);

@@ -2,6 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::holes::HoleTable;
@@ -10,7 +11,7 @@ use super::rows::HoleRowState;
 use super::words::{count, shown};
 use super::{Page, ReviewSide, exact_path, heading, stock_edges};
 use crate::report::figures::short;
-use crate::report::tool_path;
+use crate::report::work_zeros::zeros;
 use gcode_draw::{HoleStatus, Mark, Pen, Scene, Shape, Stroke};
 use gcode_inspect::machine::{HeadKind, Machine};
 use gcode_part::Hole;
@@ -34,7 +35,35 @@ pub(super) struct Data {
     stock: Vec<Vec<[f64; 3]>>,
     /// Work zeros: name and place, mm.
     zeros: Vec<(String, [f64; 3])>,
+    /// Lowest and highest coordinate of the feeds along `up`, mm, where shades show it.
+    heights: Option<[f64; 2]>,
     sides: Vec<SidePath>,
+}
+
+/// Least difference of heights that shades show, mm.
+const LEAST_HEIGHT: f64 = 0.01;
+
+/// Returns the lowest and the highest coordinate of the feeds; `None` for a comparison, whose colours say what differs, and
+/// where all are alike.
+fn heights(sides: &[SidePath], up: char) -> Option<[f64; 2]> {
+    let [side] = sides else { return None };
+    let axis = usize::from(up == 'z') + 1;
+    let feeds = side.scene.strokes.iter().filter(|stroke| stroke.pen == Pen::Feed);
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let pairs = feeds.flat_map(|stroke| match &stroke.shape {
+        Shape::Line(points) => points.windows(2),
+        _ => [].windows(2),
+    });
+    for pair in pairs {
+        let ends = [pair[0][axis], pair[1][axis]];
+        low = low.min(ends[0]).min(ends[1]);
+        // A feed towards the part or out of it begins or ends above what is cut.
+        let way = (Vector3::from(pair[1]) - Vector3::from(pair[0])).norm();
+        if (ends[1] - ends[0]).abs() < 0.999 * way {
+            high = high.max(ends[0]).max(ends[1]);
+        }
+    }
+    (LEAST_HEIGHT < high - low).then(|| [low, high].map(|mm| rounded(mm, 1e3)))
 }
 
 /// One side: the scene that is drawn, and the links from it to the listing and the table.
@@ -43,7 +72,7 @@ struct SidePath {
     word: &'static str,
     /// A stroke for each move, a mark for each hole.
     scene: Scene<3>,
-    /// Kinds of moves with their feed rates, mm/min: `rapid`, `arc F200`.
+    /// Kinds of moves with their feed rates, in the unit of the program: `rapid`, `arc F200`.
     kinds: Vec<String>,
     /// Index of each move's kind.
     kind: Vec<usize>,
@@ -105,11 +134,13 @@ pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable)
     let drawn =
         sides.iter().enumerate().map(|(side_index, side)| drawn(page, side_index, side, table, sides.len()));
     let stock = page.reference.and_then(|reference| reference.stock.as_ref()).or(page.machine.stock.as_ref());
+    let sides: Vec<SidePath> = drawn.collect();
     Data {
         up,
+        heights: heights(&sides, up),
         stock: stock.map(stock_edges::edges).unwrap_or_default(),
-        zeros: tool_path::zeros(page.machine),
-        sides: drawn.collect(),
+        zeros: zeros(page.machine),
+        sides,
     }
 }
 
@@ -177,6 +208,8 @@ fn drawn(
             blocks.len() - 1
         }));
     }
+    let is_inch = side.observed.revision.simulation.run.control.is_inch();
+    let kind = |leg: &Leg| kind(leg, is_inch);
     let kinds: Vec<String> = legs.iter().map(kind).collect::<BTreeSet<_>>().into_iter().collect();
     let different = match (page.old, sides) {
         (Some((_, difference)), 2) => difference.compared.steps[side_index].as_slice(),
@@ -188,7 +221,6 @@ fn drawn(
     };
     let joined: Vec<usize> =
         if legs.len() < all_moves { legs.iter().map(|leg| leg.moves).collect() } else { Vec::new() };
-    let is_inch = side.observed.revision.simulation.run.control.is_inch();
     SidePath {
         word: side.word,
         axes: (0..page.machine.axes.len()).map(|axis| page.machine.axes.letter(axis).to_string()).collect(),
@@ -240,9 +272,11 @@ fn stroke(leg: &Leg) -> Stroke<3> {
     Stroke::new(pen, Shape::Line(leg.points.iter().map(|point| point.coords.into()).collect()))
 }
 
-fn kind(leg: &Leg) -> String {
+/// Returns the kind of a move with its feed rate in the unit of the program.
+fn kind(leg: &Leg, is_inch: bool) -> String {
+    let unit = if is_inch { MM_PER_INCH } else { 1.0 };
     match leg.feed {
-        Some(feed) if feed != 0.0 => format!("{} F{}", leg.kind, short(rounded(feed, 1e3))),
+        Some(feed) if feed != 0.0 => format!("{} F{}", leg.kind, short(rounded(feed / unit, 1e3))),
         _ => leg.kind.to_owned(),
     }
 }
@@ -324,7 +358,11 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
         div #under {
             ul.legend {
                 @if data.has_pen(Pen::Rapid) { li.rapid { "rapid" } }
-                @if data.has_pen(Pen::Feed) { li.feed { "feed, arc" } }
+                @if let Some([low, high]) = data.heights {
+                    li.depth { "feed, arc: " (data.up) " from " (signed(low)) " to " (signed(high)) " mm, deeper is darker" }
+                } @else if data.has_pen(Pen::Feed) {
+                    li.feed { "feed, arc" }
+                }
                 @if data.has_pen(Pen::Probe) { li.probe { "probing move" } }
                 @if sides.len() == 2 {
                     li.changed { "different from the other program" }
@@ -339,6 +377,8 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                 @if !data.zeros.is_empty() { li.zero { "work zero" } }
                 @if data.sides.iter().any(|side| !side.scene.strokes.is_empty()) {
                     li.start { "start" }
+                }
+                @if data.sides.iter().any(|side| !side.scene.strokes.is_empty() && !side.ends_with_alarm) {
                     li.end { "end" }
                 }
                 @if data.sides.iter().any(|side| side.ends_with_alarm) { li.alarm-end { "position at the alarm" } }
@@ -353,6 +393,11 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
             noscript { p { "The drawing needs scripts; everything else on this page works without them." } }
         }
     }
+}
+
+/// Formats a number with a true minus sign.
+fn signed(value: f64) -> String {
+    short(value).replace('-', "−")
 }
 
 /// Returns the controls that play the path move by move.

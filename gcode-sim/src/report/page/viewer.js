@@ -5,6 +5,8 @@ const MOST_PIXELS = 0.3;
 const MOST_LETTERS = 1.6e6;
 // Height of the strip for the scale bar below the drawing, pixels.
 const STRIP = 40;
+// Number of shades of the feeds by their height.
+const SHADES = 6;
 
 class Camera {
   constructor(up) {
@@ -187,6 +189,46 @@ class Side {
     context.setLineDash([]);
   }
 
+  // Returns the shade of each stretch of a move by the height of its middle.
+  shades(move) {
+    const exact = this.sharp.has(move) ? this.known.get(move) : null;
+    const [points, first, end] = exact ? [exact, 0, exact.length] : [this.xyz, 3 * this.starts[move], 3 * this.starts[move + 1]];
+    const [low, high] = this.heights;
+    const shades = [];
+    for (let at = first + "xyz".indexOf(this.up); at < end - 3; at += 3) {
+      const part = ((points[at] + points[at + 3]) / 2 - low) / (high - low);
+      shades.push(Math.max(0, Math.min(SHADES - 1, Math.floor(SHADES * part))));
+    }
+    return shades;
+  }
+
+  // Draws feeds, each stretch in the shade of its height where they differ in height.
+  strokeFeeds(colours, width, matches) {
+    if (!this.heights) return this.strokeMoves(colours.feed, width, [], matches);
+    const context = this.context;
+    const paths = Array.from({ length: SHADES }, () => new Path2D());
+    let drawn = 0;
+    const stroke = () => paths.forEach((path, shade) => {
+      context.strokeStyle = colours[`depth-${shade}`];
+      context.stroke(path);
+      paths[shade] = new Path2D();
+    });
+    context.lineWidth = width;
+    for (let move = 0; move < this.moves.length; move++) {
+      if (!matches(move)) continue;
+      const [points, first, end] = this.line(move);
+      let before = null;
+      this.shades(move).forEach((shade, stretch) => {
+        const at = first + 2 * stretch;
+        if (shade !== before) paths[shade].moveTo(points[at], points[at + 1]);
+        if (at + 3 < end) paths[shade].lineTo(points[at + 2], points[at + 3]);
+        before = shade;
+      });
+      if (++drawn % 1000 === 0) stroke();
+    }
+    stroke();
+  }
+
   draw(colours, options, pick, other) {
     const context = this.context;
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -199,14 +241,14 @@ class Side {
       const follows = (pen) => (move) => move >= upTo && this.moves[move].pen === pen;
       context.globalAlpha = 0.3;
       if (options.rapids) this.strokeMoves(colours.rapid, 1, few ? [5, 4] : [], follows("rapid"));
-      this.strokeMoves(colours.feed, 1, [], follows("feed"));
+      this.strokeFeeds(colours, 1, follows("feed"));
       this.strokeMoves(colours.probe, 1, [2, 3], follows("probe"));
       context.globalAlpha = 1;
     }
     const shown = (move) => (!options.changedOnly || this.isChanged.has(move)) && (upTo === null || move < upTo);
     const plain = (pen) => (move) => shown(move) && this.moves[move].pen === pen && !this.isChanged.has(move);
     if (options.rapids) this.strokeMoves(colours.rapid, 1, few ? [5, 4] : [], plain("rapid"));
-    this.strokeMoves(colours.feed, 1.6, [], plain("feed"));
+    this.strokeFeeds(colours, 1.6, plain("feed"));
     this.strokeMoves(colours.probe, 2, [2, 3], plain("probe"));
     const rapid = (move) => this.moves[move].pen === "rapid";
     if (options.rapids) this.strokeMoves(colours.changed, few ? 2 : 0.8, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
@@ -268,12 +310,20 @@ class Side {
     const [startX, startY] = inside(0);
     context.beginPath();
     if (!hasAlarm) context.rect(endX - 5, endY - 5, 10, 10);
+    context.stroke();
+    context.fill();
+    // Open, so that it is seen on the black quarters of a work zero.
+    context.beginPath();
     context.moveTo(startX - 5, startY - 7);
     context.lineTo(startX + 8, startY);
     context.lineTo(startX - 5, startY + 7);
     context.closePath();
-    context.stroke();
-    context.fill();
+    context.fillStyle = colours.paper;
+    for (const [strokeStyle, lineWidth] of [[colours.paper, 6], [colours.ink, 2]]) {
+      Object.assign(context, { strokeStyle, lineWidth });
+      context.stroke();
+      context.fill();
+    }
   }
 
   // Draws the whole part small in a corner, with a cross at the place that the drawing shows larger.
@@ -515,7 +565,7 @@ function toSegment(x, y, ax, ay, bx, by) {
 // Fits the extents into the canvases, and draws after changes.
 class Viewer {
   constructor(data, sides) {
-    sides.forEach((side) => Object.assign(side, { stock: data.stock, zeros: data.zeros }));
+    sides.forEach((side) => Object.assign(side, { stock: data.stock, zeros: data.zeros, heights: data.heights, up: data.up }));
     Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false, upTo: null } });
     // A change is seen larger without the stock.
     this.extents = [...sides.flatMap((side) => side.extent()), ...(sides.length === 1 ? data.stock.flat(2) : [])];
@@ -601,6 +651,7 @@ class Viewer {
     this.waiting = false;
     const style = getComputedStyle(document.documentElement);
     const names = ["paper", "ink", "soft", "rapid", "feed", "probe", "changed", "hole", "wrong", "pick"];
+    for (let shade = 0; shade < SHADES; shade++) names.push(`depth-${shade}`);
     const colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
     const rows = this.camera.axes();
     this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight));

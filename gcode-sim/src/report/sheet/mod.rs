@@ -74,8 +74,9 @@ impl ProgramSheet<'_> {
     /// Returns the name of the main program with its comment: `O1234 (BRACKET)`.
     fn name(&self) -> String {
         let memory = self.simulation.run.control.memory();
-        let label = memory.get(memory.main()).label();
-        let comment = memory.sources().iter().next().and_then(|(_, source)| first_comment(source.lines()));
+        let main = memory.get(memory.main());
+        let label = main.label();
+        let comment = main_comment(memory.sources().iter().map(|(_, source)| source.lines()), main.number());
         let comment = comment.unwrap_or_default();
         if comment.is_empty() { label } else { format!("{label} ({comment})") }
     }
@@ -359,6 +360,34 @@ impl ProgramSheet<'_> {
 }
 
 /// Returns the text of the first comment of a file.
+/// Returns the first comment of the main program: of its part of a dump, whose first line has its number, else of the first file.
+fn main_comment<L: Iterator<Item = String>>(
+    sources: impl Iterator<Item = L>,
+    number: Option<u32>,
+) -> Option<String> {
+    let mut of_first = None;
+    for (index, lines) in sources.enumerate() {
+        let lines: Vec<String> = lines.collect();
+        if let Some(start) = lines.iter().position(|line| number.is_some() && number_of_line(line) == number)
+        {
+            let next = lines[start + 1..].iter().position(|line| number_of_line(line).is_some());
+            let end = next.map_or(lines.len(), |next| start + 1 + next);
+            return first_comment(lines[start..end].iter().cloned());
+        }
+        if index == 0 {
+            of_first = first_comment(lines.into_iter());
+        }
+    }
+    of_first
+}
+
+/// Returns the number of a line that begins a program: `O1520`, `:1520`.
+fn number_of_line(line: &str) -> Option<u32> {
+    let digits = line.trim_start().strip_prefix(['O', 'o', ':'])?;
+    let end = digits.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(digits.len());
+    digits[..end].parse().ok()
+}
+
 fn first_comment(mut lines: impl Iterator<Item = String>) -> Option<String> {
     let line = lines.find(|line| line.contains('('))?;
     let (_, rest) = line.split_once('(')?;

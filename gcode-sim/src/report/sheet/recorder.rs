@@ -21,7 +21,7 @@ const FEED_PER_REVOLUTION: u32 = 950;
 pub(crate) struct ToolUse {
     /// Tool in the spindle; `None` before the first tool change.
     pub tool: Option<u32>,
-    /// Length offsets that cut, as code and H.
+    /// Length offsets that are commanded or cut, as code and H.
     pub length_offsets: BTreeSet<LengthCompensation>,
     /// Least and largest spindle speed of its cuts, 1/min.
     pub speed: Option<[f64; 2]>,
@@ -115,6 +115,10 @@ impl EventSink for UseRecorder {
             }
             EventKind::ToolLength { compensation, .. } => {
                 self.length = *compensation;
+                // A tool that cuts nothing, such as a probe, has its offset on the sheet too.
+                if *compensation != LengthCompensation::Off {
+                    self.current().length_offsets.insert(*compensation);
+                }
                 None
             }
             EventKind::Spindle { direction, speed, .. } => {

@@ -4,6 +4,7 @@ pub(super) mod drawn_lines;
 pub(super) mod flute_view;
 pub(super) mod flutes;
 pub(super) mod helix;
+pub(super) mod hole_picture;
 pub(super) mod path_picture;
 pub(super) mod path_places;
 pub(super) mod path_strokes;

@@ -20,7 +20,6 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     let frames = Frames::of(ViewBox::of(arrangement.top, view, path), arrangement);
     let (letter, sign) = arrangement.top.axis_of_coordinate(2).unwrap_or(('z', 1.0));
     let axis = ['x', 'y', 'z'].iter().position(|name| *name == letter).unwrap_or(2);
-    let height_name = if sign < 0.0 { format!("−{letter}") } else { letter.to_string() };
     let tools = tool_order(path);
     let shades = ShadeScale::of(path, arrangement.color_by, |point| point[axis] * sign);
     let drawer = PathDrawer {
@@ -76,7 +75,7 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
         notes.push(format!("{} of {all} holes have no symbol: they do not face a view", all - faced));
     }
     let is_shown = |tool: usize| frames.views.iter().any(|placed| drawer.shows_feeds(placed, tool));
-    let legend = legend(view, &drawer, &scene, arrangement, &height_name, is_shown);
+    let legend = legend(view, &drawer, &scene, arrangement, (letter, sign), is_shown);
     let mut title = view.title(title_of(arrangement), view.tolerance, None);
     title.lines.extend(notes);
     Picture { title, scene, legend, table: view.table(), ..Picture::default() }
@@ -162,7 +161,7 @@ fn legend(
     drawer: &PathDrawer<'_>,
     scene: &Scene,
     arrangement: &Arrangement,
-    height_name: &str,
+    (letter, sign): (char, f64),
     is_shown: impl Fn(usize) -> bool,
 ) -> Vec<LegendItem> {
     let path = drawer.path;
@@ -177,11 +176,12 @@ fn legend(
                 LegendItem::new(Sample::Nothing, format!("all feeds: F{}", plain(scale.low)))
             }
             (_, false) => LegendItem::new(
-                Sample::Shades(scale.low, scale.high),
-                format!("{height_name} of the feeds, mm"),
+                Sample::Shades(sign * scale.low, sign * scale.high),
+                format!("{letter} of the feeds, mm"),
             ),
             (_, true) => {
-                LegendItem::new(Sample::Nothing, format!("all feeds: {height_name} {} mm", number(scale.low)))
+                let at = number(sign * scale.low);
+                LegendItem::new(Sample::Nothing, format!("all feeds at {letter} = {at} mm"))
             }
         });
     }

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use super::purpose::{PicturePurpose, change_headline};
 use crate::hole_table::{Column, HoleTable};
 use crate::measure::plain;
-use crate::picture::{LegendItem, Picture, Sample, Title};
-use crate::scene::{Axis, HoleStatus, Mark, Pen, Scene, Shape, Stroke, ZoneDeviation};
+use crate::picture::{LegendItem, Sample, Title};
+use crate::scene::{HoleStatus, Mark, Pen, Shape, Stroke, ZoneDeviation};
 use crate::side::{Side, deviation};
 use gcode_part::{FeatureKind, Hole};
 
@@ -40,6 +40,10 @@ pub struct TopView {
     pub path: Vec<Stroke<3>>,
     /// Further lines of the title block.
     pub lines: Vec<String>,
+    /// Names and positions of the work zeros, drawn where the part has no outline of its own.
+    pub zeros: Vec<(String, [f64; 3])>,
+    /// Radius of a shaft of unknown length about x, mm.
+    pub shaft: Option<f64>,
 }
 
 /// A cylinder about x, mm.
@@ -88,15 +92,6 @@ impl DrawnHole {
     }
 }
 
-/// Legend texts of tool paths.
-const PATHS: [(Pen, &str); 5] = [
-    (Pen::Feed, "tool path, feed"),
-    (Pen::Rapid, "tool path, rapid"),
-    (Pen::Unchanged, "unchanged cut"),
-    (Pen::New, "changed cut, new"),
-    (Pen::Old, "changed cut, old"),
-];
-
 /// Largest number of numbered holes; beyond it good holes have neither number nor dial, which would hide each
 /// other.
 pub(super) const MAX_NUMBERED: usize = 60;
@@ -106,44 +101,6 @@ const ALONG: f64 = 0.999;
 
 /// Cosine of the angle between a hole and the line of sight beyond which the hole is on the far side: 30° off it.
 const FAR_SIDE: f64 = 0.866;
-
-/// Largest number of construction circles; more would hide the holes.
-const MAX_CIRCLES: usize = 12;
-
-/// Builds the picture of a top view.
-pub fn top_view(view: &TopView) -> Picture {
-    let (near, far): (Vec<_>, Vec<_>) = view.holes.iter().partition(|hole| faces_reader(hole, view));
-    let unit = [("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0])];
-    let part = Scene {
-        axes: unit.map(|(name, direction)| Axis { name: name.to_owned(), direction }).into(),
-        strokes: view.path.clone(),
-        marks: near.into_iter().filter_map(|hole| hole_mark(hole, view)).collect(),
-        zone: view.tolerance,
-    };
-    let mut scene = part.seen_from(view.side);
-    if view.cylinder.is_some() || view.purpose == PicturePurpose::Change {
-        number_few(&mut scene.marks);
-    }
-    scene.strokes.extend(view.feature_circles(view.side));
-    if view.side == Side::Y {
-        scene.strokes.extend(circles(&view.holes));
-    }
-    scene.strokes.extend(view.outlines().map(|shape| Stroke::new(Pen::Outline, shape)));
-    let hidden = (!far.is_empty()).then(|| match far.len() {
-        1 => "1 hole on the far side not drawn".to_owned(),
-        count => format!("{count} holes on the far side not drawn"),
-    });
-    let what = format!("Top view, seen from {}", view.side.name());
-    let position = view.tolerance.filter(|_| view.purpose == PicturePurpose::Verdict);
-    let legend = legend(view, &scene);
-    Picture {
-        title: view.title(what, position, hidden),
-        scene,
-        legend,
-        table: view.table(),
-        ..Picture::default()
-    }
-}
 
 /// Removes the numbers and dials that would hide the holes of a dense pattern.
 pub(super) fn number_few(marks: &mut [Mark]) {
@@ -158,17 +115,13 @@ pub(super) fn number_few(marks: &mut [Mark]) {
     }
 }
 
-/// Returns false for holes on the far side of a cylinder.
-fn faces_reader(hole: &DrawnHole, view: &TopView) -> bool {
-    let away = |hole: &Hole| Vector3::from(hole.axis).dot(&view.side.towards()) < -1e-6;
-    view.cylinder.is_none() || !hole.shown().is_some_and(away)
-}
-
 /// Returns the mark of a hole on the part.
 pub(super) fn hole_mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
     let shown = hole.shown()?;
     let actual = hole.actual.as_ref().filter(|_| hole.nominal.is_some());
+    let features = shown.features.iter().map(|feature| feature.diameter);
     Some(Mark {
+        rim: features.fold(0.0, f64::max) / 2.0,
         radius: shown.diameter.or_else(|| widest(shown)).unwrap_or(0.0) / 2.0,
         depth: shown.depth,
         label: view.label(hole),
@@ -192,7 +145,21 @@ impl TopView {
         let sides = self.cylinder.into_iter().flat_map(|Cylinder { outer, length, .. }| {
             [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
         });
-        outline.into_iter().chain(sides)
+        outline.into_iter().chain(sides).chain(self.shaft_sides())
+    }
+
+    /// Returns the sides of a shaft, a little longer than the pattern of its holes, where x runs across the sheet.
+    fn shaft_sides(&self) -> impl Iterator<Item = Shape> {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for hole in self.holes.iter().filter_map(DrawnHole::shown) {
+            let radius = hole.diameter.unwrap_or(0.0) / 2.0;
+            (low, high) = (low.min(hole.entry[0] - radius), high.max(hole.entry[0] + radius));
+        }
+        let is_seen = low < high && self.side.axis_of_coordinate(0) == Some(('x', 1.0));
+        self.shaft.filter(|_| is_seen).into_iter().flat_map(move |radius| {
+            let beyond = 0.25 * radius;
+            [radius, -radius].map(|up| Shape::Line(vec![[low - beyond, up], [high + beyond, up]]))
+        })
     }
 
     /// Draws the diameters of the features of holes along the line of sight, those of threads broken.
@@ -327,113 +294,9 @@ impl TopView {
     }
 }
 
-/// Returns the circles on which holes lie, with their radii; radii less than 0.05 mm apart are merged.
-fn circles(holes: &[DrawnHole]) -> Vec<Stroke> {
-    let any_nominal = holes.iter().any(|hole| hole.nominal.is_some());
-    let of = |hole: &DrawnHole| {
-        let [x, _, z] = if any_nominal { hole.nominal.as_ref() } else { hole.actual.as_ref() }?.entry;
-        Some(libm::hypot(x, z))
-    };
-    let mut radii: Vec<f64> = holes.iter().filter_map(of).collect();
-    radii.sort_by(f64::total_cmp);
-    radii.dedup_by(|a, b| (*a - *b).abs() < 0.05);
-    radii.retain(|r| 1e-3 < *r);
-    if MAX_CIRCLES < radii.len() {
-        return Vec::new();
-    }
-    let circle = |radius: f64| Stroke {
-        caption: Some(format!("r {}", signed(radius, 2))),
-        ..Stroke::new(Pen::Construction, Shape::Circle { centre: [0.0, 0.0], radius })
-    };
-    radii.into_iter().map(circle).collect()
-}
-
 /// Formats a number without trailing zeros and with a true minus sign.
-fn signed(number: f64, decimals: usize) -> String {
+pub(super) fn signed(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
-}
-
-fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
-    let has_axis = |mark: &Mark| mark.direction.is_some_and(|d| 0.02 < libm::hypot(d[0], d[1]));
-    let has_pen = |pen: Pen| scene.strokes.iter().any(|stroke| stroke.pen == pen);
-    let is_nominal = view.holes.iter().any(|hole| hole.nominal.is_some());
-    let radius = if is_nominal { "radius r, mm" } else { "radius r where the feed begins, mm" };
-    let others = [
-        (scene.marks.iter().any(has_axis), Sample::Direction, "hole axis, outwards"),
-        (
-            scene.marks.iter().any(|mark| mark.actual.is_some()),
-            Sample::Displacement,
-            view.purpose.displacement_label(),
-        ),
-        (has_pen(Pen::Thread), Sample::Pen(Pen::Thread), "thread"),
-        (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), "part outline"),
-        (has_pen(Pen::Construction), Sample::Pen(Pen::Construction), radius),
-    ];
-    let paths = PATHS.map(|(pen, text)| (has_pen(pen), Sample::Pen(pen), text));
-    let drawn = others.into_iter().chain(paths).filter(|(is_drawn, ..)| *is_drawn);
-    let items = view.status_legend(&scene.marks).into_iter();
-    items.chain(drawn.map(|(_, sample, text)| LegendItem::new(sample, text))).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn hole(entry: [f64; 3], axis: [f64; 3]) -> Hole {
-        Hole { id: None, entry, axis, depth: 15.0, diameter: Some(6.0), ..Hole::default() }
-    }
-
-    fn seen(nominal: &Hole, found: &Hole) -> ZoneDeviation {
-        Side::Y.zone_deviation(nominal.axis, deviation(nominal, found).unwrap())
-    }
-
-    #[test]
-    fn the_view_from_above_has_z_downwards() {
-        let hole = Some(hole([0.0, 9.0, 5.0], [0.0, 1.0, 0.0]));
-        let holes = vec![DrawnHole {
-            id: "1".to_owned(),
-            nominal: hole.clone(),
-            actual: hole,
-            status: HoleStatus::Good,
-            position_deviation: Some(0.02),
-            rotary_angle: Some(-72.0),
-            ..DrawnHole::default()
-        }];
-        let scene = top_view(&TopView { holes, rotary: "B".to_owned(), ..TopView::default() }).scene;
-        assert_eq!(scene.marks[0].position, [0.0, -5.0]);
-        assert_eq!(scene.marks[0].label, ["1", "B −72°", "Φ0.020"]);
-        assert_eq!(scene.axes[1].direction, [0.0, -1.0]);
-    }
-
-    #[test]
-    fn an_axial_hole_shows_its_deviation_unchanged() {
-        let up = [0.0, 1.0, 0.0];
-        let deviation = seen(&hole([420.0, 675.0, 0.0], up), &hole([420.03, 677.0, 0.04], up));
-        for end in [deviation.entry, deviation.bottom] {
-            assert!((end[0] - 0.03).abs() < 1e-9 && (end[1] + 0.04).abs() < 1e-9, "{deviation:?}");
-        }
-    }
-
-    /// A hole tilted 60° outwards to +x: 0.05 mm along its own meridian projects to 0.025 mm and is drawn as
-    /// 0.05 mm.
-    #[test]
-    fn a_steep_hole_keeps_the_length_of_its_deviation() {
-        let axis = [0.75f64.sqrt(), 0.5, 0.0];
-        let down_the_meridian = [0.5 * 0.05, -(0.75f64.sqrt()) * 0.05, 0.0];
-        let found = hole([1000.0 + down_the_meridian[0], 300.0 + down_the_meridian[1], 0.0], axis);
-        let deviation = seen(&hole([1000.0, 300.0, 0.0], axis), &found);
-        assert!((deviation.entry[0] - 0.05).abs() < 1e-9 && deviation.entry[1].abs() < 1e-9, "{deviation:?}");
-    }
-
-    /// Tilted by 0.3° about its entry: at 15 mm depth that is 15·tan 0.3° = 0.0785 mm, to the other side.
-    #[test]
-    fn a_tilted_hole_is_off_at_its_bottom() {
-        let tilt = gcode_lang::units::Deg(0.3);
-        let found = hole([420.0, 675.0, 0.0], [tilt.sin(), tilt.cos(), 0.0]);
-        let deviation = seen(&hole([420.0, 675.0, 0.0], [0.0, 1.0, 0.0]), &found);
-        assert!(libm::hypot(deviation.entry[0], deviation.entry[1]) < 1e-9);
-        assert!((deviation.bottom[0] + 15.0 * tilt.tan()).abs() < 1e-9, "{deviation:?}");
-    }
 }

@@ -4,7 +4,7 @@ use super::top::{DrawnHole, TopView};
 use crate::scene::{Align, Pen, Point, Shape, Stroke};
 use crate::side::{Projection, Side};
 use crate::ticks::Ticks;
-use gcode_part::{Stock, StockAxis};
+use gcode_part::{Hole, Stock, StockAxis};
 
 /// Margin of the box about the feeds, in parts of its largest edge.
 const MARGIN: f64 = 0.08;
@@ -17,6 +17,9 @@ const TICK: f64 = 0.008;
 
 /// Width of a frame under which its name would meet the letter of its upright axis, in parts of the largest extent of all views.
 const NARROW: f64 = 0.15;
+
+/// Least width of a picture of holes alone, in radii of the largest.
+const LEAST_RADII: f64 = 20.0;
 
 /// The box that the views show, in the coordinates of the top view: right, up, and towards the reader.
 #[derive(Clone, Copy, Debug)]
@@ -204,6 +207,33 @@ impl Frames {
         Self { views: placed.collect(), extent, shown }
     }
 
+    /// Frames a top view alone, with the part's coordinates on the sheet, about the holes and the points given. A small hole
+    /// leaves room about itself.
+    pub(super) fn in_place(view: &TopView, path: &PathView, corners: &[Point]) -> Self {
+        let mut shown = ViewBox::of(view.side, view, path);
+        let edges = [0, 1].map(|axis| shown.high[axis] - shown.low[axis]);
+        let radius = |hole: &Hole| hole.diameter.unwrap_or(0.0) / 2.0;
+        let radii = view.holes.iter().filter_map(DrawnHole::shown).map(radius);
+        let least = LEAST_RADII * radii.fold(0.0, f64::max);
+        let missing = ((least - edges[0].max(edges[1])) / 2.0).max(0.0);
+        for axis in [0, 1] {
+            shown.low[axis] -= missing;
+            shown.high[axis] += missing;
+            for corner in corners {
+                shown.low[axis] = shown.low[axis].min(corner[axis]);
+                shown.high[axis] = shown.high[axis].max(corner[axis]);
+            }
+        }
+        if !corners.is_empty() {
+            shown = shown.grown(0.5 * MARGIN * shown.largest());
+        }
+        let frame = shown.extent(view.side);
+        let [[left, bottom], [right, top]] = frame;
+        let extent = (right - left).max(top - bottom);
+        let placed = PlacedView { kind: StandardView::Top, side: view.side, frame, shift: [0.0, 0.0] };
+        Self { views: vec![placed], extent, shown }
+    }
+
     /// Draws the frame of a view with its scales and, among others, its name.
     pub(super) fn strokes(&self, view: &PlacedView) -> Vec<Stroke> {
         let [[left, bottom], [right, top]] = view.frame;
@@ -218,9 +248,12 @@ impl Frames {
             line(floor.map(|[a, b]| at([a, b, false])).into(), Pen::Scale, None);
             line(vec![at([false; 3]), at([false, false, true])], Pen::Scale, None);
             let origin = [false; 3];
-            self.scale([at(origin), at([true, false, false])], 0, [0.0, -1.0], &mut line);
-            self.scale([at([true, false, false]), at([true, true, false])], 1, [0.0, -1.0], &mut line);
-            self.scale([at(origin), at([false, false, true])], 2, [-1.0, 0.0], &mut line);
+            let scales = [
+                ([at(origin), at([true, false, false])], 0, [0.0, -1.0]),
+                ([at([true, false, false]), at([true, true, false])], 1, [0.0, -1.0]),
+                ([at(origin), at([false, false, true])], 2, [-1.0, 0.0]),
+            ];
+            self.scales(&scales, &mut line);
         } else {
             let corners = [[left, bottom], [right, bottom], [right, top], [left, top], [left, bottom]];
             line(corners.into(), Pen::Scale, None);
@@ -229,8 +262,11 @@ impl Frames {
                 StandardView::Front => (0, 2),
                 StandardView::Right => (1, 2),
             };
-            self.scale([[left, bottom], [right, bottom]], across, [0.0, -1.0], &mut line);
-            self.scale([[left, bottom], [left, top]], upwards, [-1.0, 0.0], &mut line);
+            let scales = [
+                ([[left, bottom], [right, bottom]], across, [0.0, -1.0]),
+                ([[left, bottom], [left, top]], upwards, [-1.0, 0.0]),
+            ];
+            self.scales(&scales, &mut line);
         }
         if self.views.len() == 1 {
             return strokes;
@@ -243,11 +279,25 @@ impl Frames {
         strokes
     }
 
-    /// Draws a scale along an edge of the box, `edge` of the top view's directions, with ticks towards `outwards`.
+    /// Draws scales along edges of the box: their ends, the number of the top view's direction, and where their ticks point. The
+    /// letters of all axes come before the numbers, which give way to them.
+    fn scales(
+        &self,
+        scales: &[([Point; 2], usize, [f64; 2])],
+        line: &mut impl FnMut(Vec<Point>, Pen, Option<String>),
+    ) {
+        for is_letter in [true, false] {
+            for (ends, edge, outwards) in scales {
+                self.scale(*ends, (*edge, is_letter), *outwards, line);
+            }
+        }
+    }
+
+    /// Draws the letter of a scale, or its ticks.
     fn scale(
         &self,
         [from, to]: [Point; 2],
-        edge: usize,
+        (edge, is_letter): (usize, bool),
         outwards: [f64; 2],
         line: &mut impl FnMut(Vec<Point>, Pen, Option<String>),
     ) {
@@ -262,7 +312,10 @@ impl Frames {
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let (end, along) = if 0.0 < sign { (to, 1.0) } else { (from, -1.0) };
         let direction = [(to[0] - from[0]) / length * along, (to[1] - from[1]) / length * along];
-        line(vec![end, further(end, direction, tick)], Pen::Ruler, Some(name.to_string()));
+        if is_letter {
+            line(vec![end, further(end, direction, tick)], Pen::Ruler, Some(name.to_string()));
+            return;
+        }
         let most = (14.0 * length / self.extent).clamp(3.0, 10.0);
         let (first, last) = if 0.0 < sign { (low, high) } else { (-high, -low) };
         let ticks = Ticks::over(first, last, most);

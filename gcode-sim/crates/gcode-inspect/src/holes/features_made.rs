@@ -1,7 +1,7 @@
 //! Features that the passes of a drilled hole make, as a reference lists them.
 use nalgebra::{Point3, Vector3};
 
-use super::{DrilledHole, ToolPass};
+use super::{DrilledHole, Helix, ToolPass};
 use crate::machine::{Machine, PointShape, Tool, ToolKind};
 use gcode_lang::motion::SpindleDirection;
 use gcode_lang::units::Deg;
@@ -54,7 +54,7 @@ impl DrilledHole {
 }
 
 /// Returns the feature that a pass makes among all of its hole; `Some(None)` of a spot that a wider tool drills away, `None`
-/// where the machine file lacks kind or diameter, and of a thread mill.
+/// where the machine file lacks kind or diameter.
 fn feature(
     pass: &ToolPass<'_>,
     depth: f64,
@@ -63,8 +63,8 @@ fn feature(
 ) -> Option<Option<Feature>> {
     let tool = machine.find_tool(pass.tool?)?;
     let diameter = pass.diameter?;
-    if pass.cut.milled.is_some_and(|circle| circle.helix.is_some_and(|helix| helix.is_thread)) {
-        return None;
+    if let Some(helix) = pass.cut.milled.and_then(|circle| circle.helix).filter(|helix| helix.is_thread) {
+        return Some(Some(milled_thread(&helix, diameter, depth)));
     }
     let kind = match tool.kind? {
         ToolKind::Tap => return Some(Some(thread(pass, diameter, depth)?)),
@@ -92,6 +92,13 @@ fn thread(pass: &ToolPass<'_>, diameter: f64, depth: f64) -> Option<Feature> {
         if pass.cut.direction == SpindleDirection::Counterclockwise { Hand::Left } else { Hand::Right };
     let feature = Feature { diameter, depth: Some(rounded(depth)), hand, ..Feature::of(FeatureKind::Tap) };
     (pitch.is_finite() && pitch > 0.0).then_some(Feature { pitch: Some(pitch), ..feature })
+}
+
+/// Returns the thread of a mill along a helix.
+fn milled_thread(helix: &Helix, diameter: f64, depth: f64) -> Feature {
+    let hand = if helix.lead < 0.0 { Hand::Left } else { Hand::Right };
+    let (diameter, pitch) = (rounded(diameter), Some(rounded(helix.lead.abs())));
+    Feature { pitch, depth: Some(rounded(depth)), hand, diameter, ..Feature::of(FeatureKind::Tap) }
 }
 
 /// Returns the cone that a pointed tool leaves at the entry; `None` if another tool cuts as wide there.

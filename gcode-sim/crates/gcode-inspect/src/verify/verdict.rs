@@ -117,7 +117,8 @@ pub struct HoleVerdict {
 impl HoleVerdict {
     /// Returns true if the depth error is the tolerated breakthrough of a through hole.
     pub fn is_breakthrough(&self) -> bool {
-        self.is_through && self.ok && 0.0 <= self.depth_error
+        let is_depth = |code: &&str| code.contains("depth") || code.contains("through");
+        self.is_through && 0.0 <= self.depth_error && !self.error_codes.iter().any(is_depth)
     }
 }
 

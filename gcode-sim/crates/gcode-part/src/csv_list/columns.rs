@@ -6,9 +6,51 @@ use gcode_lang::similar;
 /// Columns of a list, with other names of each; a feature's own columns are beside them.
 const COLUMNS: [(&str, &[&str]); 11] = [
     ("id", &["hole", "no", "nr", "no.", "nr.", "孔号", "序号"]),
-    ("x", &[]),
-    ("y", &[]),
-    ("z", &[]),
+    (
+        "x",
+        &[
+            "x pos",
+            "xpos",
+            "pos x",
+            "posx",
+            "x coord",
+            "x position",
+            "x koord",
+            "x koordinate",
+            "x wert",
+            "x坐标",
+        ],
+    ),
+    (
+        "y",
+        &[
+            "y pos",
+            "ypos",
+            "pos y",
+            "posy",
+            "y coord",
+            "y position",
+            "y koord",
+            "y koordinate",
+            "y wert",
+            "y坐标",
+        ],
+    ),
+    (
+        "z",
+        &[
+            "z pos",
+            "zpos",
+            "pos z",
+            "posz",
+            "z coord",
+            "z position",
+            "z koord",
+            "z koordinate",
+            "z wert",
+            "z坐标",
+        ],
+    ),
     ("i", &[]),
     ("j", &[]),
     ("k", &[]),
@@ -38,9 +80,8 @@ pub(crate) fn is_csv(text: &str) -> bool {
     }
     let separator = separator(first);
     let names: Vec<_> = first.split(separator).map(column_name).collect();
-    let has = |name: &str| names.iter().any(|other| other == name);
-    let is_header = 1 < names.len() && (has("x") || has("y"));
-    is_header || separator == ',' && 1 < names.len() && !first.contains('=')
+    // A job file begins with a key and its value, or with a section.
+    1 < names.len() && !first.contains('=') && !names[0].starts_with('[')
 }
 
 /// Returns the line and the fault of a list that begins with values instead of the names of its columns; `None` for
@@ -53,7 +94,8 @@ pub(crate) fn lacking_header(text: &str) -> Option<(usize, String)> {
     let numbers = cells.iter().filter(|cell| is_number(cell)).count();
     let line = text.lines().position(|line| line == first)? + 1;
     let message = format!("the names of the columns are missing; {}", example(&[], separator));
-    let has_names = cells.iter().any(|cell| column_name(cell) == "x");
+    let is_x = |cell: &&str| COLUMNS[1].1.contains(&column_name(cell).as_str()) || column_name(cell) == "x";
+    let has_names = cells.iter().any(is_x);
     (1 < numbers && !has_names).then_some((line, message))
 }
 
@@ -112,19 +154,36 @@ pub(super) fn example(names: &[String], separator: char) -> String {
         );
     }
     let point = if separator == ',' { "." } else { "," };
+    // A diameter beside features is that of one of them.
+    let has_features = names.iter().any(|name| matches!(name.as_str(), "tap" | "counterbore"));
     let cell = |name: &String| match name.as_str() {
         "id" | "k" => "1".to_owned(),
         "x" => format!("30{point}5"),
         "y" => "10".to_owned(),
         "z" | "i" | "j" => "0".to_owned(),
         "depth" => "15".to_owned(),
-        "diameter" => "6".to_owned(),
+        "diameter" if !has_features => "6".to_owned(),
         "through" => "false".to_owned(),
         "features" => "drill 6 15".to_owned(),
+        "tap" => "M8".to_owned(),
+        "tap depth" => "12".to_owned(),
+        "counterbore" => "14".to_owned(),
+        "counterbore depth" => "5".to_owned(),
         _ => String::new(),
     };
-    let line: Vec<_> = names.iter().map(cell).collect();
-    format!("a right line: {}", line.join(&text))
+    // A tap and a counterbore have depths of their own.
+    let mut all = names.to_vec();
+    for kind in ["tap", "counterbore"] {
+        let depth = format!("{kind} depth");
+        if let Some(place) = all.iter().position(|name| name == kind).filter(|_| !all.contains(&depth)) {
+            all.insert(place + 1, depth);
+        }
+    }
+    let line: Vec<_> = all.iter().map(cell).collect();
+    match all.len() == names.len() {
+        true => format!("a right line: {}", line.join(&text)),
+        false => format!("right columns: {}, and a right line: {}", all.join(&text), line.join(&text)),
+    }
 }
 
 /// The columns of a list by their names, other names and unused columns among them.

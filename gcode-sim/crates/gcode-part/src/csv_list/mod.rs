@@ -170,7 +170,9 @@ impl Cells<'_> {
         let (count, expected) = (self.record.len(), self.columns.names.len());
         let has_more = self.record.iter().skip(expected).any(|cell| !cell.trim().is_empty());
         if count < expected || has_more {
-            return Err(format!("{count} columns, the header has {expected}"));
+            let has_doubt = self.columns.separator == ',' && expected < count;
+            let help = if has_doubt { ": decimal commas need semicolons between the columns" } else { "" };
+            return Err(format!("{count} columns, the header has {expected}{help}"));
         }
         let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
         let axis =
@@ -195,6 +197,10 @@ impl Cells<'_> {
         }
         hole.depth = depth.unwrap_or(if is_open { OPEN_DEPTH } else { 0.0 });
         complete(&mut hole);
+        if hole.depth == 0.0 && depth.is_none() {
+            let is_there = if self.columns.has("depth") { "empty" } else { "missing" };
+            return Err(format!("column 'depth' is {is_there}: a hole of countersinks alone needs it"));
+        }
         check(&hole, index)?;
         Ok(CsvHole { hole, is_open })
     }
@@ -235,13 +241,28 @@ impl Cells<'_> {
         }
         let (diameter, pitch) = match thread_size::parse(&text).filter(|_| kind == FeatureKind::Tap) {
             Some(size) => size.map(|(diameter, pitch)| (diameter, Some(pitch)))?,
+            None if kind == FeatureKind::Tap => match self.parse(name, &text) {
+                Ok(diameter) => (diameter, None),
+                Err(message) => {
+                    return Err(format!("{message}, or a thread such as M8, M8x1, 1/4-20 or G1/4"));
+                }
+            },
             None => (self.parse(name, &text)?, None),
         };
+        let depth = own("depth");
+        let written = self.text(name).to_owned();
+        let is_deep = self.number(&depth)?.is_some() || kind == FeatureKind::Countersink;
+        if !is_deep && self.columns.has(&depth) {
+            return Err(format!("column '{depth}' is empty: {name} {written} needs a depth of its own"));
+        }
+        if !is_deep {
+            return Err(format!("column '{depth}' is missing: {name} {written} needs a depth of its own"));
+        }
         let to = own("to");
         let hand = own("hand");
         let feature = Feature {
             diameter,
-            depth: self.number(&own("depth"))?,
+            depth: self.number(&depth)?,
             angle: self.number(&own("angle"))?,
             pitch: self.number(&own("pitch"))?.or(pitch),
             to: match self.text(&to) {

@@ -111,7 +111,10 @@ fn an_error_shows_a_line_that_is_right() {
         ),
         ("x,y,i,j,depth\n1,2,0,0,5\n", "line 1: column 'k' is missing: i, j and k together are the axis; "),
         ("id,x,y,depth\n1,2\n", "line 2: 2 columns, the header has 4; a right line: 1,30.5,10,15"),
-        ("id,x,y,depth\n1,2,3,4,5\n", "line 2: 5 columns, the header has 4; a right line: 1,30.5,10,15"),
+        (
+            "id,x,y,depth\n1,2,3,4,5\n",
+            "line 2: 5 columns, the header has 4: decimal commas need semicolons between the columns; a right line: 1,30.5,10,15",
+        ),
         (
             "\nid;x;y;depth\n\n1;2.5;3,5;4\n",
             "line 4: column 'y' is '3,5': the list has commas and points in its numbers; a right line: 1;30,5;10;15",
@@ -133,8 +136,22 @@ fn an_error_shows_a_line_that_is_right() {
             "line 2: M9.5 has no coarse pitch in ISO 261: give one, such as M9.5x1; ",
         ),
         (
-            "x,y,depth,tap,tap depth\n1,2,20,G1/4,15\n",
-            "line 2: column 'tap' is 'g1/4': a number is required; ",
+            "x,y,depth,tap,tap depth\n1,2,20,Rc1/4,15\n",
+            "line 2: column 'tap' is 'rc1/4': a number is required, or a thread such as M8, M8x1, 1/4-20 or G1/4; a right \
+             line: 30.5,10,15,M8,12",
+        ),
+        (
+            "x,y,tap\n1,2,M8\n",
+            "line 2: column 'tap depth' is missing: tap M8 needs a depth of its own; right columns: x,y,tap,tap depth, \
+             and a right line: 30.5,10,M8,12",
+        ),
+        (
+            "x;y;tap;tap depth\n1;2;M8;\n",
+            "line 2: column 'tap depth' is empty: tap M8 needs a depth of its own; a right line: 30,5;10;M8;12",
+        ),
+        (
+            "x,y,countersink\n1,2,10\n",
+            "line 2: column 'depth' is missing: a hole of countersinks alone needs it; a right line: ",
         ),
         ("x,y,depth,tap,thread\n1,2,20,M10,M10\n", "line 1: column 'tap' is there twice; "),
         ("x,y,tap,tap depth\n1,2,10,15\n", "line 2: hole 1: its tap has no pitch: give it in mm; "),
@@ -148,7 +165,13 @@ fn an_error_shows_a_line_that_is_right() {
 /// What the right line shows is right.
 #[test]
 fn the_right_line_is_read() {
-    for header in ["x,y,depth,remark", "id;x;y;z;i;j;k;depth;diameter;through", "id\tx\ty\tfeatures"] {
+    for header in [
+        "x,y,depth,remark",
+        "id;x;y;z;i;j;k;depth;diameter;through",
+        "id\tx\ty\tfeatures",
+        "x,y,depth,tap,tap depth,counterbore,counterbore depth",
+        "nr;x;y;diameter;tap;tap depth;tap pitch",
+    ] {
         let separator = separator(header);
         let names: Vec<String> = header.split(separator).map(column_name).collect();
         let line = example(&names, separator);

@@ -381,6 +381,11 @@ fn without_offset(
     ))
 }
 
+/// Rounds a length of a list, which may have been in inches, to ten-thousandths.
+pub(super) fn to_places(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}
+
 /// Rounds to a thousandth; −0 becomes 0.
 pub(in crate::verify) fn round_thousandth(value: f64) -> f64 {
     (value * 1e3).round() / 1e3 + 0.0

@@ -243,9 +243,10 @@ impl Judgement<'_> {
             .note(format!("the hole is cut by {}", cuts.join(", by ")));
         let finding = match self.wrong_size(feature) {
             Some((cut, own)) => finding.help(format!(
-                "{} reaches its depth, but the diameter is {own}, not {}: correct the tool, the tool table or the reference",
+                "{} reaches its depth, but the diameter is {}, not {}: correct the tool, the tool table or the reference",
                 cut.name(),
-                feature.diameter
+                cutting::to_places(own),
+                cutting::to_places(feature.diameter)
             )),
             None => finding.help("add its pass, or correct the tool, the tool table or the reference"),
         };

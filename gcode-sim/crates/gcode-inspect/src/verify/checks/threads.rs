@@ -251,9 +251,10 @@ fn pitch(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
         return None;
     }
     let message = format!(
-        "hole {id}: {} feeds {}, the pitch is {nominal}",
+        "hole {id}: {} feeds {}, the pitch is {}",
         cut.name(),
-        tap_motion::feed_words(feed, speed)
+        tap_motion::feed_words(feed, speed),
+        cutting::to_places(nominal)
     );
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
     Some(finding.help(format!(
@@ -277,12 +278,11 @@ fn turns<'c>(judged: &Judgement<'c>, feature: &Feature, made: &Cut<'c>) -> Vec<C
 fn milled_pitch(id: &str, nominal: f64, cut: &Cut<'_>, helix: &Helix) -> Option<Diagnostic> {
     let is_off = |lead: &f64| exceeds((lead - nominal).abs(), LEAD_TOLERANCE);
     let lead = helix.uneven_lead.into_iter().chain([helix.lead]).map(f64::abs).find(is_off)?;
-    let message = format!(
-        "hole {id}: {} goes {lead:.4} mm along the axis in a turn, the pitch is {nominal}",
-        cut.name()
-    );
+    let pitch = cutting::to_places(nominal);
+    let message =
+        format!("hole {id}: {} goes {lead:.4} mm along the axis in a turn, the pitch is {pitch}", cut.name());
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
-    Some(finding.help(format!("command a turn of {nominal} mm, or correct the pitch")))
+    Some(finding.help(format!("command a turn of {pitch} mm, or correct the pitch")))
 }
 
 /// Reports a milled thread whose turns are not as wide as its last one, or not in its place.

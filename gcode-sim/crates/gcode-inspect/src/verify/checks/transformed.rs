@@ -58,8 +58,10 @@ fn describe(mistake: &Mistake, machine: &Machine) -> (String, String, String) {
         Mistake::Shifted(by) => (
             format!("the holes are shifted by {}", shift_words(by)),
             "without the shift".to_owned(),
-            "check the work offset (G54 to G59), G52, G92, and the point from which the program counts"
-                .to_owned(),
+            missing_origin(machine, by).unwrap_or_else(|| {
+                "check the work offset (G54 to G59), G52, G92, and the point from which the program counts"
+                    .to_owned()
+            }),
         ),
         Mistake::Rotated(axis, by) => {
             let letter = machine.axes.letter(*axis);
@@ -87,4 +89,29 @@ pub(super) fn shift_words(by: &Vector3<f64>) -> String {
     let axes = [('X', by.x), ('Y', by.y), ('Z', by.z)].into_iter();
     let named = axes.filter(|(_, by)| MIN_SHIFT <= by.abs());
     named.map(|(letter, by)| format!("{letter}{by:+.3}")).collect::<Vec<_>>().join(" ")
+}
+
+/// Returns the remedy for a machine file that states a work offset and no origin of the part: then the part counts from machine
+/// zero, and its holes are shifted by that offset.
+fn missing_origin(machine: &Machine, by: &Vector3<f64>) -> Option<String> {
+    if machine.part.origin != Point3::origin() {
+        return None;
+    }
+    let value = |values: &[(usize, f64)], letter: u8| {
+        let axis = machine.axes.find(letter)?;
+        values.iter().find(|(of, _)| *of == axis).map(|(_, value)| *value)
+    };
+    let is_shift = |(letter, shift): (u8, f64), values: &[(usize, f64)]| {
+        value(values, letter).is_some_and(|value| (value - shift).abs() < MIN_SHIFT)
+    };
+    let offset = machine
+        .offsets
+        .iter()
+        .find(|offset| [(b'X', by.x), (b'Y', by.y)].into_iter().all(|part| is_shift(part, &offset.values)))?;
+    let (name, values) = (offset.system.name(), &offset.values);
+    let [x, y, z] = [b'X', b'Y', b'Z'].map(|letter| value(values, letter).unwrap_or(0.0));
+    Some(format!(
+        "the machine file states {name} and no origin of the part: write below [part] origin = [{x:?}, {y:?}, {z:?}], the \
+         part's zero in machine coordinates"
+    ))
 }

@@ -1,0 +1,19 @@
+//! The work zeros that a picture and a page draw.
+use gcode_inspect::machine::{HeadKind, Machine, Setup};
+use gcode_lang::motion::Position;
+
+/// Returns the work zeros: those of the machine file, or the origin of the part, from which positions then count.
+pub(crate) fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
+    if !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_)) {
+        return Vec::new();
+    }
+    if machine.offsets.is_empty() {
+        return vec![("zero".to_owned(), [0.0; 3])];
+    }
+    let zero = |values: &[(usize, f64)]| {
+        let mut at = Position::default();
+        values.iter().for_each(|(axis, value)| at[*axis] = *value);
+        machine.forward(&at, &Setup::default()).tip.coords.into()
+    };
+    machine.offsets.iter().map(|offset| (offset.system.name(), zero(&offset.values))).collect()
+}
