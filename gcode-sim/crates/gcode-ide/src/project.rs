@@ -34,6 +34,9 @@ struct ProjectFile {
     others: BTreeMap<u32, FileIndex>,
 }
 
+/// How late a call looks into a file: its place among files and folders, and whether its name is another one than the number.
+type SearchRank = (u8, bool);
+
 /// Program of a file of the project.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ProgramKey {
@@ -176,8 +179,12 @@ impl Project {
             return Some(outline.name.clone());
         }
         let is_only = self.file(key.file)?.programs().len() == 1;
-        let name = self.file_name(key.file).filter(|_| is_only)?;
-        let last = name.rsplit(['/', '\\']).next()?;
+        self.number_of_file(key.file).filter(|_| is_only)
+    }
+
+    /// Returns the program number that a file's name states: `O8101.nc`.
+    fn number_of_file(&self, file: FileId) -> Option<ProgramName> {
+        let last = self.file_name(file)?.rsplit(['/', '\\']).next()?;
         let stem = last.split('.').next()?.to_ascii_uppercase();
         Some(ProgramName::of(stem)).filter(|name| matches!(name, ProgramName::Number(_)))
     }
@@ -191,7 +198,7 @@ impl Project {
     /// Returns all programs of a name, those first that a call from a file finds first.
     pub(crate) fn programs_named(&self, name: &ProgramName, from: FileId) -> Vec<ProgramKey> {
         let mut found: Vec<_> = self.names.get(name).into_iter().flatten().copied().collect();
-        found.sort_by_key(|key| (self.distance(*key, from), *key));
+        found.sort_by_key(|key| self.call_order(*key, from));
         found
     }
 
@@ -207,11 +214,25 @@ impl Project {
     /// Returns the program that a call finds.
     pub(crate) fn called_program(&self, from: FileId, target: &CalledProgramName) -> Option<ProgramKey> {
         let keys = self.names.get(&program_name(target)?)?;
-        keys.iter().min_by_key(|key| (self.distance(**key, from), **key)).copied()
+        keys.iter().min_by_key(|key| self.call_order(**key, from)).copied()
     }
 
-    /// Returns how late a call from a file looks into the file of a program: itself, its folder, others.
-    fn distance(&self, key: ProgramKey, from: FileId) -> u8 {
+    /// Returns the place of a program in the order in which a call from a file looks for its name, as a run does.
+    fn call_order(&self, key: ProgramKey, from: FileId) -> (SearchRank, Option<&str>, ProgramKey) {
+        (self.distance(key, from), self.file_name(key.file), key)
+    }
+
+    /// Returns how late a call from a file looks into the file of a program: itself, its folder, others; in a folder the file
+    /// that is named after the number comes first.
+    fn distance(&self, key: ProgramKey, from: FileId) -> SearchRank {
+        let is_named_after = || {
+            self.program(key)
+                .is_some_and(|outline| Some(&outline.name) == self.number_of_file(key.file).as_ref())
+        };
+        (self.folder_distance(key, from), key.file != from && !is_named_after())
+    }
+
+    fn folder_distance(&self, key: ProgramKey, from: FileId) -> u8 {
         let folder = |file: FileId| {
             let name = self.file_name(file)?;
             Some(name.rfind(['/', '\\']).map_or("", |end| &name[..end]))
@@ -268,6 +289,22 @@ mod tests {
 
     use super::*;
     use crate::testing::entries;
+
+    #[test]
+    fn a_call_finds_the_file_named_after_its_number_before_others_of_the_folder() {
+        let mut project = Project::new(Settings::default());
+        let texts = [("a/O0102.nc", "O0102\nM98 P903\nM30\n"), ("a/O0903.nc", "O0903\nM99\n")];
+        let copies = [("a/O0101.nc", "O0101\nM98 P903\nM30\nO0903\nM99\n"), ("b/O0903.nc", "O0903\nM99\n")];
+        // The order in which files are opened decides nothing.
+        for (id, (name, text)) in copies.into_iter().chain(texts).enumerate() {
+            project.set_file(FileId(id as u32), name, text.as_bytes().to_vec());
+        }
+        let called = |from| project.called_program(FileId(from), &CalledProgramName::Number(903));
+        assert_eq!(called(2), Some(ProgramKey { file: FileId(3), program: 0 }), "not the copy in O0101.nc");
+        assert_eq!(called(0), Some(ProgramKey { file: FileId(0), program: 1 }), "its own file first");
+        let name = ProgramName::Number(903);
+        assert_eq!(project.reached_programs(&name, FileId(2)), [ProgramKey { file: FileId(3), program: 0 }]);
+    }
 
     /// M96 P10 is a jump on a Haas, and calls O0010 at an interrupt on a Fanuc.
     #[test]

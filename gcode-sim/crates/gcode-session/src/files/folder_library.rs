@@ -7,7 +7,7 @@ use gcode_lang::program::Library;
 use gcode_lang::source::{Bytes, SourceId};
 use gcode_lang::syntax::{self, FileItem, ast::ProgramName};
 
-/// Folders of called programs; the first folder that has a program wins.
+/// Folders of called programs; the first folder that has a program wins, and in it the file named after its number.
 #[derive(Debug)]
 pub struct FolderLibrary<F> {
     files: F,
@@ -78,6 +78,16 @@ impl<F: FileAccess> FolderLibrary<F> {
         self.read(|files| files.program(path))
     }
 
+    /// Returns the first file with the number in its name that contains the program: a name may announce a number that the
+    /// file does not have.
+    fn find_named(&mut self, number: u32, program: &ProgramName) -> Option<PathBuf> {
+        let mut named = self.candidates();
+        named.retain(|path| program_number(path) == Some(number));
+        named.into_iter().find(|path| {
+            self.read(|files| files.programs(path)).is_some_and(|programs| programs.contains(program))
+        })
+    }
+
     /// Returns the first file that contains a program.
     fn find_holder(&mut self, program: &ProgramName) -> Option<PathBuf> {
         if self.programs.is_none() {
@@ -105,15 +115,15 @@ impl<F: FileAccess> FolderLibrary<F> {
 
 impl<F: FileAccess> Library for FolderLibrary<F> {
     fn program(&mut self, number: u32) -> Option<(String, Bytes)> {
-        // A file name may announce a number that the file does not contain; the contents decide.
         let program = ProgramName::Number(number);
-        let named = self.find(|path| program_number(path) == Some(number));
-        let holds = |path: &PathBuf| {
-            self.read(|files| files.programs(path)).is_some_and(|programs| programs.contains(&program))
-        };
-        let path = match named.filter(holds) {
-            Some(path) => path,
-            None => self.find_holder(&program)?,
+        let named = self.find_named(number, &program);
+        // An earlier folder wins, also where another file name has the program.
+        let path = match named {
+            Some(path) if self.folders.first().is_some_and(|own| path.parent() == Some(own)) => path,
+            named => {
+                let holder = self.find_holder(&program)?;
+                named.filter(|path| path.parent() == holder.parent()).unwrap_or(holder)
+            }
         };
         Some((path.display().to_string(), self.bytes(&path)?))
     }
