@@ -1,5 +1,6 @@
 //! Finds called programs in folders: `O8101.nc` and `PROBE.nc` by file name, all others by contents.
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::{FileAccess, folder_of};
@@ -45,9 +46,9 @@ impl<F: FileAccess> FolderLibrary<F> {
     /// Returns the files that may be programs, in the order of folders and names; known other extensions are
     /// skipped.
     fn candidates(&mut self) -> Vec<PathBuf> {
-        const OTHERS: [&str; 15] = [
-            "toml", "json", "csv", "tsv", "xml", "log", "svg", "png", "md", "html", "snap", "pdf", "zip",
-            "rs", "new",
+        const OTHERS: [&str; 16] = [
+            "toml", "lock", "json", "csv", "tsv", "xml", "log", "svg", "png", "md", "html", "snap", "pdf",
+            "zip", "rs", "new",
         ];
         let mut files = Vec::new();
         for folder in &self.folders {
@@ -93,8 +94,7 @@ impl<F: FileAccess> FolderLibrary<F> {
         if self.programs.is_none() {
             let mut found = Vec::new();
             for path in self.candidates() {
-                // Other texts have this ending too.
-                if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("txt"))
+                if !has_ending_of_programs(&path)
                     && !self.bytes(&path).is_some_and(|bytes| begins_program(&bytes))
                 {
                     continue;
@@ -142,6 +142,14 @@ impl<F: FileAccess> Library for FolderLibrary<F> {
         let all: Vec<_> = self.unread.iter().map(String::as_str).collect();
         (!all.is_empty()).then(|| all.join("; "))
     }
+}
+
+/// Returns true if a file has an ending that only programs have, or none: texts of other kinds may have a line that looks like
+/// the head of a program.
+fn has_ending_of_programs(path: &Path) -> bool {
+    const PROGRAMS: [&str; 6] = ["nc", "tap", "cnc", "eia", "min", "ncd"];
+    let is_listed = |ending: &OsStr| PROGRAMS.iter().any(|program| ending.eq_ignore_ascii_case(program));
+    path.extension().is_none_or(is_listed)
 }
 
 /// Returns a note if the folder of the first file has further files with the same program.
