@@ -263,6 +263,19 @@ impl<'a> Comparison<'a> {
         self.pairs.iter().map(move |pair| (pair, &nominal[pair.nominal], &actual[pair.actual]))
     }
 
+    /// Returns the drilled hole that gives a pair its diameter: what is cut from the far side, if that alone is as wide as
+    /// nominal.
+    pub(super) fn finishing(&self, pair: &HolePair) -> &'a DrilledHole {
+        let nominal = self.nominal[pair.nominal].diameter;
+        let off = |drilled: &DrilledHole| Some(drilled.diameter? - nominal?);
+        let limit = self.tolerances.diameter;
+        let near = &self.actual[pair.actual];
+        let is_narrow = off(near).is_some_and(|off| exceeds(-off, limit));
+        let far = pair.from_far_side.filter(|_| is_narrow).map(|index| &self.actual[index]);
+        let is_as_wide = |far: &&DrilledHole| off(far).is_some_and(|off| !exceeds(off.abs(), limit));
+        far.filter(is_as_wide).unwrap_or(near)
+    }
+
     /// Returns the nominal hole that an extra hole drills a second time; `None` if there is none.
     pub fn nominal_on_line_of(&self, extra: usize) -> Option<usize> {
         self.nominal_by_line[self.actual[extra].first_on_line]

@@ -256,7 +256,7 @@ fn hole_verdicts(
             actual: HoleGeometry {
                 entry: deviation.entry.coords.into(),
                 axis: drilled.axis.into_inner().into(),
-                diameter: drilled.diameter,
+                diameter: comparison.finishing(pair).diameter,
                 depth: nominal.depth + deviation.depth_error,
             },
             from: origin(drilled.backtrace.block, drilled.tool, locate),
