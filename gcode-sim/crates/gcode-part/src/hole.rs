@@ -9,6 +9,9 @@ use super::feature::Feature;
 use super::stock::Stock;
 use super::surface::Surface;
 
+/// Largest difference between levels that are the same one, mm.
+pub(super) const SAME_LEVEL: f64 = 0.1;
+
 /// Block of a program that made a hole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -56,6 +59,18 @@ impl Hole {
     /// Returns the diameter, or that of the widest feature; `None` if unknown.
     pub fn widest_diameter(&self) -> Option<f64> {
         self.diameter.into_iter().chain(self.features.iter().map(|feature| feature.diameter)).reduce(f64::max)
+    }
+
+    /// Returns a through hole as it is from its far side, with the features that go through.
+    #[must_use]
+    pub fn from_far_side(&self) -> Self {
+        let out = Vector3::from(self.axis);
+        let entry = Point3::from(self.entry) - out * self.depth;
+        let deep = self.features.iter().filter(|feature| self.depth - SAME_LEVEL <= feature.bottom());
+        let features: Vec<Feature> =
+            deep.map(|feature| Feature { depth: Some(self.depth), ..*feature }).collect();
+        let diameter = self.diameter.filter(|_| features.is_empty());
+        Self { entry: entry.into(), axis: (-out).into(), diameter, features, ..self.clone() }
     }
 }
 

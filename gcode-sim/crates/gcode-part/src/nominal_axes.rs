@@ -5,7 +5,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::entry_planes::PARALLEL_COSINE;
 use super::feature::{Feature, FeatureKind};
-use super::hole::Hole;
+use super::hole::{Hole, SAME_LEVEL};
 use super::limits::NOISE;
 use super::point_tree::PointTree;
 
@@ -17,9 +17,6 @@ const SAME_AXIS: f64 = 1e-6;
 
 /// Largest difference between the diameter of a step and that of the pass that cuts it, mm.
 const SAME_DIAMETER: f64 = 0.05;
-
-/// Largest difference between the bottom of a step and the entry of the next, mm.
-const SAME_LEVEL: f64 = 0.1;
 
 /// Least depth of a pass that cuts a hole, mm.
 const MIN_DEPTH: f64 = 0.01;
@@ -86,7 +83,10 @@ struct Step {
 /// Axes of all nominal holes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NominalAxes {
+    /// Those of the holes, and behind them those of the through holes from their far sides.
     axes: Vec<NominalAxis>,
+    /// Number of the holes.
+    hole_count: usize,
     /// The entries.
     tree: PointTree,
     /// Depth of the deepest hole, mm.
@@ -102,15 +102,7 @@ pub struct NominalAxes {
 impl NominalAxes {
     /// Returns the axes of a list of holes.
     pub fn of(holes: &[Hole]) -> Self {
-        let axis = |hole: &Hole| NominalAxis {
-            entry: hole.entry.into(),
-            out: hole.axis.into(),
-            depth: hole.depth,
-            spacing: f64::INFINITY,
-            radius: hole.widest_diameter().map(|diameter| diameter / 2.0),
-            thread: NominalThread::of(hole),
-        };
-        let mut axes: Vec<NominalAxis> = holes.iter().map(axis).collect();
+        let mut axes: Vec<NominalAxis> = holes.iter().map(NominalAxis::of).collect();
         let tree = PointTree::new(axes.iter().map(|axis| axis.entry));
         let mut has_close = false;
         tree.pairs(CLOSE, &mut |one, other| {
@@ -125,7 +117,16 @@ impl NominalAxes {
         let max_depth = holes.iter().map(|hole| hole.depth).fold(0.0, f64::max);
         let max_thread = axes.iter().filter_map(|axis| Some(axis.thread?.major)).fold(0.0, f64::max);
         let (stacks, stack_of) = stacks(holes);
-        Self { axes, tree, max_depth, has_close, max_thread, stacks, stack_of }
+        let hole_count = holes.len();
+        for index in (0..hole_count).filter(|index| holes[*index].through) {
+            let far = NominalAxis::of(&holes[index].from_far_side());
+            axes.push(NominalAxis { spacing: axes[index].spacing, ..far });
+        }
+        let tree = match axes.len() == hole_count {
+            true => tree,
+            false => PointTree::new(axes.iter().map(|axis| axis.entry)),
+        };
+        Self { axes, hole_count, tree, max_depth, has_close, max_thread, stacks, stack_of }
     }
 
     /// Returns true if the list has the steps of a hole as several holes.
@@ -226,18 +227,20 @@ impl NominalAxes {
         let top = start + out.into_inner() * self.max_depth;
         let margin = Vector3::repeat(within);
         let (low, high) = (top.inf(bottom) - margin, top.sup(bottom) + margin);
-        let mut best: Option<(usize, f64)> = None;
+        // A hole that begins at the far side of another one is meant there.
+        let mut best: [Option<(usize, f64)>; 2] = [None; 2];
         self.tree.in_box(&low, &high, &mut |index| {
             let axis = &self.axes[index];
             let distance =
                 axis.distance(bottom, out).filter(|distance| *distance <= within && is_counted(axis));
+            let best = &mut best[usize::from(self.hole_count <= index)];
             if let Some(distance) = distance
                 && best.is_none_or(|(_, least)| distance < least)
             {
-                best = Some((index, distance));
+                *best = Some((index, distance));
             }
         });
-        best
+        best[0].or(best[1])
     }
 }
 
@@ -281,7 +284,7 @@ fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
             stacks.push(vec![Step::of(&holes[hole])]);
             stacks.len() - 1
         });
-        stacks[stack].push(Step::from_far_side(&holes[through]));
+        stacks[stack].push(Step::of(&holes[through].from_far_side()));
     }
     (stacks, stack_of)
 }
@@ -289,13 +292,6 @@ fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
 /// Returns the diameters of a hole and its features.
 fn diameters(hole: &Hole) -> impl Iterator<Item = f64> + '_ {
     hole.diameter.into_iter().chain(hole.features.iter().map(|feature| feature.diameter))
-}
-
-/// Returns the diameters of a hole at its bottom: a counterbore at its entry is none of them.
-fn through_diameters(hole: &Hole) -> impl Iterator<Item = f64> + '_ {
-    let deep = || hole.features.iter().filter(|feature| hole.depth - SAME_LEVEL <= feature.bottom());
-    let own = hole.diameter.filter(|_| deep().next().is_none());
-    own.into_iter().chain(deep().map(|feature| feature.diameter))
 }
 
 impl Step {
@@ -319,17 +315,22 @@ impl Step {
             && cosine < -1.0 + NOISE
             && above <= through.depth / 2.0
             && hole.depth < through.depth
-            && !through_diameters(through).eq(through_diameters(hole))
-    }
-
-    /// Returns a through hole as it is from its far side.
-    fn from_far_side(hole: &Hole) -> Self {
-        let entry = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
-        Self { entry, depth: hole.depth, diameters: through_diameters(hole).collect() }
+            && !diameters(&through.from_far_side()).eq(diameters(&hole.from_far_side()))
     }
 }
 
 impl NominalAxis {
+    fn of(hole: &Hole) -> Self {
+        Self {
+            entry: hole.entry.into(),
+            out: hole.axis.into(),
+            depth: hole.depth,
+            spacing: f64::INFINITY,
+            radius: hole.widest_diameter().map(|diameter| diameter / 2.0),
+            thread: NominalThread::of(hole),
+        }
+    }
+
     /// Returns the distance of the entry from a parallel line through a point; `None` for a line in another direction.
     fn distance(&self, point: &Point3<f64>, out: &Vector3<f64>) -> Option<f64> {
         let between = self.entry - point;

@@ -162,8 +162,12 @@ pub(super) struct MachineMarks {
     commanded: u32,
     /// Whether axis words cut, by code 01 and by the canned cycle.
     pub(super) cutting: Marks,
+    /// Whether a canned cycle is in force.
+    pub(super) in_cycle: Marks,
     /// Levels and pecks of the canned cycle.
     pub(super) cycle: Marks,
+    /// Level at which the last block of the cycle has left the drilling axis, until a block of no cycle starts from there.
+    pub(super) returned: Marks,
     /// Mirror, scaling, rotation and tilted plane.
     pub(super) transform: Marks,
     /// Tool in the spindle.
@@ -269,6 +273,8 @@ impl MachineMarks {
         for one in [
             &mut self.cutting,
             &mut self.cycle,
+            &mut self.in_cycle,
+            &mut self.returned,
             &mut self.transform,
             &mut self.tool,
             &mut self.length,

@@ -30,6 +30,18 @@ struct CycleWords {
     cut: Marks,
     /// Marks of the number of repeats.
     repeats: Marks,
+    /// Marks of the words that decide whether the block drills; `None` if it surely does.
+    place: Option<Marks>,
+}
+
+impl CycleWords {
+    /// Returns the marks of the level behind a block: of the one before it, where the block need not drill.
+    fn returned_before(&self, before: Marks) -> Marks {
+        match self.place {
+            None if self.repeats.is_none() => Marks::NONE,
+            place => before | self.repeats | place.unwrap_or_default(),
+        }
+    }
 }
 
 impl Slice {
@@ -141,6 +153,10 @@ impl Slice {
             has_levels: modes.begins_cycle || list.iter().any(is_level),
             cut: marks_of(&|word| !b"PQ".contains(&word.letter) && is_level(word)),
             repeats: marks_of(&|word| b"KL".contains(&word.letter)),
+            place: match named().any(|(_, word)| word.is_fixed()) {
+                true => None,
+                false => Some(named().map(|(_, word)| word.marks).collect()),
+            },
         };
         self.follow_move(block, named(), modes, words);
     }
@@ -231,6 +247,10 @@ impl Slice {
             if is_incremental || !word.is_fixed() || modes.is_in_cycle && drills(axis) {
                 marks |= self.machine.axes[axis];
             }
+            if !modes.is_in_cycle && drills(axis) {
+                // In a cycle the word is the depth, and the axis returns.
+                marks |= self.machine.in_cycle;
+            }
             if modes.is_in_cycle && is_incremental {
                 marks |= words.repeats;
             }
@@ -254,9 +274,14 @@ impl Slice {
         }
         if modes.is_in_cycle {
             let drilling = || settings.axes.iter().map(|(axis, _)| axis).filter(|axis| drills(*axis));
+            self.machine.returned = words.returned_before(self.machine.returned)
+                | control
+                | self.machine.group(ModalGroup::ReturnTo);
             if words.has_levels {
                 let initial: Marks = drilling().map(|axis| self.machine.axes[axis]).collect();
-                let is_first = modes.begins_cycle && registers.state.modal.cycle.is_none();
+                let is_first = modes.begins_cycle
+                    && registers.state.modal.cycle.is_none()
+                    && self.machine.in_cycle.is_none();
                 let before = if is_first { Marks::NONE } else { self.machine.cycle };
                 self.machine.cycle = before | words.levels | initial | control;
             }
@@ -271,6 +296,20 @@ impl Slice {
         if mixes {
             let all: Marks = self.machine.axes.iter().copied().collect();
             self.machine.axes.iter_mut().for_each(|axis| *axis = all);
+        }
+    }
+
+    /// Marks the drilling axes with what decides the level at which a cycle has left them, or whether the block still drills.
+    pub(super) fn leave_cycle(&mut self, block: &Block<'_>, modes: &BlockModes) {
+        let settings = &block.registers.data.settings;
+        let marks = std::mem::take(&mut self.machine.returned) | self.machine.in_cycle;
+        if marks.is_none() {
+            return;
+        }
+        for (axis, letter) in settings.axes.iter() {
+            if is_drilling(settings, modes.plane, letter as u8) {
+                self.machine.axes[axis] |= marks;
+            }
         }
     }
 

@@ -86,6 +86,10 @@ impl Slice {
                 }),
                 _ => word.letter != b'G',
             });
+        if motion.drills() {
+            // The block leaves the drilling axis at another level.
+            self.machine.returned |= marks;
+        }
         for word in &words.list {
             if let Some(axis) = settings.axes.find(word.letter) {
                 self.machine.axes[axis] |= marks;
@@ -108,6 +112,14 @@ impl Slice {
                     });
                     if begins_cut {
                         self.machine.cutting |= marks;
+                    }
+                    let may_drill = registers.state.modal.cycle.is_some() || !self.machine.in_cycle.is_none();
+                    match row.map(|row| &row.effect) {
+                        Some(Effect::Cycle(Some(_))) => self.machine.in_cycle |= marks,
+                        Some(Effect::Cycle(None) | Effect::Motion(_)) if may_drill => {
+                            self.machine.in_cycle |= marks;
+                        }
+                        _ => {}
                     }
                     match row.and_then(|row| row.effect.group()) {
                         Some(group) => {

@@ -66,6 +66,11 @@ impl PossibleMotion {
         if may_differ { self.or(behind) } else { behind }
     }
 
+    /// Returns true if a block with axis words may drill by a canned cycle.
+    pub(super) fn drills(self) -> bool {
+        self.may_drill
+    }
+
     /// Returns true if a block with axis words may cut.
     pub(super) fn cuts(self) -> bool {
         self.may_feed || self.may_drill

@@ -108,7 +108,10 @@ impl Slice {
         if axis >= block.registers.data.settings.axes.len().min(MAX_AXES) {
             return Marks::NONE;
         }
-        let mut marks = self.machine.axes[axis] | self.machine.coordinates(axis) | self.machine.length;
+        let mut marks = self.machine.axes[axis]
+            | self.machine.returned
+            | self.machine.coordinates(axis)
+            | self.machine.length;
         let state = &block.registers.state;
         let unknown = state.unknown_on_machine();
         let is_among = |axes: u8| axes >> axis & 1 == 1;

@@ -79,6 +79,9 @@ impl Slice {
         self.is_rapid = !modes.is_in_cycle
             && modes.motion == Motion::Rapid
             && !modes.one_shot.is_some_and(OneShot::is_skip);
+        if !modes.is_in_cycle || modes.one_shot.is_some() {
+            self.leave_cycle(block, &modes);
+        }
         self.follow_power_on_modes(block, &list, &modes);
         self.follow_codes(&list, guard);
         self.follow_m_codes(block, words, &list);
@@ -153,6 +156,12 @@ impl Slice {
                 self.machine.settle_group(group, control | marked.marks);
             }
             let was_cutting = modes.cuts();
+            if let Effect::Motion(_) | Effect::Cycle(_) = row.effect {
+                let may_change = modes.is_in_cycle
+                    || !self.machine.in_cycle.is_none()
+                    || matches!(row.effect, Effect::Cycle(Some(_)));
+                self.machine.in_cycle = if may_change { control | marked.marks } else { Marks::NONE };
+            }
             modes.uses_plane |= matches!(row.effect, Effect::Rotation(_) | Effect::Polar(_));
             match row.effect {
                 Effect::Motion(motion) => {

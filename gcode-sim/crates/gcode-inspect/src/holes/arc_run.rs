@@ -7,6 +7,7 @@ use super::HoleExtractor;
 use super::cut_states::CutStates;
 use super::drill_pass::Helix;
 use super::slug::Turn;
+use super::sweep::Sweep;
 use crate::machine::{AxisMotion, HeadKind};
 use gcode_lang::motion::{AxisIndex, Backtrace, Position};
 use gcode_lang::units::Deg;
@@ -115,6 +116,7 @@ pub(super) struct ArcRun {
     /// Heights of the ends of these arcs.
     heights: HeightRange,
     turn: Option<FullTurn>,
+    sweep: Sweep,
     /// All turns of a helix that makes no hole: its lowest point.
     helix_turn: Option<FullTurn>,
     /// Kinds of slope among the arcs, in the order of the run.
@@ -191,6 +193,10 @@ pub(super) struct Ring {
     pub roundness: f64,
     /// Height of the start of the run along `out`.
     pub top: f64,
+    /// Its full turns.
+    pub sweep: Sweep,
+    /// Height above the deepest full turn up to which the edges cut the whole wall, mm; infinite without a length of the flutes.
+    pub wall: f64,
     pub helix: Option<Helix>,
     /// Block of the first arc whose lead is not that of the helix.
     pub uneven_turn: Option<Backtrace>,
@@ -215,6 +221,20 @@ impl Ring {
         helix.max(self.top - self.level())
     }
 
+    /// Returns the circle with the height of the wall that edges of a length cut all round.
+    pub(super) fn with_edges(&self, edges: f64) -> Self {
+        let above = if self.sweep.step <= edges { (self.sweep.top - self.level()).max(0.0) } else { 0.0 };
+        Self { wall: above + edges, ..self.clone() }
+    }
+
+    /// Adds the wall of a higher circle as wide, unless metal is left between both.
+    pub(super) fn extend_wall(&mut self, above: &Self) {
+        let begin = above.level() - self.level();
+        if begin <= self.wall + MAX_LEVEL_CHANGE {
+            self.wall = self.wall.max(begin + above.wall);
+        }
+    }
+
     /// Returns true if the tool comes down along the circle.
     pub(super) fn is_helix(&self) -> bool {
         self.top - self.level() > MAX_LEVEL_CHANGE
@@ -227,9 +247,9 @@ impl ArcRun {
         let (arcs, heights, slopes, circles) =
             (VecDeque::new(), HeightRange::default(), Vec::new(), Vec::new());
         let (turn, helix_turn, slug, has_new_turn) = (None, None, None, false);
-        let swept = 0.0;
+        let (swept, sweep) = (0.0, Sweep::NONE);
         let mut run =
-            Self { arcs, swept, top, heights, turn, helix_turn, slopes, circles, slug, has_new_turn };
+            Self { arcs, swept, top, heights, turn, sweep, helix_turn, slopes, circles, slug, has_new_turn };
         run.push(arc, place);
         run
     }
@@ -265,6 +285,7 @@ impl ArcRun {
         self.note_circle();
         let start = self.height_at(begin);
         let [level, lowest] = self.heights.since(begin, start);
+        self.sweep.add(lowest, (start - end).abs());
         // A turn that rises follows a thread. A single turn that falls does so too, or begins a helix.
         let is_level = level - lowest <= MAX_LEVEL_CHANGE;
         let is_helix = end < start && self.swept >= self.full_turn() + 360.0;
@@ -345,12 +366,13 @@ impl ArcRun {
         }
         let (centre, radius, roundness) = self.fit();
         if let Some(helix) = &mut helix {
-            helix.phase = phase(helix.lead, &(last.to - centre), &out, end);
+            helix.phase = Helix::phase_of(helix.lead, &(last.to - centre), &out, end);
             helix.wander = self.wander(&centre, radius, &out);
         }
         let FullTurn { level, backtrace, axis_position } = self.turn.or(self.helix_turn)?;
         let centre = centre + out.into_inner() * (level - centre.coords.dot(&out));
-        let (top, slug, uneven_turn) = (self.top, self.slug, uneven_turn.flatten());
+        let (top, sweep, slug, uneven_turn) = (self.top, self.sweep, self.slug, uneven_turn.flatten());
+        let wall = f64::INFINITY;
         let cuts = CutStates::default();
         Some(Ring {
             centre,
@@ -358,6 +380,8 @@ impl ArcRun {
             radius,
             roundness,
             top,
+            sweep,
+            wall,
             helix,
             uneven_turn,
             slug,
@@ -466,12 +490,4 @@ impl HoleExtractor<'_> {
             Unit::try_new(self.axis_direction(z), 1e-9)
         })
     }
-}
-
-/// Returns the height at which a helix crosses a direction that its axis alone gives; a point of it lies at a spoke and a
-/// height.
-fn phase(lead: f64, spoke: &Vector3<f64>, out: &Unit<Vector3<f64>>, height: f64) -> f64 {
-    let begin = out.cross(&[Vector3::x(), Vector3::y(), Vector3::z()][out.iamin()]);
-    let turn = Deg::atan2(begin.cross(spoke).dot(out), begin.dot(spoke)).0;
-    (height - lead * turn / 360.0).rem_euclid(lead.abs())
 }

@@ -7,7 +7,8 @@ use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
 use super::swept_tool::ring as directions;
-use gcode_part::{MAX_EDGE_BREAK, Taper, exceeds};
+use crate::machine::TOUCH_DEPTH;
+use gcode_part::{Frustum, MAX_EDGE_BREAK, Taper, exceeds};
 
 /// Number of directions in which the cone of a mill is compared with a pocket.
 const CONE_SPOKES: u32 = 64;
@@ -30,9 +31,12 @@ impl Engagement {
                 Some(deeper) => {
                     // What has come loose inside a narrower circle is no metal any more.
                     deeper.slug = if deeper.slug < ring.slug { ring.slug } else { deeper.slug };
+                    if deeper.radius - 0.01 <= ring.radius {
+                        deeper.extend_wall(&ring.with_edges(self.edges));
+                    }
                     deeper.cuts.append(&ring.cuts);
                 }
-                None => kept.push(ring.clone()),
+                None => kept.push(ring.with_edges(self.edges)),
             }
         }
         let top = rings.iter().map(|ring| ring.top).fold(f64::NEG_INFINITY, f64::max) + LEVEL_TOLERANCE;
@@ -78,7 +82,10 @@ impl HoleExtractor<'_> {
         if engagement.rings.is_empty() || engagement.is_full() {
             return (Vec::new(), false);
         }
-        let all: Vec<&Ring> = engagement.rings.iter().collect();
+        let all: Vec<&Ring> = engagement.rings.iter().filter(|ring| !self.is_in_air(ring, cutter)).collect();
+        if all.is_empty() {
+            return (Vec::new(), false);
+        }
         let is_along_tool =
             |ring: &&Ring| self.pose.axis.as_ref().is_none_or(|axis| MIN_AXIS_COSINE <= axis.dot(&ring.out));
         if !all.iter().all(is_along_tool) {
@@ -148,6 +155,17 @@ impl HoleExtractor<'_> {
         }
         let up = ring.out.into_inner() * height;
         self.is_round_in_pocket(&[ring.centre, ring.centre + up], &ring.out, radius)
+    }
+
+    /// Returns true if the edges of a mill meet nothing of a known body along a circle, above it or beyond it.
+    fn is_in_air(&self, ring: &Ring, cutter: Option<f64>) -> bool {
+        let Some((body, cutter)) = self.surface.zip(cutter) else { return false };
+        let (out, radius) = (ring.out.into_inner(), ring.radius + cutter / 2.0);
+        let metal = self.metal.removed.height_of_round(&ring.centre, &out, radius);
+        let length = (metal.min(self.engagement.edges) - 2.0 * TOUCH_DEPTH).max(0.0);
+        let taper = Taper::cylinder(radius - TOUCH_DEPTH);
+        let edges = Frustum { base: ring.centre + out * TOUCH_DEPTH, axis: ring.out, length, taper };
+        !body.touches(&edges, &(out * ring.height()))
     }
 
     /// Returns true if pockets hold all that a pointed mill cuts beside a hole of a radius. A cone that only breaks the edge is

@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position, SpindleDirection, UnknownAxes};
-use gcode_lang::units::{MmPerMin, Rpm};
+use gcode_lang::units::{Deg, MmPerMin, Rpm};
 
 /// Extent of a pass in the part's frame, with its feed and its spindle.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +32,9 @@ pub struct PassCut {
     pub order: usize,
 }
 
+/// Component of a unit vector below which an axis is square enough to it; the least of three is smaller.
+const MAX_SQUARE_COMPONENT: f64 = 0.58;
+
 /// Largest relative deviation of a thread's feed a revolution from its pitch: rounding of F.
 pub(crate) const PITCH_TOLERANCE: f64 = 0.005;
 
@@ -51,6 +54,8 @@ pub struct MilledCut {
     pub radius: f64,
     /// Largest minus least distance of the path from the axis.
     pub roundness: f64,
+    /// Height above the bottom up to which the edges cut the whole wall; infinite without a length of the flutes.
+    pub wall: f64,
     /// Diameter of the metal that the mill leaves on the axis; `None` without any, or if it is unknown.
     pub core: Option<f64>,
     /// Helix of the path; `None` if it is level anywhere.
@@ -72,6 +77,18 @@ pub struct Helix {
     pub wander: f64,
     /// True if it makes no hole: the mill comes up along it, or goes round once.
     pub is_thread: bool,
+}
+
+impl Helix {
+    /// Returns the height at which a helix crosses a direction that its axis alone gives; a point of it lies at a spoke and a
+    /// height.
+    pub(super) fn phase_of(lead: f64, spoke: &Vector3<f64>, out: &Unit<Vector3<f64>>, height: f64) -> f64 {
+        // The same axis from both sides of the part, whatever rounding makes of a component that is 0.
+        let square = (0..3).find(|axis| out[*axis].abs() < MAX_SQUARE_COMPONENT).unwrap_or(0);
+        let begin = out.cross(&[Vector3::x(), Vector3::y(), Vector3::z()][square]);
+        let turn = Deg::atan2(begin.cross(spoke).dot(out), begin.dot(spoke)).0;
+        (height - lead * turn / 360.0).rem_euclid(lead.abs())
+    }
 }
 
 impl PassCut {

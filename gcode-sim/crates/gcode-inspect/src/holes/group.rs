@@ -256,8 +256,9 @@ fn push_holes<'p>(
         if cuts {
             *lowest = height(&pass.cut.bottom);
         }
-        // Every turn cuts the flanks of a thread.
-        let is_helix = pass.cut.milled.is_some_and(|circle| circle.helix.is_some());
+        // Every turn cuts the flanks of a thread, and short edges cut the wall in steps.
+        let is_helix =
+            pass.cut.milled.is_some_and(|circle| circle.helix.is_some() || circle.wall.is_finite());
         if cuts || is_helix { cutting.push(pass) } else { repeated.push(pass) }
     }
     let lowest = cutting.iter().map(|pass| height(&pass.cut.bottom)).fold(f64::INFINITY, f64::min);

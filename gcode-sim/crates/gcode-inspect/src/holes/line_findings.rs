@@ -191,8 +191,13 @@ impl HoleExtractor<'_> {
             return;
         };
         let is_judged = self.metal.holes.is_some() && line.tool_axis.is_some();
+        // A tool that is fed out of the part has left it.
+        let has_left = || {
+            let is_outside = |body: Surface| body.depth(&line.bottom()) <= TOUCH_DEPTH;
+            !line.is_inward() && self.surface.is_some_and(is_outside)
+        };
         // Where the tool goes next is judged, unless that is unknown, or it is changed in the hole.
-        let is_followed = moves_on && self.positions.is_known(self.machine);
+        let is_followed = (moves_on || has_left()) && self.positions.is_known(self.machine);
         if is_judged && is_followed && !self.has_gouged(line) {
             return;
         }

@@ -44,6 +44,8 @@ pub(super) struct Engagement {
     pub rings: Vec<Ring>,
     /// Strokes at nominal holes along which the tool doesn't retract.
     pub unretracted: Vec<(u32, DrillPass)>,
+    /// Length of the mill's edges, mm; infinite if it is unknown. Set where the engagement ends.
+    pub edges: f64,
     /// Number of feeds before it that removed what has to stay.
     spoilt_before: u32,
     /// Axes of unknown position on the part during an arc.
@@ -245,6 +247,8 @@ impl HoleExtractor<'_> {
     /// Ends the engagement: its circles are passes of holes, or its feeds make none.
     pub(super) fn end_engagement(&mut self) {
         self.engagement.end_run();
+        let tool = self.setup.tool.and_then(|number| self.machine.find_tool(number));
+        self.engagement.edges = tool.and_then(|tool| tool.flute_length).unwrap_or(f64::INFINITY);
         let (holes, has_pocket) = self.hole_circles();
         for circles in &holes {
             self.push_circles(circles);
@@ -290,8 +294,8 @@ impl HoleExtractor<'_> {
             // A tool that comes down in rapid begins its feed at the depth of the circle.
             let begin = if begin > ring.level() + LEVEL_TOLERANCE { begin } else { approach_level };
             let length = (begin - ring.level()).max(LEVEL_TOLERANCE);
-            let Ring { radius, roundness, helix, .. } = *ring;
-            let milled = MilledCut { radius, roundness, core: ring.slug, helix };
+            let Ring { radius, roundness, wall, helix, .. } = *ring;
+            let milled = MilledCut { radius, roundness, wall, core: ring.slug, helix };
             let cut = PassCut::new(ring.centre + out.into_inner() * length, ring.centre);
             let pass = DrillPass {
                 cut: PassCut { milled: Some(milled), ..cut },

@@ -6,6 +6,7 @@ use super::feed_law::is_along;
 use super::near_metal::{FeedPart, Judged};
 use super::strip::{Line, Strip};
 use super::swept_tool::rim;
+use crate::machine::TOUCH_DEPTH;
 use gcode_lang::motion::Event;
 use gcode_lang::source::Span;
 
@@ -90,12 +91,16 @@ impl HoleExtractor<'_> {
         }
         let along = chord[1] - chord[0];
         // The full diameter of a point is above the tip; a tool that moves sideways cuts with the whole point.
+        // Edges whose end is below the part cut it above.
+        let edges = self.tool_body.iter().filter(|part| part.is_cutter).map(|part| part.to);
+        let upper = edges.reduce(f64::max).map(|to| to - TOUCH_DEPTH);
         self.machine.tool_end(self.setup.tool).first().is_some_and(|full| {
-            let height = if is_along(axis, &along) { full.from } else { 0.0 };
+            let lower = if is_along(axis, &along) { full.from } else { 0.0 };
             let side = FeedPart::Side { radius: full.radius(), slope: 0.0 };
-            rim(axis, &along, full.radius()).into_iter().any(|offset| {
-                let offset = offset + axis.into_inner() * height;
-                cuts(&chord.map(|tip: Point3<f64>| tip + offset), side)
+            let offsets = rim(axis, &along, full.radius());
+            [Some(lower), upper].into_iter().flatten().any(|height| {
+                let up = axis.into_inner() * height;
+                offsets.iter().any(|offset| cuts(&chord.map(|tip: Point3<f64>| tip + offset + up), side))
             })
         })
     }

@@ -48,6 +48,7 @@ mod start_holes;
 mod strip;
 mod strokes;
 mod swallowed;
+mod sweep;
 mod swept_tool;
 #[cfg(test)]
 mod tests;

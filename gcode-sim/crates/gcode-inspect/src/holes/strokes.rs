@@ -15,7 +15,7 @@ use crate::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
 use crate::machine::{COS_30, Machine, ToolKind};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, Position};
-use gcode_part::{NominalAxes, NominalAxis, PARALLEL_COSINE};
+use gcode_part::{MAX_BREAK_THROUGH, NominalAxes, NominalAxis, PARALLEL_COSINE};
 
 /// Differences of height that come from rounding, mm.
 pub(super) const LEVEL_TOLERANCE: f64 = 0.003;
@@ -155,7 +155,8 @@ impl Strokes {
 
     /// Returns the nominal axis nearest to a circle; of a hole whose entry is above the circle if `is_below`.
     pub(super) fn nominal_of_ring(&self, ring: &Ring, is_below: bool) -> Option<&NominalAxis> {
-        let start = ring.centre + ring.out.into_inner() * ring.height();
+        // Below a through hole a tool breaks out.
+        let start = ring.centre + ring.out.into_inner() * (ring.height() + MAX_BREAK_THROUGH);
         let pass = [&start, &ring.centre];
         match is_below {
             true => self.nominal.nearest_above(pass, &ring.out, MAX_AXIS_DISTANCE),

@@ -139,6 +139,13 @@ impl<'a> Cut<'a> {
         }
     }
 
+    /// Returns the depths between which it cuts the whole wall of its diameter. A mill of unknown flutes clears all above it.
+    pub(super) fn wall(&self) -> [f64; 2] {
+        let lower = self.full_depth(self.pass.diameter.unwrap_or(0.0)).unwrap_or(self.tip);
+        let upper = self.pass.cut.milled.map_or(self.start, |circle| self.tip - circle.wall);
+        [upper, lower]
+    }
+
     /// Returns the radius of a mill's circle; 0 of a stroke.
     fn path_radius(&self) -> f64 {
         self.pass.cut.milled.map_or(0.0, |circle| circle.radius)

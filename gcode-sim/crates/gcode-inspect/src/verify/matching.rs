@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
+use super::followers::{MIN_OPPOSITE_COSINE, follows, shared_passages};
 use super::position::Deviation;
 use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
@@ -27,8 +28,8 @@ const NEARNESS: f64 = 1e-6;
 /// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
 const TILTED_HOLE_COSINE: f64 = COS_30;
 
-/// Cosine of the largest angle between the axes of two holes that meet.
-const MIN_OPPOSITE_COSINE: f64 = 0.999_999;
+/// Length of a part within which holes of one axis are looked for, mm.
+const MAX_PART_LENGTH: f64 = 10_000.0;
 
 /// A nominal hole and the drilled one matched with it, by their indices in the lists.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +69,25 @@ pub struct Comparison<'a> {
     nominal_by_line: Vec<Option<usize>>,
     /// Entries of the nominal holes, for the first query.
     entries: OnceCell<PointTree>,
+}
+
+impl Comparison<'_> {
+    /// Returns the depth of the lowest hole that follows a through hole on its axis, from the entry of this one; `None` without one.
+    /// The part is open between both, as between the ears of a clevis.
+    pub(super) fn depth_of_followers(&self, hole: &Hole) -> Option<f64> {
+        let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
+        let far = entry - out * MAX_PART_LENGTH;
+        let margin = Vector3::repeat(self.tolerances.position);
+        let entries = || PointTree::new(self.nominal.iter().map(|hole| Point3::from(hole.entry)));
+        let mut lowest: Option<f64> = None;
+        let (low, high) = (entry.inf(&far) - margin, entry.sup(&far) + margin);
+        self.entries.get_or_init(entries).in_box(&low, &high, &mut |index| {
+            if let Some(depth) = follows(hole, &self.nominal[index], self.tolerances) {
+                lowest = Some(lowest.map_or(depth, |lowest| lowest.max(depth)));
+            }
+        });
+        lowest.filter(|_| hole.through)
+    }
 }
 
 impl<'a> Comparison<'a> {
@@ -137,6 +157,16 @@ impl<'a> Comparison<'a> {
         let mut pairs: Vec<HolePair> = pair_of.iter().flatten().copied().collect();
         if !through.is_empty() {
             join_far_sides(nominal, actual, &candidates, &mut pairs, &mut is_taken);
+            let missing = candidates.iter().filter(|pair| pair_of[pair.nominal].is_none());
+            let missing = missing.map(|pair| (pair.nominal, pair.actual));
+            let partners = pair_of.iter().flatten().map(|pair| (pair.actual, pair.nominal)).collect();
+            let shared = shared_passages(nominal, actual, missing, &partners, tolerances);
+            let is_shared = |pair: &&HolePair| shared.get(&pair.nominal) == Some(&pair.actual);
+            for pair in candidates.iter().filter(is_shared) {
+                pair_of[pair.nominal] = Some(*pair);
+                pairs.push(*pair);
+            }
+            pairs.sort_by_key(|pair| pair.nominal);
         }
         // The holes may be a part of a list, whose indices they keep.
         let lines = actual.iter().map(|hole| hole.first_on_line + 1).max().unwrap_or(0);
@@ -261,6 +291,19 @@ impl<'a> Comparison<'a> {
     pub(super) fn matched(&self) -> impl Iterator<Item = (&HolePair, &'a Hole, &'a DrilledHole)> {
         let (nominal, actual) = (self.nominal, self.actual);
         self.pairs.iter().map(move |pair| (pair, &nominal[pair.nominal], &actual[pair.actual]))
+    }
+
+    /// Returns the drilled hole that gives a pair its diameter: what is cut from the far side, if that alone is as wide as
+    /// nominal.
+    pub(super) fn finishing(&self, pair: &HolePair) -> &'a DrilledHole {
+        let nominal = self.nominal[pair.nominal].diameter;
+        let off = |drilled: &DrilledHole| Some(drilled.diameter? - nominal?);
+        let limit = self.tolerances.diameter;
+        let near = &self.actual[pair.actual];
+        let is_narrow = off(near).is_some_and(|off| exceeds(-off, limit));
+        let far = pair.from_far_side.filter(|_| is_narrow).map(|index| &self.actual[index]);
+        let is_as_wide = |far: &&DrilledHole| off(far).is_some_and(|off| !exceeds(off.abs(), limit));
+        far.filter(is_as_wide).unwrap_or(near)
     }
 
     /// Returns the nominal hole that an extra hole drills a second time; `None` if there is none.

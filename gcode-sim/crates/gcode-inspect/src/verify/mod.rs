@@ -6,6 +6,7 @@ mod completion;
 mod conclusion;
 mod displacement;
 pub mod flutes;
+mod followers;
 mod hole_cuts;
 mod hole_finding;
 mod matching;

@@ -257,7 +257,7 @@ fn hole_verdicts(
             actual: HoleGeometry {
                 entry: deviation.entry.coords.into(),
                 axis: drilled.axis.into_inner().into(),
-                diameter: drilled.diameter,
+                diameter: comparison.finishing(pair).diameter,
                 depth: nominal.depth + deviation.depth_error,
             },
             from: origin(drilled.backtrace.block, drilled.tool, locate),
@@ -285,7 +285,13 @@ impl Verdict {
         });
         let extra = self.extra.iter().enumerate();
         let extra = extra.map(|(place, hole)| (hole.drilled_index, format!("extra {}", place + 1)));
-        matched.chain(extra).chain(self.repeated.iter().cloned()).collect()
+        let mut names: BTreeMap<usize, String> = BTreeMap::new();
+        for (index, name) in matched.chain(extra).chain(self.repeated.iter().cloned()) {
+            // One hole of the program may make two of the list.
+            let joined = names.get(&index).map(|other| format!("{other}, {name}"));
+            names.insert(index, joined.unwrap_or(name));
+        }
+        names
     }
 
     /// Adds the neighbours of each hole, by drilled hole, and their summary.

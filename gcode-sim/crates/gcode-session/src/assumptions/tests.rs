@@ -394,3 +394,21 @@ fn feeds_that_are_alike_keep_their_own_values() {
         &["#510=vacant@10: 2"],
     );
 }
+
+/// A hole by G98 leaves Z at 50, one by G99 at 2: there the feed of a last block begins.
+#[test]
+fn what_a_conditional_block_of_a_cycle_leaves_decides_the_level_of_the_next_feed() {
+    let after =
+        |blocks: &str| format!("G99 G81 X10. Y10. Z-5. R2. F100.\n{blocks}\nG80\nX40.\nG1 Z-4. F100.");
+    assert_assumptions(&after("G98\n/X20."), 3, &["/=0@6: 2 3"]);
+    // The next hole of the cycle settles the level.
+    assert_assumptions(&after("G98\n/X20.\nX30."), 4, &["/=0@6: 2"]);
+    // Without the place of a hole nothing is drilled, and Z stays at 2.
+    assert_assumptions(&after("G98\nX#510"), 2, &["#510=vacant@6: 2"]);
+    assert_assumptions(&after("G98\nX#510 Y20."), 3, &["#510=vacant@6: 2"]);
+    assert_assumptions(&after("/G98\nX20."), 3, &["/=0@5: 2 3"]);
+    assert_assumptions(&after("/G80\nG98\nX20."), 2, &["/=0@5: 2"]);
+    assert_assumptions(&after("G98\nIF[#510NE1]GOTO5\nX20.\nN5"), 2, &["#510=vacant@6: 2"]);
+    // A rapid settles it too.
+    assert_assumptions(&after("G98\n/X20.\nG80 Z50."), 3, &["/=0@6: 2"]);
+}

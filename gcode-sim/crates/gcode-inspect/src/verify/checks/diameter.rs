@@ -4,7 +4,8 @@ use crate::findings::HOLE_DIAMETER;
 
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
-    for (pair, hole, drilled) in comparison.matched() {
+    for (pair, hole, _) in comparison.matched() {
+        let drilled = comparison.finishing(pair);
         // The check on features covers each of them.
         if !hole.features.is_empty() {
             continue;

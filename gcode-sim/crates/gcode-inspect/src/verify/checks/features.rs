@@ -97,6 +97,7 @@ fn judge<'c>(
         judged.judge_features(surface);
     }
     judged.judge_far_widths(drilled);
+    judged.judge_both_sides();
     judged.judge_break_through(surface);
     threads::judge(&mut judged);
     tool_kinds::judge(&mut judged, surface.is_some());
@@ -125,6 +126,9 @@ impl Judgement<'_> {
                 }
             }
         }
+        for feature in &self.nominal.features {
+            self.judge_wall(feature);
+        }
         let tips = made_by.iter().flatten().map(|cut| self.near[*cut].tip);
         let bottom = tips.fold(self.nominal.depth, f64::max);
         let outline = Outline::of(self.nominal, tolerances.depth);
@@ -146,6 +150,10 @@ impl Judgement<'_> {
             self.judge_through(None, surface);
         } else {
             self.judge_finished_depth();
+        }
+        if let Some(diameter) = self.nominal.diameter {
+            let depth = Some(self.nominal.depth);
+            self.judge_wall(&Feature { diameter, depth, ..Feature::of(FeatureKind::Bore) });
         }
         let outline = Outline::of(self.nominal, self.comparison.tolerances.depth);
         self.judge_widths(&self.near.clone(), outline.as_ref(), drilled);

@@ -1,5 +1,6 @@
 //! The checks on holes: one file each, one line here. All of them share the imports of this file.
 mod air;
+mod both_sides;
 mod clearance;
 mod common_shift;
 mod cut_outside;
@@ -35,6 +36,7 @@ mod tool_kinds;
 mod tool_short;
 mod tools;
 mod transformed;
+mod wall;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -70,7 +72,7 @@ pub(super) const ALL: &[Check] = &[
     diameter::check,      // hole-diameter
     roundness::check,     // hole-roundness
     milled_core::check,   // hole-core
-    features::check,      // feature-*, hole-not-through, tap-*, tool-kind
+    features::check,      // feature-*, hole-not-through, hole-twice, tap-*, tool-kind
     tools::check,         // hole-tools
     overlap::check,       // hole-overlap
     row_short::check,     // row-short

@@ -13,22 +13,37 @@ use gcode_part::{Feature, FeatureKind, Hand, NOISE, POINT_LENGTH};
 
 /// Largest deviation of a milled turn from the pitch, mm: half the least increment in inches, for 1/18 in is commanded as
 /// .0556.
-const LEAD_TOLERANCE: f64 = 0.00127;
+pub(super) const LEAD_TOLERANCE: f64 = 0.00127;
 
 /// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
 
-/// Adds the findings on the threads of a hole.
+/// Adds the findings on the threads of a hole, from both sides of a through hole.
 pub(super) fn judge(judged: &mut Judgement<'_>) {
-    let (nominal, id) = (judged.nominal, judged.id);
     let mut findings = Vec::new();
     for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
         findings.extend(cuts.iter().filter_map(|cut| drilled_depth(judged, cut, cuts, others)));
     }
+    judged.findings.extend(findings);
+    judge_side(judged);
+    let nominal = judged.nominal.from_far_side();
+    let Judgement { comparison, id, .. } = *judged;
+    let (near, far) = (judged.far.clone(), judged.near.clone());
+    let mut from_far_side =
+        Judgement { comparison, nominal: &nominal, id, near, far, findings: Vec::new(), gaps: Vec::new() };
+    judge_side(&mut from_far_side);
+    let Judgement { findings, gaps, .. } = from_far_side;
+    judged.findings.extend(findings);
+    judged.gaps.extend(gaps);
+}
+
+/// Adds the findings on the threads that are cut from the side of the entry.
+fn judge_side(judged: &mut Judgement<'_>) {
     if !judged.near.iter().any(Cut::is_thread) {
-        judged.findings.extend(findings);
         return;
     }
+    let (nominal, id) = (judged.nominal, judged.id);
+    let mut findings = Vec::new();
     let width = judged.comparison.tolerances.diameter;
     findings
         .extend((0..judged.near.len()).find_map(|cut| drilled_after(nominal, id, &judged.near, cut, width)));

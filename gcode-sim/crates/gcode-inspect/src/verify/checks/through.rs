@@ -84,6 +84,8 @@ impl Judgement<'_> {
             return;
         }
         let thickness = surface.map_or(0.0, |surface| thickness(&surface, nominal)).max(nominal.depth);
+        let thickness =
+            self.comparison.depth_of_followers(nominal).map_or(thickness, |far| far.max(thickness));
         let beyond = |cut: &&Cut<'_>| break_through(cut, nominal, thickness);
         let all = self.near.iter().chain(&self.far);
         let Some(cut) = all.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else { return };
@@ -136,8 +138,10 @@ impl Judgement<'_> {
         if !exceeds(depth, cut) {
             return;
         }
-        // A coaxial hole from the far side is the rest of this one.
+        // A coaxial hole from the far side is the rest of this one, and above one that follows it the part is open.
         let depth = depth.min(self.comparison.counter_depth(self.nominal, diameter));
+        let is_followed = self.comparison.depth_of_followers(self.nominal).is_some();
+        let depth = if is_followed { depth.min(self.nominal.depth) } else { depth };
         if exceeds(depth, cut) {
             let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
             let message =

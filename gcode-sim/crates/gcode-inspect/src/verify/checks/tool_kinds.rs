@@ -26,7 +26,7 @@ pub(super) fn is_usual(drilled: &DrilledHole, machine: &Machine) -> bool {
     };
     match drilled.finishing_cut {
         PassCut { is_tapping: true, .. } => false,
-        PassCut { milled: Some(_), .. } => tool().is_none_or(is_flat),
+        PassCut { milled: Some(circle), .. } => circle.wall.is_infinite() && tool().is_none_or(is_flat),
         _ => tool().is_none_or(|tool| !needs_hole(tool.kind)),
     }
 }

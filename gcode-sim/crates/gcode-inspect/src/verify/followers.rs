@@ -1,0 +1,47 @@
+//! Holes of one axis, as in the ears of a clevis: a drill that goes through one makes the next.
+use std::collections::BTreeMap;
+
+use nalgebra::{Point3, Vector3};
+
+use super::Tolerances;
+use crate::holes::DrilledHole;
+use gcode_part::Hole;
+
+/// Cosine of the largest angle between the axes of two holes that meet.
+pub(super) const MIN_OPPOSITE_COSINE: f64 = 0.999_999;
+
+/// Returns the depth of a hole that follows another one on its axis and in its direction, from the entry of the upper one; `None` if
+/// it does not.
+pub(super) fn follows(upper: &Hole, lower: &Hole, tolerances: Tolerances) -> Option<f64> {
+    let out = Vector3::from(upper.axis);
+    let offset = Point3::from(lower.entry) - Point3::from(upper.entry);
+    let begins = -offset.dot(&out);
+    let is_alike = MIN_OPPOSITE_COSINE < out.dot(&Vector3::from(lower.axis));
+    let is_on_axis = offset.cross(&out).norm() <= tolerances.position / 2.0;
+    (is_alike && is_on_axis && upper.depth + tolerances.depth < begins).then_some(begins + lower.depth)
+}
+
+/// Returns for each missing through hole the first of its candidates, nominal and drilled hole, that leads through it to a hole
+/// farther along its axis. `partners` has the nominal hole of each drilled one that is matched.
+pub(super) fn shared_passages(
+    nominal: &[Hole],
+    actual: &[DrilledHole],
+    missing: impl Iterator<Item = (usize, usize)>,
+    partners: &BTreeMap<usize, usize>,
+    tolerances: Tolerances,
+) -> BTreeMap<usize, usize> {
+    let mut shared = BTreeMap::new();
+    for (index, drilled_index) in missing {
+        let (hole, drilled) = (&nominal[index], &actual[drilled_index]);
+        let depth = |point: &Point3<f64>| (Point3::from(hole.entry) - point).dot(&Vector3::from(hole.axis));
+        let leads_through = depth(&drilled.entry) <= 0.0 && hole.depth <= depth(&drilled.bottom());
+        let is_same_size = |other: &Hole| {
+            hole.widest_diameter() == other.widest_diameter() && follows(hole, other, tolerances).is_some()
+        };
+        let has_partner = partners.get(&drilled_index).is_some_and(|other| is_same_size(&nominal[*other]));
+        if hole.through && leads_through && has_partner {
+            shared.entry(index).or_insert(drilled_index);
+        }
+    }
+    shared
+}
