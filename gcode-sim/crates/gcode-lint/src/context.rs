@@ -23,6 +23,7 @@ use super::control_flow::ControlFlowGraph;
 use super::locals::States;
 use super::piece::Piece;
 use super::possible_modes::PossibleModes;
+pub(crate) use super::role::Role;
 use super::variables::{self, VariableRead};
 
 const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
@@ -117,17 +118,6 @@ pub(crate) struct ProgramUnit<'a> {
     pub left_out_numbers: Vec<LeftOutNumber>,
     /// Piece of a longer program, of which the other blocks are not here.
     pub piece: Option<Piece>,
-}
-
-/// Way in which a program is entered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Role {
-    /// Started by the operator: all locals are vacant.
-    Main,
-    /// Called only by the programs under check.
-    Called,
-    /// Returns but has no caller under check, or has the number of a macro: called by unknown programs.
-    Resident,
 }
 
 impl<'a> CheckContext<'a> {

@@ -34,12 +34,14 @@ mod main_programs;
 mod modes;
 mod parameters;
 mod piece;
+mod piece_ends;
 mod pieces;
 mod possible_modes;
 mod prelude;
 #[cfg(test)]
 mod property_tests;
 mod repetition;
+mod role;
 mod rule;
 pub mod rules;
 mod suppression;
@@ -60,7 +62,7 @@ use gcode_lang::program::{Library, Memory, Program};
 use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::KnownBlocks;
 use loader::Loader;
-use pieces::PieceSizes;
+use piece_ends::PieceSizes;
 use repetition::Repetitions;
 pub use variables::variables_read;
 

@@ -2,9 +2,9 @@
 use gcode_lang::program::OpIndex;
 use gcode_lang::source::Span;
 
-use super::context::Role;
 use super::locals::Locals;
 use super::possible_modes::PossibleModes;
+use super::role::Role;
 
 /// Place of a piece in its program, and what the pieces before it leave.
 #[derive(Clone, Debug)]

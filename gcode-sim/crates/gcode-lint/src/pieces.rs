@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::program::{Library, Memory, OpIndex, OpKind, Program, ProgramId, Statement};
+use gcode_lang::program::{Library, OpIndex, Program, ProgramId};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::KnownBlocks;
 
@@ -21,30 +21,13 @@ use super::locals::Locals;
 use super::modes::modes_before;
 use super::parameters::has_open_parameter_input;
 use super::piece::{Piece, PieceEntry, PieceStart};
+use super::piece_ends::{PieceSizes, piece_end};
 use super::rules::{
     self, alarming_cancel, doubled_numbers, is_in_inch, limits_lookahead, pending_moves, sequence_numbers,
 };
 use super::suppression::{Suppression, suppressions};
 use super::unset_reads::entry_locals;
 use super::vacancy::states_without_arguments;
-
-/// Numbers of blocks that decide how a program is checked.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PieceSizes {
-    /// Most blocks of a program that is checked as a whole.
-    pub whole: usize,
-    /// Blocks of a piece before its end is sought.
-    pub piece: usize,
-    /// Blocks among which the end of a piece is sought at a time.
-    pub window: usize,
-}
-
-impl PieceSizes {
-    pub(super) const USUAL: Self = Self { whole: 100_000, piece: 20_000, window: 500 };
-}
-
-/// Number of windows in which the end of a piece is sought.
-const MAX_WINDOWS: usize = 20;
 
 /// Most blocks behind a piece to which its jumps lead: mostly they are the ends and the alarms of a program.
 const MAX_FAR_TARGETS: usize = 200;
@@ -341,74 +324,10 @@ fn leads_elsewhere(
         || has_open_parameter_input(unit.program)
 }
 
-/// Returns the end of the piece that begins at a block: no loop and no jump near it leads across. `None` if there is none.
-fn piece_end(
-    memory: &mut Memory,
-    (id, whole): (ProgramId, &Program),
-    first: OpIndex,
-    sizes: PieceSizes,
-) -> Option<OpIndex> {
-    let count = whole.block_count();
-    let wanted = first + sizes.piece;
-    if count <= wanted + sizes.window {
-        return Some(count);
-    }
-    for window in 0..MAX_WINDOWS {
-        let from = wanted + window * sizes.window;
-        let candidates = from..(from + sizes.window).min(count);
-        if candidates.is_empty() {
-            return Some(count);
-        }
-        let near = candidates.start.saturating_sub(sizes.window).max(first)
-            ..(candidates.end + sizes.window).min(count);
-        let crossed = crossed_places(memory, (id, whole), near.clone());
-        let is_end = |place: &OpIndex| !crossed[place - near.start] && !whole.is_in_loop(*place);
-        if let Some(end) = candidates.into_iter().find(is_end) {
-            return Some(end);
-        }
-    }
-    Some(count).filter(|count| *count <= first + 2 * sizes.whole)
-}
-
-/// Returns, for each of some blocks, whether a jump among them leads across its start or to it, or a loop begins there.
-fn crossed_places(
-    memory: &mut Memory,
-    (id, whole): (ProgramId, &Program),
-    blocks: Range<OpIndex>,
-) -> Vec<bool> {
-    memory.replace(id, whole.part(blocks.clone()));
-    let part = memory.lower_program(id);
-    let mut crossed: Vec<bool> = (part.ops().iter())
-        .map(|op| {
-            matches!(
-                op.kind(),
-                OpKind::Statement(Statement::While { .. } | Statement::Do { .. }) | OpKind::Alarm(_)
-            )
-        })
-        .collect();
-    for jump in ControlFlowGraph::new(part, &[]).jumps {
-        let from = blocks.start + jump.block;
-        let Some(to) = whole.find_number(jump.number, if jump.is_return { 0 } else { from + 1 }) else {
-            continue;
-        };
-        // A piece may jump to one far behind it.
-        if blocks.end <= to {
-            continue;
-        }
-        // The first block of a piece may be no target either.
-        let across = if from < to { from + 1..to + 1 } else { to..from + 1 };
-        let (start, end) = (across.start.max(blocks.start), across.end.min(blocks.end));
-        if start < end {
-            crossed[start - blocks.start..end - blocks.start].fill(true);
-        }
-    }
-    crossed
-}
-
 #[cfg(test)]
 mod tests {
     use gcode_lang::control::Settings;
-    use gcode_lang::program::NoLibrary;
+    use gcode_lang::program::{Memory, NoLibrary};
     use proptest::collection::vec;
     use proptest::prelude::*;
 

@@ -3,6 +3,7 @@
 //! The tree is not interpreted. A number keeps its decimal point, because the unit of `X1` (1 mm or 0.001 mm)
 //! is a setting of the control. An unreadable block keeps its alarm, because a control raises it when it
 //! reaches the block.
+pub use super::do_line::DoLine;
 use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
 
@@ -18,19 +19,6 @@ pub struct Program {
     pub span: Span,
     /// Blocks after the O word; words on the line of the O word form the first block.
     pub blocks: Vec<Block>,
-}
-
-/// Place of a block in a line of several macro statements that DO begins: `WHILE[#1GT0]DO1 #1=#1-1 END1`. Each statement is a
-/// block.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DoLine {
-    /// The line is another one.
-    #[default]
-    No,
-    /// The block ends with DO, and the statement of this span stands behind it.
-    Begins(Span),
-    /// The block stands behind DO.
-    Behind,
 }
 
 /// One line of a program.

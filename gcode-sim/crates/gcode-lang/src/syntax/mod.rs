@@ -7,6 +7,7 @@
 pub mod ast;
 mod block;
 mod comment;
+mod do_line;
 mod expr;
 mod file;
 mod file_items;
