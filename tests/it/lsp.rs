@@ -1,4 +1,5 @@
 //! The language server as a process: standard input and output, exit codes, and messages out of order.
+use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
@@ -137,4 +138,44 @@ fn a_cancelled_request_is_answered_once() {
     client.ask(3, "shutdown", Value::Null);
     client.send(json!({ "method": "exit" }));
     assert_eq!(client.end(), Some(0));
+}
+
+/// Returns what the extension for VS Code contributes.
+fn extension() -> Value {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../editors/vscode/package.json");
+    let manifest: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    manifest["contributes"].clone()
+}
+
+/// An editor colours only tokens whose type it knows: those of the protocol, and those of its manifest.
+#[test]
+fn the_extension_knows_each_own_token_type_of_the_server() {
+    const OF_PROTOCOL: [&str; 6] = ["comment", "number", "string", "keyword", "operator", "function"];
+    let mut client = Client::start();
+    let capabilities = json!({ "textDocument": { "semanticTokens": { "requests": { "full": true },
+        "tokenTypes": [], "tokenModifiers": [], "formats": ["relative"] } } });
+    let params = json!({ "processId": null, "rootUri": null, "capabilities": capabilities });
+    let answer = client.ask(0, "initialize", params);
+    let legend = &answer["result"]["capabilities"]["semanticTokensProvider"]["legend"]["tokenTypes"];
+    let legend: BTreeSet<_> = legend.as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    let own: BTreeSet<_> = legend.into_iter().filter(|name| !OF_PROTOCOL.contains(name)).collect();
+    let contributes = extension();
+    let types = contributes["semanticTokenTypes"].as_array().unwrap().iter();
+    assert_eq!(types.map(|one| one["id"].as_str().unwrap()).collect::<BTreeSet<_>>(), own);
+    let scopes = contributes["semanticTokenScopes"][0]["scopes"].as_object().unwrap();
+    assert_eq!(scopes.keys().map(String::as_str).collect::<BTreeSet<_>>(), own);
+}
+
+#[test]
+fn the_extension_has_a_schema_of_each_setting_of_the_server() {
+    let contributes = extension();
+    let properties = &contributes["configuration"]["properties"];
+    let documented = include_str!("../../docs/editors.md").split("## Settings").nth(1).unwrap();
+    let rows = documented.split("\n## ").next().unwrap().lines().filter_map(|line| line.strip_prefix("| `"));
+    let keys: Vec<_> = rows.filter_map(|row| row.split('`').next()).collect();
+    assert_eq!(keys, ["machine", "control", "dialect", "libraries", "reference"]);
+    for key in keys {
+        let kind = if key == "libraries" { "array" } else { "string" };
+        assert_eq!(properties[format!("gcode-sim.{key}")]["type"], kind, "{key}");
+    }
 }
