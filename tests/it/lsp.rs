@@ -1,4 +1,5 @@
 //! The language server as a process: standard input and output, exit codes, and messages out of order.
+use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
@@ -137,4 +138,111 @@ fn a_cancelled_request_is_answered_once() {
     client.ask(3, "shutdown", Value::Null);
     client.send(json!({ "method": "exit" }));
     assert_eq!(client.end(), Some(0));
+}
+
+/// Returns what the extension for VS Code contributes.
+fn extension() -> Value {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../editors/vscode/package.json");
+    let manifest: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    manifest["contributes"].clone()
+}
+
+/// An editor colours only tokens whose type it knows: those of the protocol, and those of its manifest.
+#[test]
+fn the_extension_knows_each_own_token_type_of_the_server() {
+    const OF_PROTOCOL: [&str; 6] = ["comment", "number", "string", "keyword", "operator", "function"];
+    let mut client = Client::start();
+    let capabilities = json!({ "textDocument": { "semanticTokens": { "requests": { "full": true },
+        "tokenTypes": [], "tokenModifiers": [], "formats": ["relative"] } } });
+    let params = json!({ "processId": null, "rootUri": null, "capabilities": capabilities });
+    let answer = client.ask(0, "initialize", params);
+    let legend = &answer["result"]["capabilities"]["semanticTokensProvider"]["legend"]["tokenTypes"];
+    let legend: BTreeSet<_> = legend.as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    let own: BTreeSet<_> = legend.into_iter().filter(|name| !OF_PROTOCOL.contains(name)).collect();
+    let contributes = extension();
+    let types = contributes["semanticTokenTypes"].as_array().unwrap().iter();
+    assert_eq!(types.map(|one| one["id"].as_str().unwrap()).collect::<BTreeSet<_>>(), own);
+    let scopes = contributes["semanticTokenScopes"][0]["scopes"].as_object().unwrap();
+    assert_eq!(scopes.keys().map(String::as_str).collect::<BTreeSet<_>>(), own);
+}
+
+#[test]
+fn the_extension_has_a_schema_of_each_setting_of_the_server() {
+    let contributes = extension();
+    let properties = &contributes["configuration"]["properties"];
+    let documented = include_str!("../../docs/editors.md").split("## Settings").nth(1).unwrap();
+    let rows = documented.split("\n## ").next().unwrap().lines().filter_map(|line| line.strip_prefix("| `"));
+    let keys: Vec<_> = rows.filter_map(|row| row.split('`').next()).collect();
+    assert_eq!(keys, ["machine", "control", "dialect", "libraries", "reference"]);
+    for key in keys {
+        let kind = if key == "libraries" { "array" } else { "string" };
+        assert_eq!(properties[format!("gcode-sim.{key}")]["type"], kind, "{key}");
+    }
+}
+
+/// Documents opened without a wait between them: the first one's check may still be under way when the second comes.
+#[test]
+fn a_caller_opened_with_its_macro_in_one_go_has_the_findings_of_both_texts() {
+    let folder = tempfile::tempdir().unwrap();
+    let main = "%\nO0300(MAIN)\nG21 G90\nM98 P8310\nM30\n%\n";
+    std::fs::write(folder.path().join("O0300.nc"), main).unwrap();
+    std::fs::write(folder.path().join("O8310.nc"), "%\nO8310(STEP)\nM99\n%\n").unwrap();
+    let uri = |name: &str| format!("file://{}", folder.path().join(name).display());
+    let open = |name: &str, text: &str| {
+        let document = json!({ "uri": uri(name), "languageId": "nc", "version": 1, "text": text });
+        json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } })
+    };
+    let mut client = Client::start();
+    client.initialize();
+    client.send(open("O0300.nc", main));
+    client.send(open("O8310.nc", "%\nO8311(STEP)\nM99\n%\n"));
+    // A request behind each wait marks the end of what was published up to it.
+    let (mut last, mut seen) = (Vec::new(), 0);
+    while seen < 6 && last != ["missing-program"] {
+        client.send(json!({ "id": 100 + seen, "method": "workspace/symbol", "params": { "query": "" } }));
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        seen += 1;
+        loop {
+            let message = client.receive();
+            if message["method"] == "textDocument/publishDiagnostics"
+                && message["params"]["uri"] == uri("O0300.nc").as_str()
+            {
+                let found = message["params"]["diagnostics"].as_array().unwrap().iter();
+                last = found.map(|one| one["code"].as_str().unwrap().to_owned()).collect();
+            }
+            if message["id"] == 99 + seen {
+                break;
+            }
+        }
+    }
+    assert_eq!(last, ["missing-program"]);
+}
+
+#[test]
+fn a_diagnostic_links_the_page_of_its_code_for_a_client_that_follows_links() {
+    for is_supported in [true, false] {
+        let mut client = Client::start();
+        let capabilities =
+            json!({ "textDocument": { "publishDiagnostics": { "codeDescriptionSupport": is_supported } } });
+        let params = json!({ "processId": null, "rootUri": null, "capabilities": capabilities });
+        client.ask(0, "initialize", params);
+        client.send(json!({ "method": "initialized", "params": {} }));
+        let document = json!({ "uri": "file:///nowhere/O0001.nc", "languageId": "nc", "version": 1,
+            "text": "O0001\nGOTO 100\nM30\n" });
+        client.send(json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } }));
+        let finding = loop {
+            let message = client.receive();
+            if message["method"] == "textDocument/publishDiagnostics" {
+                break message["params"]["diagnostics"][0].clone();
+            }
+        };
+        assert_eq!(finding["code"], "missing-n");
+        let Some(href) = finding["codeDescription"]["href"].as_str() else {
+            assert!(!is_supported, "{finding}");
+            continue;
+        };
+        assert!(is_supported, "{finding}");
+        let page = std::fs::read_to_string(href.strip_prefix("file://").unwrap()).unwrap();
+        assert!(page.contains("missing-n"), "{page}");
+    }
 }

@@ -1,9 +1,12 @@
 // Sliders for the arguments of the macro call at the cursor. A slider runs the program with its value; the text stays.
 import * as vscode from "vscode";
 
+import { numberLike, sliderOf } from "./slider";
+
 export interface Argument {
   letter: string;
-  value: number;
+  // Number as the text has it.
+  word: string;
   range: vscode.Range;
   // Version of the text that has the range.
   version: number;
@@ -20,33 +23,33 @@ export function argumentsOf(document: vscode.TextDocument, line: number): Argume
   return [...words].map((word) => {
     const end = word.index + word[0].length;
     const range = new vscode.Range(line, end - word[2].length, line, end);
-    return { letter: word[1].toUpperCase(), value: Number(word[2]), range, version: document.version };
+    return { letter: word[1].toUpperCase(), word: word[2], range, version: document.version };
   });
 }
 
-// Returns the text of a document with other values of arguments.
-export function withArguments(document: vscode.TextDocument, values: Argument[]): string {
+// Returns the text of a document with other numbers in arguments. All others stay as they are written.
+export function withArguments(document: vscode.TextDocument, moved: Argument[]): string {
   const text = document.getText();
-  const edits = values.map(({ range, value }) => [document.offsetAt(range.start), document.offsetAt(range.end), decimal(value)] as const);
+  const edits = moved.map(({ range, word }) => [document.offsetAt(range.start), document.offsetAt(range.end), word] as const);
   return edits.reduceRight((before, [start, end, word]) => before.slice(0, start) + word + before.slice(end), text);
-}
-
-// Returns a number with a decimal point: without one a control may count increments.
-function decimal(value: number): string {
-  const text = value.toFixed(3).replace(/0+$/, "");
-  return text === "-0." ? "0." : text;
 }
 
 export class ArgumentView implements vscode.WebviewViewProvider {
   private view: vscode.WebviewView | undefined;
   private shown: Argument[] = [];
 
-  constructor(private readonly changed: (values: Argument[]) => void) {}
+  constructor(private readonly changed: (moved: Argument[]) => void) {}
 
   resolveWebviewView(view: vscode.WebviewView): void {
     this.view = view;
     view.webview.options = { enableScripts: true };
-    view.webview.onDidReceiveMessage((values: number[]) => this.changed(this.shown.map((argument, index) => ({ ...argument, value: values[index] }))));
+    view.webview.onDidReceiveMessage((values: (number | null)[]) => {
+      const moved = (argument: Argument, index: number) => {
+        const value = values[index];
+        return value == null ? [] : [{ ...argument, word: numberLike(argument.word, value) }];
+      };
+      this.changed(this.shown.flatMap(moved));
+    });
     view.onDidDispose(() => (this.view = undefined));
     this.render();
   }
@@ -60,9 +63,9 @@ export class ArgumentView implements vscode.WebviewViewProvider {
 
   private render(): void {
     if (!this.view) return;
-    const rows = this.shown.map(({ letter, value }) => {
-      const reach = Math.max(Math.abs(value), 10);
-      return `<label>${letter} <input type="range" min="${value - reach}" max="${value + reach}" step="${reach / 200}" value="${value}"><output>${value}</output></label>`;
+    const rows = this.shown.map(({ letter, word }) => {
+      const { least, most, step, decimals } = sliderOf(word);
+      return `<label>${letter} <input type="range" min="${least}" max="${most}" step="${step}" value="${Number(word)}" data-decimals="${decimals}"><output>${word}</output></label>`;
     });
     const nonce = Math.random().toString(36).slice(2);
     this.view.webview.html = `<!DOCTYPE html>
@@ -73,8 +76,9 @@ ${rows.join("\n") || "<p>Put the cursor on a G65 or G66 block. Its sliders run t
 const api = acquireVsCodeApi();
 const inputs = [...document.querySelectorAll("input")];
 for (const input of inputs) input.addEventListener("input", () => {
-  input.nextElementSibling.textContent = Number(input.value).toFixed(3);
-  api.postMessage(inputs.map((one) => Number(one.value)));
+  input.dataset.moved = "";
+  input.nextElementSibling.textContent = Number(input.value).toFixed(input.dataset.decimals);
+  api.postMessage(inputs.map((one) => ("moved" in one.dataset ? Number(one.value) : null)));
 });
 </script>`;
   }

@@ -15,16 +15,16 @@ export function registerTasks(context: vscode.ExtensionContext): vscode.Disposab
       return COMMANDS.map((command) => task(context, { type: "gcode-sim", command, file: command === "test" ? dirname(file) : file }));
     },
     resolveTask: (known) => {
-      const { command, file } = known.definition;
-      if (!COMMANDS.includes(command)) return undefined;
-      return task(context, { ...known.definition, type: "gcode-sim", command, file: file ?? "${file}" });
+      if (!COMMANDS.includes(known.definition.command)) return undefined;
+      // The editor accepts a resolved task only with the very object of its definition.
+      return task(context, known.definition);
     },
   };
   return [vscode.tasks.registerTaskProvider("gcode-sim", provider)];
 }
 
 function task(context: vscode.ExtensionContext, definition: vscode.TaskDefinition): vscode.Task {
-  const { command, file } = definition;
+  const { command, file = "${file}" } = definition;
   const name = `${command} ${vscode.workspace.asRelativePath(file)}`;
   const execution = new vscode.ProcessExecution(binary(context), [command, file]);
   return new vscode.Task(definition, vscode.TaskScope.Workspace, name, "gcode-sim", execution);

@@ -16,6 +16,7 @@ use super::disk_files::DiskFiles;
 use super::project::Project;
 use super::rerun::Rerun;
 use super::{ExitStatus, UsageError, framing, input, options, output, page};
+use crate::report::explain::ExplainReport;
 use crate::report::proof::ProofReport;
 use crate::report::run::{RunReport, StopRecorder};
 use gcode_control::Control;
@@ -186,6 +187,14 @@ impl Host for EditorHost {
         // JSON has the values of a counterexample and not the command.
         let rerun = Rerun::new(Path::new(&request.name), &RunConditions::default(), None);
         json(&ProofReport::new(&answer, start.elapsed().as_secs_f64(), rerun))
+    }
+
+    fn explanation(&self, code: &str) -> Option<PathBuf> {
+        let path = self.page_folder().ok()?.join(format!("{code}.md"));
+        if !path.exists() {
+            output::write(&path, ExplainReport::of(code)?.markdown().as_bytes()).ok()?;
+        }
+        Some(path)
     }
 
     fn write_page(

@@ -43,6 +43,11 @@ impl ExplainReport {
         Self { pages: all().map(page).collect() }
     }
 
+    /// Returns the pages as they are written, in Markdown.
+    pub fn markdown(&self) -> String {
+        self.pages.iter().filter_map(|page| page.text).collect::<Vec<_>>().join("\n")
+    }
+
     /// Formats the pages for a terminal, or one line per code.
     pub fn text(&self) -> String {
         let page = |PageReport { code, title, text }: &PageReport| match text {

@@ -92,6 +92,8 @@ impl CyclePlan {
             | CycleStep::SpindleStop
             | CycleStep::SpindleForward
             | CycleStep::SpindleReverse
+            | CycleStep::ForwardAgain
+            | CycleStep::ReverseAgain
             | CycleStep::RigidForward
             | CycleStep::RigidReverse
             | CycleStep::ManualRetract => false,
@@ -134,6 +136,13 @@ impl CyclePlan {
             CycleStep::SpindleStop => (motion.emit)(spindle(SpindleDirection::Off), 0.0),
             CycleStep::SpindleForward => (motion.emit)(spindle(SpindleDirection::Clockwise), 0.0),
             CycleStep::SpindleReverse => (motion.emit)(spindle(SpindleDirection::Counterclockwise), 0.0),
+            CycleStep::ForwardAgain | CycleStep::ReverseAgain
+                if is_rigid && state.spindle == SpindleDirection::Off =>
+            {
+                (motion.emit)(spindle(SpindleDirection::Off), 0.0)
+            }
+            CycleStep::ForwardAgain => (motion.emit)(spindle(SpindleDirection::Clockwise), 0.0),
+            CycleStep::ReverseAgain => (motion.emit)(spindle(SpindleDirection::Counterclockwise), 0.0),
             CycleStep::RigidForward if is_rigid => (motion.emit)(spindle(SpindleDirection::Clockwise), 0.0),
             CycleStep::RigidReverse if is_rigid => {
                 (motion.emit)(spindle(SpindleDirection::Counterclockwise), 0.0)

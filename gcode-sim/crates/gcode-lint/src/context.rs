@@ -26,7 +26,8 @@ use super::possible_modes::PossibleModes;
 pub(crate) use super::role::Role;
 use super::variables::{self, VariableRead};
 
-const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
+/// Note of a finding that is none on a control with another option.
+pub const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
 
 /// Program numbers of macros, which a control protects.
 pub(crate) const MACROS: RangeInclusive<u32> = 9000..=9999;

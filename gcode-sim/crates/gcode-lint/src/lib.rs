@@ -51,6 +51,7 @@ mod variables;
 
 pub use calls::{Argument, CallSite, CalledProgramName, call_site, called_programs};
 pub use checked_blocks::CheckedBlocks;
+pub use context::CONTROL_ASSUMED;
 pub use expressions::{UsedExpressions, ValueUse, block_expressions};
 pub use literal::{constant, variable};
 pub use main_programs::{main_programs, programs_called_by_others};

@@ -16,6 +16,8 @@ pub(crate) struct CheckJob {
     pub file: FileId,
     /// The document itself has changed, not a program that it calls.
     pub is_edited: bool,
+    /// Number of changes that the snapshot has at least.
+    pub changes: u64,
 }
 
 /// Result of a check.
@@ -24,6 +26,8 @@ pub(crate) struct CheckAnswer {
     pub uri: Uri,
     /// Version of the checked document; `None` for a file of the disk.
     pub version: Option<i32>,
+    /// Number of changes of its job.
+    pub changes: u64,
     pub checked: CheckedDocument,
 }
 
@@ -64,7 +68,7 @@ fn work(receiver: &Receiver<CheckJob>, answers: impl Fn(CheckAnswer)) {
 }
 
 fn check(job: &CheckJob, before: CheckedBlocks) -> Option<(CheckAnswer, CheckResult)> {
-    let CheckJob { snapshot, file, .. } = job;
+    let CheckJob { snapshot, file, changes, .. } = job;
     let (text, uri) = (snapshot.text(*file)?, snapshot.uri(*file)?);
     let check = || {
         // What is read behind its stamp is that state of the file or a later one, which the next look at the disk finds.
@@ -74,5 +78,5 @@ fn check(job: &CheckJob, before: CheckedBlocks) -> Option<(CheckAnswer, CheckRes
     };
     let (checked, rest) = guarded("check", check).ok()?;
     let version = snapshot.documents.get(file).map(|document| document.version);
-    Some((CheckAnswer { file: *file, uri: uri.clone(), version, checked }, rest))
+    Some((CheckAnswer { file: *file, uri: uri.clone(), version, changes: *changes, checked }, rest))
 }

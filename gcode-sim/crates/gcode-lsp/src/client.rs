@@ -16,6 +16,8 @@ pub(crate) struct Client {
     pub has_prepared_rename: bool,
     pub has_related_information: bool,
     pub has_diagnostic_tags: bool,
+    /// A diagnostic may link the page of its code.
+    pub has_code_description: bool,
     pub has_markdown_hover: bool,
     pub has_markdown_signatures: bool,
     pub has_label_offsets: bool,
@@ -53,6 +55,7 @@ impl Client {
             has_prepared_rename: is(text.and_then(|text| text.rename.as_ref()?.prepare_support)),
             has_related_information: is(diagnostics.and_then(|diagnostics| diagnostics.related_information)),
             has_diagnostic_tags: diagnostics.is_some_and(|diagnostics| diagnostics.tag_support.is_some()),
+            has_code_description: is(diagnostics.and_then(|diagnostics| diagnostics.code_description_support)),
             has_markdown_hover: has_markdown(hover),
             has_markdown_signatures: has_markdown(
                 signature.and_then(|signature| signature.documentation_format.as_ref()),

@@ -55,8 +55,7 @@ pub(crate) fn code_actions(
         let edits = snapshot.runs.renumbering(program, progress, prove);
         actions.extend(source_action(snapshot, title, RENUMBER, edits)?);
     }
-    // An editor has a command of its own to format.
-    if params.context.only.is_some() && is_wanted(&FORMAT) {
+    if is_wanted(&FORMAT) {
         let edits = format_edits(snapshot, file, None, progress);
         actions.extend(source_action(snapshot, "Format the file".to_owned(), FORMAT, edits)?);
     }

@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 use gcode_lang::diag::{Diagnostic as Finding, Severity};
 use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::source::{SourceId, Sources, Span};
-use gcode_lint::{CheckResult, CheckedBlocks};
+use gcode_lint::{CONTROL_ASSUMED, CheckResult, CheckedBlocks};
 use lsp_types::{
-    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString,
-    Range, Uri,
+    CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location,
+    NumberOrString, Range, Uri,
 };
 
 use crate::client::Client;
 use crate::document_uri;
+use crate::host::Host;
 use crate::overlay::Overlay;
 use crate::program_setup::ProgramSetup;
 use crate::text_document::TextDocument;
@@ -61,11 +62,15 @@ pub(crate) fn check(
     let control = (&setup.settings, setup.knowledge);
     let checked = gcode_lint::check_edited(text, before, control, &mut library);
     let sources = checked.memory.sources();
-    let context = FindingContext { uri, document, sources, client };
+    let context = FindingContext { uri, document, sources, client, host: files.host() };
     let is_of_document = |finding: &&Finding| place(finding).is_none_or(|span| span.source == SourceId(0));
     let is_allowed = |finding: &Finding| setup.project.allows(finding.kind.code, &setup.path, files);
-    // A note without a remedy states a limit of the simulator: no fault of the program.
-    let is_fault = |finding: &Finding| Severity::Note < finding.severity || finding.help.is_some();
+    // A note without a remedy states a limit of the simulator, no fault of the program; but the run stops at an alarm that
+    // an option of the control would take away.
+    let is_optional = |finding: &Finding| finding.notes.iter().any(|note| note == CONTROL_ASSUMED);
+    let is_fault = |finding: &Finding| {
+        Severity::Note < finding.severity || finding.help.is_some() || is_optional(finding)
+    };
     let shown = checked.findings.iter().filter(is_of_document);
     let shown: Vec<_> = shown.filter(|finding| is_fault(finding) && !is_allowed(finding)).collect();
     let mut diagnostics: Vec<_> =
@@ -100,6 +105,7 @@ struct FindingContext<'a> {
     document: &'a TextDocument,
     sources: &'a Sources,
     client: &'a Client,
+    host: &'a dyn Host,
 }
 
 impl FindingContext<'_> {
@@ -121,12 +127,23 @@ impl FindingContext<'_> {
                 Severity::Error | Severity::Alarm => DiagnosticSeverity::ERROR,
             }),
             code: Some(NumberOrString::String(finding.code().into_owned())),
+            code_description: self
+                .client
+                .has_code_description
+                .then(|| self.page_of(&finding.code()))
+                .flatten(),
             source: Some(SOURCE.to_owned()),
             message,
             related_information: related.filter(|related| !related.is_empty()),
             tags,
             ..Diagnostic::default()
         }
+    }
+
+    /// Returns the link to the page that explains a code.
+    fn page_of(&self, code: &str) -> Option<CodeDescription> {
+        let href = document_uri::of_path(&self.host.explanation(code)?)?;
+        Some(CodeDescription { href })
     }
 
     /// Returns a range of the document, without the end of its line.

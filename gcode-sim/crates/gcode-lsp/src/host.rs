@@ -19,6 +19,11 @@ pub trait Host: FileAccess + Send + Sync {
         true
     }
 
+    /// Returns the file of the page that explains a code of a finding; `None` without such a page.
+    fn explanation(&self, _: &str) -> Option<PathBuf> {
+        None
+    }
+
     /// Returns the folders in a folder, sorted by name.
     fn folders(&self, path: &Path) -> Vec<PathBuf>;
 

@@ -60,6 +60,12 @@ pub(crate) struct ServerState {
     settings: BTreeMap<FileId, Settings>,
     /// On what the diagnostics of each document rest.
     checked: BTreeMap<FileId, CheckBasis>,
+    /// Number of changes of all documents.
+    changes: u64,
+    /// Last change of each document, and the last one with other programs.
+    last_changes: BTreeMap<FileId, (u64, u64)>,
+    /// Number of changes at the last job of each document.
+    jobs: BTreeMap<FileId, u64>,
     /// Faults of the configuration that were shown.
     shown_faults: BTreeSet<String>,
     /// Length of all programs that were read and no document has opened.
@@ -73,6 +79,14 @@ struct CheckBasis {
     is_in_project: bool,
     /// Stamps of all these files.
     stamps: BTreeMap<PathBuf, Option<u64>>,
+}
+
+impl CheckBasis {
+    /// Returns true if a change of a program file may change the check.
+    fn rests_on(&self, path: &Path, has_other_programs: bool) -> bool {
+        let is_near = || path.parent().is_some_and(|folder| self.surroundings.contains(folder));
+        self.called.contains(path) || has_other_programs && is_near()
+    }
 }
 
 impl ServerState {
@@ -95,6 +109,9 @@ impl ServerState {
             next_request: 0,
             settings: BTreeMap::new(),
             checked: BTreeMap::new(),
+            changes: 0,
+            last_changes: BTreeMap::new(),
+            jobs: BTreeMap::new(),
             shown_faults: BTreeSet::new(),
             read_bytes: 0,
         }
@@ -128,11 +145,13 @@ impl ServerState {
     }
 
     /// Schedules the check of a document.
-    fn check(&self, file: FileId, is_edited: bool) {
+    fn check(&mut self, file: FileId, is_edited: bool) {
         if is_other_text(&self.snapshot.path(file)) {
             return;
         }
-        _ = self.checks.send(CheckJob { snapshot: self.snapshot.clone(), file, is_edited });
+        let changes = self.changes;
+        self.jobs.insert(file, changes);
+        _ = self.checks.send(CheckJob { snapshot: self.snapshot.clone(), file, is_edited, changes });
     }
 
     /// Takes over an opened document.
@@ -263,14 +282,30 @@ impl ServerState {
     }
 
     /// Checks the documents that call programs of a file, and with other programs those that might.
-    fn changed_beside(&self, file: FileId, has_other_programs: bool) {
-        let path = self.snapshot.path(file);
-        for (other, basis) in self.checked.iter().filter(|(other, _)| **other != file) {
-            let is_near = || path.parent().is_some_and(|folder| basis.surroundings.contains(folder));
-            if basis.called.contains(&path) || has_other_programs && is_near() {
-                self.check(*other, false);
-            }
+    fn changed_beside(&mut self, file: FileId, has_other_programs: bool) {
+        self.changes += 1;
+        let last = self.last_changes.entry(file).or_default();
+        last.0 = self.changes;
+        if has_other_programs {
+            last.1 = self.changes;
         }
+        let path = self.snapshot.path(file);
+        let others = self.checked.iter().filter(|(other, _)| **other != file);
+        let others = others.filter(|(_, basis)| basis.rests_on(&path, has_other_programs));
+        for other in others.map(|(other, _)| *other).collect::<Vec<_>>() {
+            self.check(other, false);
+        }
+    }
+
+    /// Returns true if a called program, or the choice of one, has changed since the job of a check, and no later job waits.
+    fn is_outdated(&self, file: FileId, changes: u64) -> bool {
+        let is_last = self.jobs.get(&file).is_none_or(|last| *last <= changes);
+        let Some(basis) = self.checked.get(&file).filter(|_| is_last) else { return false };
+        self.last_changes.iter().any(|(other, (any, programs))| {
+            *other != file
+                && changes < *any
+                && basis.rests_on(&self.snapshot.path(*other), changes < *programs)
+        })
     }
 
     /// Reads changed files of the disk and checks what rests on them.
@@ -339,7 +374,7 @@ impl ServerState {
 
     /// Publishes the result of a check, unless the document has changed since.
     pub(crate) fn publish_check(&mut self, answer: CheckAnswer) {
-        let CheckAnswer { file, uri, version, checked } = answer;
+        let CheckAnswer { file, uri, version, changes, checked } = answer;
         let open = self.snapshot.documents.get(&file).map(|document| document.version);
         if open != version {
             return;
@@ -354,6 +389,9 @@ impl ServerState {
         let published = Arc::new(checked.diagnostics.clone());
         Arc::make_mut(&mut self.snapshot.published).insert(file, published);
         self.publish(uri, version, checked.diagnostics);
+        if self.is_outdated(file, changes) {
+            self.check(file, false);
+        }
     }
 
     fn publish(&self, uri: Uri, version: Option<i32>, diagnostics: Vec<Diagnostic>) {

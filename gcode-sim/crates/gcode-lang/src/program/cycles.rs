@@ -37,6 +37,10 @@ pub enum CycleStep {
     RigidForward,
     /// Spindle counterclockwise in rigid tapping.
     RigidReverse,
+    /// Spindle clockwise behind a tapped hole; one that only rigid tapping has started stops.
+    ForwardAgain,
+    /// Spindle counterclockwise behind a tapped hole; one that only rigid tapping has started stops.
+    ReverseAgain,
     /// G88: retract by hand.
     ManualRetract,
 }
@@ -71,9 +75,9 @@ impl Cycle {
 }
 
 use CycleStep::{
-    Dwell, DwellAtR, FeedToBottom, FeedToR, HighSpeedPeck, ManualRetract, Peck, RapidToInitial,
-    RapidToInitialInG98, RapidToR, RapidToReturnLevel, RigidForward, RigidReverse, Shift, ShiftBack,
-    SpindleForward, SpindleReverse, SpindleStop,
+    Dwell, DwellAtR, FeedToBottom, FeedToR, ForwardAgain, HighSpeedPeck, ManualRetract, Peck, RapidToInitial,
+    RapidToInitialInG98, RapidToR, RapidToReturnLevel, ReverseAgain, RigidForward, RigidReverse, Shift,
+    ShiftBack, SpindleForward, SpindleReverse, SpindleStop,
 };
 
 const fn row(code: u32, steps: &'static [CycleStep], description: &'static str) -> Cycle {
@@ -86,7 +90,7 @@ pub const HIGH_SPEED_PECK_DRILLING: Cycle = Cycle {
     ..row(730, &[HighSpeedPeck, RapidToReturnLevel], "high-speed peck drilling cycle")
 };
 #[rustfmt::skip]
-pub(super) const LEFT_HANDED_TAPPING: Cycle = row(740, &[RigidReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, SpindleReverse, RapidToInitialInG98], "left-handed tapping cycle");
+pub(super) const LEFT_HANDED_TAPPING: Cycle = row(740, &[RigidReverse, FeedToBottom, SpindleStop, Dwell, SpindleForward, FeedToR, DwellAtR, ReverseAgain, RapidToInitialInG98], "left-handed tapping cycle");
 #[rustfmt::skip]
 pub(super) const FINE_BORING: Cycle = row(760, &[FeedToBottom, Dwell, SpindleStop, Shift, RapidToReturnLevel, ShiftBack, SpindleForward], "fine boring cycle");
 /// G81: drilling cycle.
@@ -98,7 +102,7 @@ pub const PECK_DRILLING: Cycle =
     Cycle { needs_q: true, ..row(830, &[Peck, RapidToReturnLevel], "peck drilling cycle") };
 /// G84: tapping cycle.
 #[rustfmt::skip]
-pub const TAPPING: Cycle = row(840, &[RigidForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, SpindleForward, RapidToInitialInG98], "tapping cycle");
+pub const TAPPING: Cycle = row(840, &[RigidForward, FeedToBottom, SpindleStop, Dwell, SpindleReverse, FeedToR, DwellAtR, ForwardAgain, RapidToInitialInG98], "tapping cycle");
 /// G84.2: rigid tapping, in the format of the series 15.
 #[rustfmt::skip]
 pub(super) const RIGID_TAPPING: Cycle = Cycle { code: 842, is_rigid: true, description: "rigid tapping cycle", ..TAPPING };
