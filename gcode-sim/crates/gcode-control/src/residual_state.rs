@@ -54,9 +54,9 @@ impl State {
         if !keeps_modes {
             return shifted;
         }
-        let Modal { feed_mode, scaling, rotation, polar, mirror, .. } = left.modal;
+        let Modal { unit, feed_mode, scaling, rotation, polar, mirror, .. } = left.modal;
         Self {
-            modal: Modal { feed_mode, scaling, rotation, polar, mirror, ..self.modal },
+            modal: Modal { unit, feed_mode, scaling, rotation, polar, mirror, ..self.modal },
             transform: left.transform,
             polar: left.polar,
             g52_shift: left.g52_shift,
@@ -67,7 +67,7 @@ impl State {
 
 impl Control {
     /// Takes over what another run has left for the next start: the tables of offsets, the shift of G92, and, on a control whose
-    /// M30 keeps modes (3402#6 CLR and 1202#3 RLC at 0), G52, G16, G51, G51.1, G68 and the mode of the feed.
+    /// M30 keeps modes (3402#6 CLR and 1202#3 RLC at 0), G52, G16, G51, G51.1, G68, the unit and the mode of the feed.
     pub fn take_left_state(&mut self, left: &Self) {
         let keeps_modes = self.keeps_modes();
         let (own, left) = (&mut self.executor.registers, &left.executor.registers);

@@ -130,14 +130,29 @@ mod tests {
 
     /// Returns the message about the second start of a program with one hole and these blocks behind it.
     fn message(dialect: Dialect, blocks: &str) -> Option<String> {
+        message_behind("G21", dialect, blocks)
+    }
+
+    /// Returns the message about a program that begins with a code of the unit, or with none.
+    fn message_behind(unit: &str, dialect: Dialect, blocks: &str) -> Option<String> {
         let text = format!(
-            "O1\nG90 G17 G21 G94 S1000 M03\nG0 X20. Y0. Z50.\nG81 X20. Z-5. R2. F100.\nG80 Z50.\n{blocks}\nM30\n"
+            "O1\nG90 G17 {unit} G94 S1000 M03\nG0 X20. Y0. Z50.\nG81 X20. Z-5. R2. F100.\nG80 Z50.\n{blocks}\nM30\n"
         );
         let mut request = Request::new("O1.nc", text.as_bytes(), Machine::default());
         request.settings.apply_dialect(dialect);
         let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
         let mut findings = simulation.extracted.findings.into_iter();
         findings.find(|finding| finding.kind == &SECOND_START).map(|finding| finding.message)
+    }
+
+    #[test]
+    fn the_unit_is_left_to_a_start_that_commands_none() {
+        assert_eq!(
+            message_behind("", Dialect::Fanuc31i, "G20").unwrap(),
+            "the program leaves G20 in force: started again, one hole is elsewhere"
+        );
+        assert_eq!(message_behind("", Dialect::Fanuc31i, "G20\nG21"), None);
+        assert_eq!(message_behind("G21", Dialect::Fanuc31i, "G20"), None);
     }
 
     #[test]
