@@ -190,10 +190,15 @@ impl Host for EditorHost {
     }
 
     fn explanation(&self, code: &str) -> Option<PathBuf> {
-        let path = self.page_folder().ok()?.join(format!("{code}.md"));
-        if !path.exists() {
-            output::write(&path, ExplainReport::of(code)?.markdown().as_bytes()).ok()?;
+        // All servers of a version link the same page, also after a restart of the editor.
+        let folder = std::env::temp_dir().join(concat!("gcode-sim-pages-", env!("CARGO_PKG_VERSION")));
+        let path = folder.join(format!("{code}.md"));
+        let text = ExplainReport::of(code)?.markdown();
+        if std::fs::read(&path).is_ok_and(|known| known == text.as_bytes()) {
+            return Some(path);
         }
+        std::fs::create_dir_all(&folder).ok()?;
+        output::write(&path, text.as_bytes()).ok()?;
         Some(path)
     }
 
