@@ -27,8 +27,41 @@ pub(super) fn is_usual(drilled: &DrilledHole, machine: &Machine) -> bool {
     match drilled.finishing_cut {
         PassCut { is_tapping: true, .. } => false,
         PassCut { milled: Some(circle), .. } => circle.wall.is_infinite() && tool().is_none_or(is_flat),
-        _ => tool().is_none_or(|tool| !needs_hole(tool.kind)),
+        _ => tool().is_none_or(|tool| !needs_hole(tool.kind) && !makes_cone(tool.kind, tool.point())),
     }
+}
+
+/// Returns true for a tool with a cone that is no drill: the hole of its diameter ends where the cone begins.
+fn makes_cone(kind: Option<ToolKind>, point: PointShape) -> bool {
+    matches!(kind, Some(ToolKind::SpotDrill | ToolKind::Countersink | ToolKind::EndMill))
+        && matches!(point, PointShape::Pointed(_))
+}
+
+/// Reports a hole of one diameter that only tools with a cone cut, and not to its depth.
+fn cone(judged: &Judgement<'_>) -> Option<Diagnostic> {
+    let nominal = judged.nominal;
+    let diameter = nominal.diameter.filter(|_| nominal.features.is_empty())?;
+    let cuts = || judged.near.iter().chain(&judged.far);
+    if !cuts().all(|cut| !cut.is_circle() && !cut.is_thread() && makes_cone(cut.kind, cut.point)) {
+        return None;
+    }
+    let depth = |cut: &Cut<'_>| cut.full_depth(diameter).unwrap_or(cut.tip);
+    let deepest = cuts().max_by(|one, other| depth(one).total_cmp(&depth(other)))?;
+    let full = depth(deepest).max(0.0);
+    let limit = judged.comparison.tolerances.depth;
+    // A tip that isn't as deep either has its own finding.
+    let is_as_deep = cuts().any(|cut| !exceeds(nominal.depth - cut.tip, limit));
+    if !is_as_deep || !exceeds(nominal.depth - full, limit) {
+        return None;
+    }
+    let message = format!(
+        "hole {}: {} has a cone: below {full:.3} mm the hole is narrower than Φ{diameter}, and it is {} mm deep",
+        judged.id,
+        deepest.name(),
+        nominal.depth
+    );
+    let finding = Diagnostic::new(&TOOL_KIND, message).with_backtrace(deepest.pass.backtrace.clone());
+    Some(finding.help("drill the hole, or enter a countersink as the feature of the hole in the reference"))
 }
 
 /// Adds the findings on the kinds of the tools that cut a hole, and the tools whose hole the program doesn't drill.
@@ -55,6 +88,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool) {
             findings.extend(torn(judged, cut));
         }
     }
+    findings.extend(cone(judged));
     gaps.dedup();
     judged.findings.extend(findings);
     judged.gaps.extend(gaps);
