@@ -141,8 +141,8 @@ pub struct Slice {
     /// Values that decide whether the run cuts elsewhere.
     further: Marks,
     motion: Rc<Cell<Marks>>,
-    /// Values that decide the length offset behind the block, not in it.
-    length_behind_block: Marks,
+    /// Values that decide the length offset behind a G53, from the next move on that commands no length.
+    restored_length: Marks,
     /// Marks of a motion from or to the position behind the last block.
     machine_motion: Marks,
     /// Marks of moves that wait for the next one.
@@ -343,7 +343,6 @@ impl Observer for Slice {
     }
 
     fn after_block(&mut self, control: &Control) {
-        self.machine.length |= std::mem::take(&mut self.length_behind_block);
         let level = control.vars().level();
         while level < self.variables.level() {
             self.variables.pop_level();

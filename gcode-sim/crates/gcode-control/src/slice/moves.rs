@@ -60,7 +60,7 @@ impl Slice {
         self.machine.length |= self.branches.marks();
         if is_on_machine && block.registers.data.settings.assumes_restored_length() {
             let marks = self.outside(OutsideValue::RestoredLength, Some(1.0), block.flow, block.op);
-            self.length_behind_block = marks;
+            self.restored_length = marks;
         }
     }
 

@@ -296,14 +296,29 @@ impl Slice {
         };
         let h = number_of(b'H', registers.state.modal_words.h);
         match modes.length {
-            Length::Off => self.machine.length = control | self.machine.group(ModalGroup::Length),
+            Length::Off => {
+                self.restored_length = Marks::NONE;
+                self.machine.length = control | self.machine.group(ModalGroup::Length);
+            }
             _ if registers.state.modal.length != modes.length
                 || list.iter().any(|word| word.letter == b'H') =>
             {
                 let marks = self.machine.code(b'H') | self.machine.tool_table | control;
+                self.restored_length = Marks::NONE;
                 self.machine.length = marks | self.length_marks(block, h);
             }
-            _ => {}
+            _ => {
+                let on_machine =
+                    [OneShot::MachineCoordinateSystem, OneShot::Reference, OneShot::SecondReference];
+                let stays = modes.one_shot.is_some_and(|one| on_machine.contains(&one));
+                let is_along_tool = |word: &MarkedWord| word.letter == b'Z';
+                let moves_along = list.iter().any(is_along_tool)
+                    || modes.is_in_cycle
+                    || !registers.state.transform.is_identity();
+                if moves_along && !stays {
+                    self.machine.length |= std::mem::take(&mut self.restored_length);
+                }
+            }
         }
         let d = number_of(b'D', registers.state.modal_words.d);
         let begins =

@@ -176,6 +176,7 @@ fn switches_signals_lengths_and_codes_of_the_builder_are_assumptions() {
     assert_assumptions(&retracted("G53 Z0"), 2, &["EVO=1@9: 2"]);
     assert_assumptions(&retracted("G53 Z0\nG43 H1 Z50."), 2, &[]);
     assert_assumptions(&retracted("G53 X0"), 2, &[]);
+    assert_assumptions(&retracted("G53 Z0\nT2 M06\nG0 X20. Y10.\nG43 H1 Z50."), 2, &[]);
     assert_assumptions(
         "G81 X10. Y10. Z-5. R2. F100.\nG80\nG55\nG81 X20. Y10. Z-5. R2.",
         2,
