@@ -30,6 +30,10 @@ pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Resul
     }
     let files =
         by_file.into_iter().filter_map(|(file, edits)| Some((file, snapshot.uri(file)?.clone(), edits)));
+    // The order in which files were opened decides nothing.
+    let mut files: Vec<_> = files.collect();
+    files.sort_by(|(_, one, _), (_, other, _)| one.as_str().cmp(other.as_str()));
+    let files = files.into_iter();
     if !snapshot.client.has_document_changes {
         let changes = files.map(|(_, uri, edits)| (uri, edits)).collect();
         return Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() });
