@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::case::{ACCEPTED, Case};
 use super::main_program::{self, MainProgram};
 use crate::cli::{UsageError, input};
-use gcode_session::files::begins_program;
+use gcode_session::files::{PROGRAM_ENDINGS, begins_program};
 
 /// Folder of a case's called programs; a folder below it is a case only if it has an accepted result.
 const LIBRARY: &str = "lib";
@@ -127,10 +127,9 @@ fn accepted_label(path: &Path) -> Option<String> {
 /// Returns true for a file with the ending of a program, and for one with `.txt` or without ending that begins as a program
 /// does.
 fn is_program(path: &Path) -> bool {
-    const ENDINGS: [&str; 7] = ["nc", "tap", "eia", "min", "cnc", "ncd", "ngc"];
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_ascii_lowercase();
     match ending.as_str() {
         "txt" | "" => input::program(path).is_ok_and(|text| begins_program(&text)),
-        ending => ENDINGS.contains(&ending),
+        ending => PROGRAM_ENDINGS.contains(&ending),
     }
 }

@@ -1,4 +1,4 @@
-//! Proof of a box whose ways are joined at each turn of a loop: one state for the values that its variables have on any way.
+//! Proof over a box that joins the branches of a loop at each iteration: one state has the values of all branches.
 //!
 //! A variable that differs between ways becomes an input of its own, whose range has its values on every way. What relates it
 //! to others is kept in two forms: its distance from another input, and conditions that hold on every way, found among

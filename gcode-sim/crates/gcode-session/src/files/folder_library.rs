@@ -8,6 +8,9 @@ use gcode_lang::program::Library;
 use gcode_lang::source::{Bytes, SourceId};
 use gcode_lang::syntax::{self, FileItem, ast::ProgramName};
 
+/// Endings that only programs have.
+pub const PROGRAM_ENDINGS: [&str; 7] = ["nc", "tap", "eia", "min", "cnc", "ncd", "ngc"];
+
 /// Folders of called programs; the first folder that has a program wins, and in it the file named after its number.
 #[derive(Debug)]
 pub struct FolderLibrary<F> {
@@ -120,10 +123,10 @@ impl<F: FileAccess> Library for FolderLibrary<F> {
         // An earlier folder wins, also where another file name has the program.
         let path = match named {
             Some(path) if self.folders.first().is_some_and(|own| path.parent() == Some(own)) => path,
-            named => {
-                let holder = self.find_holder(&program)?;
-                named.filter(|path| path.parent() == holder.parent()).unwrap_or(holder)
-            }
+            named => match (named, self.find_holder(&program)) {
+                (Some(named), Some(holder)) if named.parent() != holder.parent() => holder,
+                (named, holder) => named.or(holder)?,
+            },
         };
         Some((path.display().to_string(), self.bytes(&path)?))
     }
@@ -147,8 +150,8 @@ impl<F: FileAccess> Library for FolderLibrary<F> {
 /// Returns true if a file has an ending that only programs have, or none: texts of other kinds may have a line that looks like
 /// the head of a program.
 fn has_ending_of_programs(path: &Path) -> bool {
-    const PROGRAMS: [&str; 6] = ["nc", "tap", "cnc", "eia", "min", "ncd"];
-    let is_listed = |ending: &OsStr| PROGRAMS.iter().any(|program| ending.eq_ignore_ascii_case(program));
+    let is_listed =
+        |ending: &OsStr| PROGRAM_ENDINGS.iter().any(|program| ending.eq_ignore_ascii_case(program));
     path.extension().is_none_or(is_listed)
 }
 

@@ -3,7 +3,7 @@
 mod folder_library;
 mod project;
 
-pub use folder_library::{FolderLibrary, begins_program, program_number};
+pub use folder_library::{FolderLibrary, PROGRAM_ENDINGS, begins_program, program_number};
 pub use project::{MACHINE_FILE, Project, ProjectError, ProjectPaths, project_folder};
 
 use std::path::{Path, PathBuf};
