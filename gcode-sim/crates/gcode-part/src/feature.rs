@@ -167,11 +167,13 @@ impl Feature {
         let number = |word: &str| word.parse::<f64>().map_err(|_| format!("'{word}' is not a number"));
         let length = |word: &str| number(word).map(|value| value * unit);
         let size = words.next().ok_or("a feature needs its diameter behind its kind")?;
-        let (diameter, pitch) = match thread_size::parse(size).filter(|_| kind == FeatureKind::Tap) {
-            Some(size) => size.map(|(diameter, pitch)| (diameter, Some(pitch)))?,
-            None => (length(size)?, None),
+        let thread = thread_size::parse(size).filter(|_| kind == FeatureKind::Tap).transpose()?;
+        let mut feature = Self {
+            diameter: thread.map_or_else(|| length(size), |thread| Ok(thread.diameter))?,
+            pitch: thread.map(|thread| thread.pitch),
+            hand: thread.and_then(|thread| thread.hand).unwrap_or_default(),
+            ..Self::of(kind)
         };
-        let mut feature = Self { diameter, pitch, ..Self::of(kind) };
         for word in words {
             match word.split_once('=') {
                 None if feature.depth.is_none() => feature.depth = Some(length(word)?),

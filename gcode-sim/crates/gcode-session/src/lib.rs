@@ -383,6 +383,7 @@ pub fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
     HoleExtractor::new(&request.machine)
         .with_metal(Metal { body: metal.body.or(request.part), ..metal })
         .with_straight_rapids(request.settings.rapids_are_straight)
+        .with_dialect(request.settings.codes)
         .with_process_limits(&request.process_limits)
 }
 

@@ -29,18 +29,21 @@ pub(super) struct MarkedEvents<S> {
     pub(super) sink: S,
     motion: Rc<Cell<Marks>>,
     pub(super) strokes: Vec<Marks>,
+    /// Outside values on which a feed depends, moves of G31 left out.
+    pub(super) feeds: Marks,
     position: Position,
     /// Direction of the last move, and whether it was a rapid.
     last: Option<(Position, bool)>,
-    /// The stroke has fed: rapids before a feed decide no hole but by their end, from which it feeds.
-    has_fed: bool,
+    /// Start and direction of the stroke's first feed; `None` before it. Rapids before a feed decide no hole but by their end,
+    /// from which it feeds.
+    first_feed: Option<(Position, Position)>,
 }
 
 impl<S> MarkedEvents<S> {
     /// Hands the events on to a sink; `motion` are the values on which the next move depends.
     pub(super) fn new(sink: S, motion: Rc<Cell<Marks>>) -> Self {
         let (strokes, position) = (Vec::new(), Position::default());
-        Self { sink, motion, strokes, position, last: None, has_fed: false }
+        Self { sink, motion, strokes, feeds: Marks::NONE, position, last: None, first_feed: None }
     }
 }
 
@@ -77,21 +80,35 @@ impl<S: EventSink> EventSink for MarkedEvents<S> {
             }
             if !continues {
                 self.strokes.push(Marks::NONE);
-                self.has_fed = false;
+                self.first_feed = None;
             }
             self.last = Some((direction, is_rapid));
         } else if self.strokes.is_empty() {
             self.strokes.push(Marks::NONE);
         }
         let stroke = self.strokes.len() - 1;
-        self.has_fed |= !is_rapid;
-        if self.has_fed {
+        if matches!(event.kind, EventKind::Feed { .. } | EventKind::Arc { .. }) {
+            self.feeds |= self.motion.get();
+        }
+        if !is_rapid {
+            self.first_feed.get_or_insert((from, direction));
+        }
+        if self.first_feed.is_some_and(|(start, along)| !(is_rapid && is_behind(&start, &along, [&from, to])))
+        {
             self.strokes[stroke] |= self.motion.get();
         }
         let place = Span { source: MARKER, start: stroke as u32, end: stroke as u32 };
         let calls = Some(Arc::new(Call { calling_block: place, outer_calls: event.calls.clone() }));
         self.sink.event(&Event { calls: &calls, ..*event });
     }
+}
+
+/// Returns true if a stroke that first fed from `start` in a direction has come out again, and no point lies farther along.
+fn is_behind(start: &Position, direction: &Position, points: [&Position; 2]) -> bool {
+    points.iter().all(|point| {
+        let along: f64 = (0..MAX_AXES).map(|axis| (point[axis] - start[axis]) * direction[axis]).sum();
+        along <= 0.0
+    })
 }
 
 /// Returns the number of a marked event's stroke, and the calls that led to its block.

@@ -225,8 +225,10 @@ impl Slice {
         if is_cut {
             self.further |= words.cut;
         }
-        let mut moved = Marks::NONE;
+        let changes_length = modes.length != registers.state.modal.length;
+        let (mut moved, mut moved_axes) = (Marks::NONE, 0_u32);
         for (axis, word) in named {
+            moved_axes |= 1 << axis;
             if !is_cut {
                 // In another mode the rapid is a cut.
                 self.further |= self.machine.cutting;
@@ -263,7 +265,11 @@ impl Slice {
                 false => self.outside(OutsideValue::SkipSignal, None, block.flow, block.op),
             };
             self.machine.skip_position = moved | signal;
-            self.machine.axes.iter_mut().for_each(|axis| *axis |= signal);
+            for (axis, marks) in self.machine.axes.iter_mut().enumerate() {
+                if changes_length || moved_axes >> axis & 1 == 1 {
+                    *marks |= signal;
+                }
+            }
             match modes.one_shot {
                 Some(OneShot::Measure(MeasuringCode::WorkZero | MeasuringCode::WorkCentre)) => {
                     self.machine.work_table |= moved | signal | words.cut;

@@ -258,15 +258,17 @@ impl Slice {
                     let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
                     self.machine.rest |= marks;
                 }
-                // An output may drive anything.
+                // An output may drive anything, unless the code is declared.
                 Some(MCodeEffect::Output { .. }) => {
                     let output = list.iter().find(|word| word.letter == b'P');
                     if let Some(number) = output.and_then(|word| word.value) {
                         let marks = control | output.map_or(Marks::NONE, |word| word.marks) | marked.marks;
                         self.variables.set_system(12_000 + number as u32, marks);
                     }
-                    let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
-                    self.machine.rest |= marks;
+                    if settings.declared_codes.find(b'M', 10 * code).is_none() {
+                        let marks = self.outside(OutsideValue::Auxiliary(code), None, block.flow, block.op);
+                        self.machine.rest |= marks;
+                    }
                 }
                 None if settings.declared_codes.find(b'M', 10 * code).is_some()
                     || m_codes::is_auxiliary(code, settings.codes) => {}

@@ -95,10 +95,12 @@ use self::strokes::Strokes;
 use self::tool_change::ChangeRetract;
 use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
+use gcode_lang::control::Dialect;
 use gcode_lang::motion::{
     Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
     StopKind,
 };
+use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
 use gcode_part::{Metal, ProcessLimits, Surface};
@@ -132,6 +134,7 @@ pub struct HoleExtractor<'m> {
     cutting_state: CuttingState,
     process_limits: ProcessLimits,
     /// Rapids are checked; they decide no hole.
+    dialect: Dialect,
     checks_rapids: bool,
     /// Frame of the part at `axis_position`.
     frame: Frame,
@@ -214,6 +217,7 @@ impl<'m> HoleExtractor<'m> {
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
+            dialect: machine.dialect,
             checks_rapids: true,
             frame,
             pose: machine.tool_pose(&axis_position, &setup).relative_to(&frame),
@@ -272,6 +276,13 @@ impl<'m> HoleExtractor<'m> {
         if are_straight {
             self.rapid_path = RapidPath::Straight;
         }
+        self
+    }
+
+    /// Sets the dialect of the control: which M codes it executes itself.
+    #[must_use]
+    pub fn with_dialect(mut self, dialect: Dialect) -> Self {
+        self.dialect = dialect;
         self
     }
 
@@ -455,7 +466,9 @@ impl EventSink for HoleExtractor<'_> {
                 }
             }
             EventKind::Auxiliary { code } => {
-                if !self.apply_clamp_code(*code) {
+                let is_output =
+                    || matches!(m_codes::find(*code, self.dialect), Some(MCodeEffect::Output { .. }));
+                if !self.apply_clamp_code(*code) && !is_output() {
                     self.cutting_state.builder_code = Some(*code);
                 }
             }

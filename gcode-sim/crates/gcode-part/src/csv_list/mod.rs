@@ -239,15 +239,13 @@ impl Cells<'_> {
                 None => Ok(None),
             };
         }
-        let (diameter, pitch) = match thread_size::parse(&text).filter(|_| kind == FeatureKind::Tap) {
-            Some(size) => size.map(|(diameter, pitch)| (diameter, Some(pitch)))?,
-            None if kind == FeatureKind::Tap => match self.parse(name, &text) {
-                Ok(diameter) => (diameter, None),
-                Err(message) => {
-                    return Err(format!("{message}, or a thread such as M8, M8x1, 1/4-20 or G1/4"));
-                }
-            },
-            None => (self.parse(name, &text)?, None),
+        let thread = thread_size::parse(&text).filter(|_| kind == FeatureKind::Tap).transpose()?;
+        let diameter = match (thread, kind) {
+            (Some(thread), _) => thread.diameter,
+            (None, FeatureKind::Tap) => self
+                .parse(name, &text)
+                .map_err(|message| format!("{message}, or a thread such as M8, M8x1, 1/4-20 or G1/4"))?,
+            (None, _) => self.parse(name, &text)?,
         };
         let depth = own("depth");
         let written = self.text(name).to_owned();
@@ -264,14 +262,15 @@ impl Cells<'_> {
             diameter,
             depth: self.number(&depth)?,
             angle: self.number(&own("angle"))?,
-            pitch: self.number(&own("pitch"))?.or(pitch),
+            pitch: self.number(&own("pitch"))?.or(thread.map(|thread| thread.pitch)),
             to: match self.text(&to) {
                 "" | "point" => DepthTo::Point,
                 "full" => DepthTo::Full,
                 other => return Err(format!("column '{to}' is '{other}': full or point is required")),
             },
             hand: match self.text(&hand) {
-                "" | "right" => Hand::Right,
+                "" => thread.and_then(|thread| thread.hand).unwrap_or_default(),
+                "right" => Hand::Right,
                 "left" => Hand::Left,
                 other => return Err(format!("column '{hand}' is '{other}': right or left is required")),
             },

@@ -62,7 +62,7 @@ impl<'r> SecondRun<'r> {
         let mut events = MarkedEvents::new(sink, slice.motion());
         self.control.run_observed(request.limits, &mut NoLibrary, &mut events, &mut slice);
         // What mills decides as much as what makes a hole.
-        let fed: Marks = events.strokes.iter().copied().collect();
+        let fed = events.feeds;
         let mut reads = slice.into_reads();
         reads
             .iter_mut()
