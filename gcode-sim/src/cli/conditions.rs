@@ -95,7 +95,7 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "MACHINE.toml")]
     pub(super) machine: Option<PathBuf>,
 
-    /// A code that calls a program, e.g. G201=9010, M50=9020, M6=9001 or T=9000 (repeatable)
+    /// A code that calls a program (G201=9010, M6=9001, T=9000), waits (G4.1=wait) or does nothing here (M10=nothing) (repeatable)
     #[arg(long, value_name = "CODE=PROGRAM")]
     pub(super) code: Vec<String>,
 

@@ -21,6 +21,7 @@ impl HoleExtractor<'_> {
         let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         self.find_cores(&mut holes);
+        self.report_flank_cuts(&holes);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);
         self.report_unknown_positions(&holes);

@@ -92,6 +92,7 @@ use self::milling::Milling;
 use self::per_block::Findings;
 use self::profile::Profile;
 use self::strokes::Strokes;
+use self::thread_walls::FlankCut;
 use self::tool_change::ChangeRetract;
 use self::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
@@ -160,6 +161,7 @@ pub struct HoleExtractor<'m> {
     milling: Milling,
     /// Blocks that mill stated pockets.
     milled_blocks: MilledBlocks,
+    flank_cuts: Vec<FlankCut>,
     length_mismatches: Vec<LengthMismatch>,
     /// Tools that have had a length offset.
     offset_tools: BTreeSet<Option<u32>>,
@@ -236,6 +238,7 @@ impl<'m> HoleExtractor<'m> {
             milling: Milling::default(),
             milled_blocks: MilledBlocks::default(),
             length_mismatches: Vec::new(),
+            flank_cuts: Vec::new(),
             offset_tools: BTreeSet::new(),
             offset_origin: None,
             is_probe_in_metal: false,

@@ -1,12 +1,13 @@
-//! Threads of nominal holes that a tool cuts away: only a tap, and a mill along its helix, may enter them, and no rapid.
+//! Threads of nominal holes that a tool cuts away: only a tap, and a mill that goes along its helix, may enter them, and no
+//! rapid.
 use nalgebra::{Point3, Vector3};
 
-use super::HoleExtractor;
 use super::rapids::format_point;
+use super::{DrilledHole, HoleExtractor};
 use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
-use crate::machine::{ToolKind, tool_name};
+use crate::machine::{PointShape, ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::Event;
+use gcode_lang::motion::{Backtrace, Event};
 use gcode_lang::units::Deg;
 use gcode_part::{NOISE, NominalAxis, NominalThread, exceeds};
 
@@ -29,7 +30,99 @@ const NOWHERE: [f64; 2] = [1.0, 0.0];
 /// Least way across an axis that counts, mm and mm².
 const MIN_ACROSS: f64 = 1e-9;
 
+/// Largest part of the pitch by which the lead of a mill's helix is another one.
+const MAX_LEAD_SHARE: f64 = 0.2;
+
+/// Largest distance of a mill's helix from the axis of the thread that it cuts, mm.
+const MAX_OFF_AXIS: f64 = 0.5;
+
+/// Number of level feeds into threads that are kept.
+const MAX_FLANK_CUTS: usize = 10_000;
+
+/// Level feed of a mill into the flanks of a thread: a fault, unless the mill also goes along the thread.
+#[derive(Debug)]
+pub(super) struct FlankCut {
+    tool: Option<u32>,
+    entry: Point3<f64>,
+    pitch: f64,
+    backtrace: Backtrace,
+    message: String,
+}
+
+impl FlankCut {
+    /// Returns true if the tool goes along the thread in one of the holes.
+    fn is_lead_in(&self, holes: &[DrilledHole]) -> bool {
+        let mut passes = holes.iter().flat_map(DrilledHole::passes);
+        passes.any(|pass| {
+            let spoke = self.entry - pass.cut.bottom;
+            let is_here = (spoke - pass.axis * spoke.dot(&pass.axis)).norm() <= MAX_OFF_AXIS;
+            let helix = pass.cut.milled.and_then(|circle| circle.helix);
+            let follows = helix.is_some_and(|helix| {
+                (helix.lead.abs() - self.pitch).abs() <= MAX_LEAD_SHARE * self.pitch || self.pitch == 0.0
+            });
+            pass.tool == self.tool && is_here && follows
+        })
+    }
+}
+
 impl HoleExtractor<'_> {
+    /// Reports the level feeds into threads by mills that go along none.
+    pub(super) fn report_flank_cuts(&mut self, holes: &[DrilledHole]) {
+        for cut in std::mem::take(&mut self.flank_cuts).into_iter().filter(|cut| !cut.is_lead_in(holes)) {
+            self.findings.add(&FEED_BESIDE_HOLE, &cut.backtrace, 3, |finding| {
+                Diagnostic::new(finding, cut.message)
+                    .help("keep the mill's edge within the hole before the thread; only a feed along the helix enters it")
+            });
+        }
+    }
+
+    /// Records a level feed of a flat tool whose edge enters the flanks of a thread.
+    fn record_flank_cut(
+        &mut self,
+        event: &Event<'_>,
+        path: &[Point3<f64>],
+        axis: &Vector3<f64>,
+        diameter: f64,
+    ) {
+        let tool = self.setup.tool;
+        let is_flat =
+            matches!(self.machine.kind_of(tool), None | Some(ToolKind::EndMill | ToolKind::Counterbore));
+        let is_pointed = matches!(self.machine.point_of(tool), PointShape::Pointed(_));
+        let [Some(from), Some(to)] = [path.first(), path.last()] else { return };
+        if !is_flat || is_pointed {
+            return;
+        }
+        let axes = self.strokes.nominal_axes();
+        let found = [to, from].into_iter().find_map(|end| axes.threaded([end, end], axis));
+        let Some((hole, thread, _)) = found else { return };
+        let depth = (hole.entry - to).dot(&hole.out);
+        let is_within =
+            exceeds(depth - thread.span[0], MAX_FLANK_CUT) && !exceeds(depth - thread.span[1], MAX_FLANK_CUT);
+        let radius = diameter / 2.0;
+        let mut aside = 0.0_f64;
+        for chord in path.windows(2).filter(|_| is_within) {
+            for [begin, end] in in_flanks([&chord[0], &chord[1]], hole, thread, radius) {
+                for share in [begin, end] {
+                    aside = aside.max(split(&(chord[0] + (chord[1] - chord[0]) * share), hole).0.norm());
+                }
+            }
+        }
+        if !exceeds(aside + radius - thread.core, MAX_FLANK_CUT) {
+            return;
+        }
+        let message = format!(
+            "{} goes up to {aside:.3} mm beside the axis, {depth:.3} mm deep, and cuts {:.3} mm into the thread: the hole \
+             before the thread is Φ{:.3}",
+            tool_name(tool),
+            aside + radius - thread.core,
+            2.0 * thread.core,
+        );
+        let (entry, pitch, backtrace) = (hole.entry, thread.pitch, event.backtrace());
+        if self.flank_cuts.len() < MAX_FLANK_CUTS {
+            self.flank_cuts.push(FlankCut { tool, entry, pitch, backtrace, message });
+        }
+    }
+
     /// Reports a motion through points beside the axis of a threaded hole that furrows its flanks. It goes more than a turn farther
     /// along the axis than the thread on the same way round.
     pub(super) fn check_thread_wall(&mut self, event: &Event<'_>, path: &[Point3<f64>]) {
@@ -43,8 +136,11 @@ impl HoleExtractor<'_> {
         let travel = to - from;
         let is_tap = self.machine.kind_of(self.setup.tool) == Some(ToolKind::Tap);
         let is_level = travel.dot(&axis).abs() <= MAX_FLANK_CUT;
-        if is_level || is_tap || self.cutting_state.rigid_run != 0 {
+        if is_tap || self.cutting_state.rigid_run != 0 {
             return;
+        }
+        if is_level {
+            return self.record_flank_cut(event, path, &axis, diameter);
         }
         let is_along = path.len() == 2 && axis.cross(&travel).norm() <= MAX_AXIAL_SINE * travel.norm();
         let (upper, lower) = if travel.dot(&axis) < 0.0 { (from, to) } else { (to, from) };
@@ -71,7 +167,8 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Reports a rapid away from the axis of a threaded hole whose edge enters the flanks; returns true if it does.
+    /// Reports a rapid away from the axis of a threaded hole, or down along it, whose edge enters the flanks; returns true if it
+    /// does.
     pub(super) fn check_rapid_into_thread(&mut self, event: &Event<'_>, from: &Point3<f64>) -> bool {
         if !self.strokes.nominal_axes().has_threads() {
             return false;
@@ -87,10 +184,14 @@ impl HoleExtractor<'_> {
         let before = (spoke - hole.out * spoke.dot(&hole.out)).norm();
         let depth = (hole.entry - to).dot(&hole.out).min(thread.span[1]);
         let reach = aside + diameter / 2.0;
-        if !exceeds(aside - before, MAX_FLANK_CUT)
+        let point = self.machine.point_of(self.setup.tool).length(diameter).unwrap_or(diameter / 2.0);
+        let goes_aside =
+            exceeds(aside - before, MAX_FLANK_CUT) && exceeds(depth - thread.span[0], MAX_FLANK_CUT);
+        let goes_down = exceeds((from - to).dot(&hole.out), MAX_FLANK_CUT)
+            && exceeds(depth - point - thread.span[0], MAX_FLANK_CUT);
+        if !(goes_aside || goes_down)
             || !exceeds(reach - thread.core, MAX_FLANK_CUT)
             || exceeds(reach - thread.major, MAX_FLANK_CUT)
-            || !exceeds(depth - thread.span[0], MAX_FLANK_CUT)
         {
             return false;
         }
@@ -101,7 +202,7 @@ impl HoleExtractor<'_> {
                 reach - core / 2.0,
                 format_point(&to),
             );
-            Diagnostic::new(finding, message).help("only a feed along the helix may enter the thread")
+            Diagnostic::new(finding, message).help("only a feed along the helix, or of a tap, may enter the thread")
         });
         true
     }

@@ -272,6 +272,11 @@ impl Machine {
         self.find_tool(tool?)?.diameter
     }
 
+    /// Returns the shape of the end of the tool in the spindle.
+    pub(crate) fn point_of(&self, tool: Option<u32>) -> PointShape {
+        tool.and_then(|number| self.find_tool(number)).map_or(PointShape::Unknown, Tool::point)
+    }
+
     /// Returns the kind of the tool in the spindle; `None` if the tool or its kind is unknown.
     pub(crate) fn kind_of(&self, tool: Option<u32>) -> Option<ToolKind> {
         self.find_tool(tool?)?.kind

@@ -5,11 +5,12 @@ use gcode_lang::similar;
 
 /// Columns of a list, with other names of each; a feature's own columns are beside them.
 const COLUMNS: [(&str, &[&str]); 11] = [
-    ("id", &["hole", "no", "nr", "no.", "nr.", "孔号", "序号"]),
+    ("id", &["hole", "no", "nr", "no.", "nr.", "tag", "孔号", "序号"]),
     (
         "x",
         &[
             "x pos",
+            "x loc",
             "xpos",
             "pos x",
             "posx",
@@ -25,6 +26,7 @@ const COLUMNS: [(&str, &[&str]); 11] = [
         "y",
         &[
             "y pos",
+            "y loc",
             "ypos",
             "pos y",
             "posy",
@@ -40,6 +42,7 @@ const COLUMNS: [(&str, &[&str]); 11] = [
         "z",
         &[
             "z pos",
+            "z loc",
             "zpos",
             "pos z",
             "posz",

@@ -13,13 +13,21 @@ use super::feature::{DepthTo, Feature, FeatureKind, Hand};
 use super::hole::{Hole, HoleList, Unit};
 use super::read::{check, complete};
 use crate::reader::FileError;
-use crate::thread_size;
+use crate::{exceeds, thread_size};
 
 /// Beginning of the last line of a list whose run stopped before its end.
 pub const STOPPED: &str = "# stopped: ";
 
 /// Depth of a hole whose list gives none, until that of the program is known, mm.
 const OPEN_DEPTH: f64 = 1.0;
+
+/// Largest difference between a pitch in a column and that of the thread's designation, mm.
+const SAME_PITCH: f64 = 0.001;
+
+/// Returns true if a depth says that the hole goes through, as drawings do.
+fn is_through(depth: &str) -> bool {
+    ["thru", "through", "thru all", "through all", "durchgehend", "通孔"].contains(&depth.to_lowercase().as_str())
+}
 
 /// A list with what its reader assumed.
 #[derive(Debug)]
@@ -190,7 +198,23 @@ impl Cells<'_> {
             },
             ..Hole::default()
         };
+        if is_through(self.text("depth")) {
+            return Err(format!(
+                "column 'depth' is '{}': the thickness of the part is required, and true in a column 'through'",
+                self.text("depth")
+            ));
+        }
         let depth = self.number("depth")?;
+        if let Some((depth, feature)) = depth.filter(|_| !hole.through).and_then(|depth| {
+            let is_deeper = |feature: &&Feature| exceeds(feature.depth.unwrap_or(0.0) - depth, 0.0);
+            hole.features.iter().find(is_deeper).map(|feature| (depth, feature))
+        }) {
+            return Err(format!(
+                "the depth of the hole, {depth}, is less than that of its {}, {}: it counts to the deepest point",
+                feature.kind.name(),
+                feature.depth.unwrap_or(0.0)
+            ));
+        }
         let is_open = depth.is_none() && hole.features.is_empty();
         if is_open && hole.through {
             return Err("column 'depth' is '': a through hole needs the thickness of the part".to_owned());
@@ -247,6 +271,12 @@ impl Cells<'_> {
                 .map_err(|message| format!("{message}, or a thread such as M8, M8x1, 1/4-20 or G1/4"))?,
             (None, _) => self.parse(name, &text)?,
         };
+        let own_pitch = self.number(&own("pitch"))?;
+        if let (Some(own), Some(thread)) = (own_pitch, thread)
+            && exceeds((own - thread.pitch).abs(), SAME_PITCH)
+        {
+            return Err(format!("column '{name} pitch' is {own}, and {text} has the pitch {:.4}", thread.pitch));
+        }
         let depth = own("depth");
         let written = self.text(name).to_owned();
         let is_deep = self.number(&depth)?.is_some() || kind == FeatureKind::Countersink;
@@ -262,7 +292,7 @@ impl Cells<'_> {
             diameter,
             depth: self.number(&depth)?,
             angle: self.number(&own("angle"))?,
-            pitch: self.number(&own("pitch"))?.or(thread.map(|thread| thread.pitch)),
+            pitch: own_pitch.or(thread.map(|thread| thread.pitch)),
             to: match self.text(&to) {
                 "" | "point" => DepthTo::Point,
                 "full" => DepthTo::Full,
