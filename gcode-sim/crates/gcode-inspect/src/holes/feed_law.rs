@@ -162,9 +162,20 @@ impl HoleExtractor<'_> {
 
     /// Checks the body of the tool in a feed while an axis rotates; the feed is counted where it meets metal that may go.
     pub(super) fn check_turning_feed(&mut self, event: &Event<'_>, (from, to): (&Position, &Position)) {
-        let Some(body) = self.surface.filter(|_| self.has_left_start && self.metal.holes.is_some()) else {
+        let Some(body) = self.surface else {
+            if self.positions.is_known(self.machine)
+                && let Some(gouge) = self.turned_body_gouge(&AxisMotion { from, to, arc: None })
+            {
+                self.report_gouge(&event.backtrace(), gouge);
+            }
+            if self.is_feed_unsearched.take() {
+                self.unsearched_feeds.count(|| event.backtrace());
+            }
             return;
         };
+        if !self.has_left_start || self.metal.holes.is_none() {
+            return;
+        }
         let (setup, axis) = (self.setup, self.pose.axis);
         let Some(axis) = axis.filter(|_| self.positions.is_known(self.machine)) else { return };
         let path = AxisBox::line(self.machine, &setup, from, to);

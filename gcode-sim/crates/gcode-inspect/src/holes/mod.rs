@@ -54,6 +54,7 @@ mod swept_tool;
 mod tests;
 mod thread_walls;
 mod tool_change;
+mod turned_body;
 mod turning_feed;
 pub(crate) mod unknown_axes;
 mod wall_cut;
@@ -469,9 +470,9 @@ impl EventSink for HoleExtractor<'_> {
                 }
             }
             EventKind::Auxiliary { code } => {
-                let is_output =
-                    || matches!(m_codes::find(*code, self.dialect), Some(MCodeEffect::Output { .. }));
-                if !self.apply_clamp_code(*code) && !is_output() {
+                let effect = m_codes::find(*code, self.dialect);
+                let is_output = matches!(effect, Some(MCodeEffect::Output { .. }));
+                if !self.apply_clamp_code(*code) && !is_output {
                     self.cutting_state.builder_code = Some(*code);
                 }
             }

@@ -62,7 +62,8 @@ impl HoleExtractor<'_> {
             RapidPath::Any => None,
         };
         let Some(legs) = legs else {
-            let is_reported = self.check_path(event, (from, to), start);
+            let is_reported =
+                self.check_path(event, (from, to), start) || self.check_turns_alone(event, (from, to));
             if !is_reported && (self.has_left_start || self.surface.is_none()) {
                 let is_reported = self.check_box(event, &all, from);
                 if !is_reported {
@@ -77,6 +78,21 @@ impl HoleExtractor<'_> {
             self.check_leg(event, (from, to), begin, round);
             from = to;
         }
+    }
+
+    /// Checks a rotation before the other axes of a rapid move, and one behind them; returns true if one cuts.
+    fn check_turns_alone(&mut self, event: &Event<'_>, (from, to): (&Position, &Position)) -> bool {
+        if self.surface.is_some() {
+            return false;
+        }
+        let (mut first, mut last) = (*from, *to);
+        for (axis, _) in self.machine.axes.iter().filter(|(axis, _)| self.machine.axes.is_rotary(*axis)) {
+            (first[axis], last[axis]) = (to[axis], from[axis]);
+        }
+        [(from, &first), (&last, to)].into_iter().any(|(from, to)| {
+            let travel = AxisMotion { from, to, arc: None };
+            !self.machine.is_straight(&travel) && self.check_turned_body(event, &travel)
+        })
     }
 
     /// Checks tip and body of the tool on a path along which all axes arrive together. The rotation of `round` keeps the surface.
@@ -276,6 +292,15 @@ impl HoleExtractor<'_> {
         if let Some(cut) = self.in_rapid(event, contact) {
             self.report_side(event, cut, Severity::Error, "");
         }
+    }
+
+    /// Reports a rapid while an axis rotates, by which the body of the tool cuts the metal round a hole; returns true if it does.
+    pub(super) fn check_turned_body(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>) -> bool {
+        let cut = self.turned_body_contact(event, travel);
+        if let Some(cut) = cut {
+            self.report_side(event, cut, Severity::Error, " while an axis rotates");
+        }
+        cut.is_some()
     }
 
     fn report_side(&mut self, event: &Event<'_>, cut: PointInMetal, severity: Severity, orders: &str) {

@@ -159,7 +159,8 @@ impl HoleExtractor<'_> {
             }
             let path = self.chords(travel, TOUCH_DEPTH);
             return self.metal.is_known()
-                && path.windows(2).any(|chord| self.check_rapid_at_holes(event, &chord[0], &chord[1]));
+                && (path.windows(2).any(|chord| self.check_rapid_at_holes(event, &chord[0], &chord[1]))
+                    || self.check_turned_body(event, travel));
         };
         // Where the holes are known, an arc is judged by what it removes.
         let is_judged = travel.arc.is_some()

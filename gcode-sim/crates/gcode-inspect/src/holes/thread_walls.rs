@@ -1,6 +1,6 @@
 //! Threads of nominal holes that a tool cuts away: only a tap, and a mill that goes along its helix, may enter them, and no
 //! rapid.
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::rapids::format_point;
 use super::{DrilledHole, HoleExtractor};
@@ -55,7 +55,7 @@ impl FlankCut {
         let mut passes = holes.iter().flat_map(DrilledHole::passes);
         passes.any(|pass| {
             let spoke = self.entry - pass.cut.bottom;
-            let is_here = (spoke - pass.axis * spoke.dot(&pass.axis)).norm() <= MAX_OFF_AXIS;
+            let is_here = pass.axis.cross(&spoke).norm() <= MAX_OFF_AXIS;
             let helix = pass.cut.milled.and_then(|circle| circle.helix);
             let follows = helix.is_some_and(|helix| {
                 (helix.lead.abs() - self.pitch).abs() <= MAX_LEAD_SHARE * self.pitch || self.pitch == 0.0
@@ -81,7 +81,7 @@ impl HoleExtractor<'_> {
         &mut self,
         event: &Event<'_>,
         path: &[Point3<f64>],
-        axis: &Vector3<f64>,
+        axis: &Unit<Vector3<f64>>,
         diameter: f64,
     ) {
         let tool = self.setup.tool;

@@ -67,7 +67,8 @@ impl Machine {
         travel.arc.is_none() && self.total_rotation(travel) == Deg::ZERO
     }
 
-    fn total_rotation(&self, travel: &AxisMotion<'_>) -> Deg {
+    /// Returns the sum of the rotations of table and head.
+    pub(crate) fn total_rotation(&self, travel: &AxisMotion<'_>) -> Deg {
         self.table.total_rotation(travel.from, travel.to) + self.head.total_rotation(travel.from, travel.to)
     }
 

@@ -26,7 +26,8 @@ const SAME_PITCH: f64 = 0.001;
 
 /// Returns true if a depth says that the hole goes through, as drawings do.
 fn is_through(depth: &str) -> bool {
-    ["thru", "through", "thru all", "through all", "durchgehend", "通孔"].contains(&depth.to_lowercase().as_str())
+    ["thru", "through", "thru all", "through all", "durchgehend", "通孔"]
+        .contains(&depth.to_lowercase().as_str())
 }
 
 /// A list with what its reader assumed.
@@ -275,7 +276,10 @@ impl Cells<'_> {
         if let (Some(own), Some(thread)) = (own_pitch, thread)
             && exceeds((own - thread.pitch).abs(), SAME_PITCH)
         {
-            return Err(format!("column '{name} pitch' is {own}, and {text} has the pitch {:.4}", thread.pitch));
+            return Err(format!(
+                "column '{name} pitch' is {own}, and {text} has the pitch {:.4}",
+                thread.pitch
+            ));
         }
         let depth = own("depth");
         let written = self.text(name).to_owned();
