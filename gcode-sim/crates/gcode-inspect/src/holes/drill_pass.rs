@@ -45,6 +45,10 @@ pub struct TapRetract {
     pub from: Point3<f64>,
     /// Feed, and the speed of the spindle; `None` for a rapid.
     pub feed: Option<(MmPerMin, Rpm)>,
+    /// True if the spindle turns against its direction on the way in.
+    pub is_reversed: bool,
+    /// Direction of the spindle.
+    pub direction: SpindleDirection,
 }
 
 /// Figures of a circle that a mill cuts, mm.

@@ -5,7 +5,7 @@ use super::cut_states::{CutStates, StateCut};
 use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent};
 use super::drill_pass::{DrillPass, PITCH_TOLERANCE, PassCut, TapRetract};
 use super::{HoleExtractor, MotionKind};
-use gcode_lang::motion::{Backtrace, Event, Position, UnknownAxes};
+use gcode_lang::motion::{Backtrace, Event, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_lang::units::MmPerMin;
 
@@ -165,16 +165,23 @@ impl CuttingLine {
         self.uneven_retract = None;
     }
 
-    /// Records a motion out of the hole of a tap, by its feed and speed; a rapid has none.
-    pub(super) fn record_retract(&mut self, from: &Point3<f64>, feed: Option<FeedAtSpeed>) {
+    /// Records a motion out of the hole of a tap, by its feed and speed and the direction of the spindle; a rapid has no feed.
+    pub(super) fn record_retract(
+        &mut self,
+        from: &Point3<f64>,
+        feed: Option<FeedAtSpeed>,
+        direction: SpindleDirection,
+    ) {
         let Some(into) = self.cuts.last_feed().filter(|_| self.is_tapping) else { return };
         let (into, speed) =
             (into.0 / self.cutting_state.speed.0, |(feed, speed): FeedAtSpeed| feed.0 / speed.0);
         let is_even = feed.map(speed).is_some_and(|out| (out - into).abs() <= PITCH_TOLERANCE * into);
+        let is_reversed =
+            direction != SpindleDirection::Off && direction != self.cutting_state.spindle_direction;
         let is_deepest =
             self.uneven_retract.is_none_or(|known| self.depth_of(&known.from) < self.depth_of(from));
-        if !is_even && is_deepest {
-            self.uneven_retract = Some(TapRetract { from: *from, feed });
+        if !(is_even && is_reversed) && is_deepest {
+            self.uneven_retract = Some(TapRetract { from: *from, feed, is_reversed, direction });
         }
         // A stroke that goes on is none of those before.
         if let Some(tapped) = self.tapped.as_mut().filter(|_| self.stroke.is_none()) {

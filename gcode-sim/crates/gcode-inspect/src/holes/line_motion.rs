@@ -51,7 +51,7 @@ impl HoleExtractor<'_> {
                         EventKind::Feed { rate, .. } => Some((*rate, self.cutting_state.speed)),
                         _ => None,
                     };
-                    line.record_retract(&from, feed);
+                    line.record_retract(&from, feed, self.cutting_state.spindle_direction);
                 }
                 let again = match kind {
                     MotionKind::Feed => {

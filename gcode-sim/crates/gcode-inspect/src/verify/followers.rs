@@ -10,6 +10,12 @@ use gcode_part::Hole;
 /// Cosine of the largest angle between the axes of two holes that meet.
 pub(super) const MIN_OPPOSITE_COSINE: f64 = 0.999_999;
 
+/// Returns a hole as it is seen along the axis of another: one that the list has from the opposite side begins at its far side.
+pub(super) fn seen_along(upper: &Hole, lower: &Hole) -> Hole {
+    let is_opposite = Vector3::from(upper.axis).dot(&Vector3::from(lower.axis)) < 0.0;
+    if is_opposite && lower.through { lower.from_far_side() } else { lower.clone() }
+}
+
 /// Returns the depth of a hole that follows another one on its axis and in its direction, from the entry of the upper one; `None` if
 /// it does not.
 pub(super) fn follows(upper: &Hole, lower: &Hole, tolerances: Tolerances) -> Option<f64> {

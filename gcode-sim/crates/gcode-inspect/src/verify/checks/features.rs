@@ -99,6 +99,7 @@ fn judge<'c>(
     judged.judge_far_widths(drilled);
     judged.judge_both_sides();
     judged.judge_break_through(surface);
+    judged.judge_next_holes(drilled, machine);
     threads::judge(&mut judged);
     tool_kinds::judge(&mut judged, surface.is_some());
     Some(judged)

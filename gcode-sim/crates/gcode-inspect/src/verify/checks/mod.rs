@@ -14,6 +14,7 @@ pub(super) mod features;
 mod milled_core;
 pub(super) mod mirrored;
 mod missing;
+mod next_hole;
 mod overlap;
 mod position;
 mod reach;

@@ -4,6 +4,7 @@ use super::*;
 use crate::findings::{TAP_DRILL, TAP_PITCH};
 use crate::verify::hole_cuts::Cut;
 use crate::verify::matching::{is_one_run, step_off};
+use gcode_lang::motion::SpindleDirection;
 use gcode_part::{Feature, NOISE};
 
 /// Largest distance along the axis between two passes of one thread, mm.
@@ -21,7 +22,7 @@ const WHITWORTH_DEPTH: f64 = 1.280_654;
 /// Largest depth of a thread by its pitch, in diameter: the small end of a taper pipe thread.
 const MAX_THREAD_DEPTH: f64 = 2.0;
 
-/// Reports a tap that leaves its thread by a rapid, or at another feed a revolution than it came in.
+/// Reports a tap that leaves its thread by a rapid, at another feed a revolution than it came in, or without a reversed spindle.
 pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     let retract = cut.pass.cut.uneven_retract?;
     let Hole { entry, axis, .. } = judged.nominal;
@@ -37,6 +38,8 @@ pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cu
     }
     let how = match retract.feed {
         None => "in rapid".to_owned(),
+        Some(_) if retract.direction == SpindleDirection::Off => "with the spindle stopped".to_owned(),
+        Some(_) if !retract.is_reversed => "with the spindle turning inwards".to_owned(),
         Some((feed, speed)) => format!("at {}", feed_words(feed.0, speed.0)),
     };
     let message = format!(
@@ -45,7 +48,9 @@ pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cu
         cut.name()
     );
     let finding = Diagnostic::new(&TAP_PITCH, message).with_backtrace(cut.pass.backtrace.clone());
-    Some(finding.help("feed out at the feed and the speed of the feed in, or tap with G84 or G74"))
+    Some(finding.help(
+        "reverse the spindle and feed out at the feed and the speed of the feed in, or tap with G84 or G74",
+    ))
 }
 
 /// Reports a stroke of a tap that begins between the threads of its stroke before. It is a warning without rigid tapping, which
