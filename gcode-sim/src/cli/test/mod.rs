@@ -4,6 +4,7 @@ mod claims;
 mod find;
 mod main_program;
 mod merge;
+mod other_endings;
 mod watch;
 
 use std::path::PathBuf;

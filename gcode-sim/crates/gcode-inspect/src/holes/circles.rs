@@ -106,9 +106,10 @@ impl HoleExtractor<'_> {
     fn thread_turns(&self, turns: Vec<&Ring>, cutter: Option<f64>) -> Vec<HoleCircles> {
         if self.strokes.nominal_axes().is_empty() {
             let is_at_wall = |ring: &&Ring| self.strokes.is_at_drilled_wall(ring, cutter, self.machine);
-            let whole = turns.into_iter().filter(is_at_wall).filter_map(|ring| {
-                self.engagement.circles(&[ring], cutter).filter(HoleCircles::is_whole)
-            });
+            let whole = turns
+                .into_iter()
+                .filter(is_at_wall)
+                .filter_map(|ring| self.engagement.circles(&[ring], cutter).filter(HoleCircles::is_whole));
             return whole.collect();
         }
         let entry = |ring: &&Ring| {

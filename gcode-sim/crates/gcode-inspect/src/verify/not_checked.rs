@@ -73,6 +73,7 @@ pub(super) fn list(
     all.extend(lengths(extraction, machine));
     all.extend(holders(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
+    all.extend(stubs(&extraction.called_stubs));
     if extraction.findings.iter().any(|finding| finding.kind == &BACK_BORED) {
         all.push(NotChecked::gap("bores made backwards", "their depth and diameter"));
     }
@@ -212,6 +213,24 @@ fn hole_names(ids: &[&str]) -> String {
         [one] => format!("hole {one}"),
         _ => format!("{} holes (first {})", ids.len(), ids[0]),
     }
+}
+
+/// Returns the effect of called programs that are stubs here.
+fn stubs(programs: &[String]) -> Option<NotChecked> {
+    let what = match programs {
+        [] => return None,
+        [one] => format!("what {one} does (a stub, M99 alone)"),
+        [first, others @ ..] => {
+            let last = others.last()?;
+            let between =
+                others[..others.len() - 1].iter().map(|name| format!(", {name}")).collect::<String>();
+            format!("what {first}{between} and {last} do (stubs, M99 alone)")
+        }
+    };
+    Some(NotChecked::gap(
+        what,
+        "the control has another program of this number; offsets and positions that it sets are unknown",
+    ))
 }
 
 /// Returns the holes of unknown diameter, by their tools.
