@@ -45,12 +45,13 @@ pub use open_depths::complete_depths;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Observer, Outcome, Progress};
+use gcode_inspect::findings::MAIN_PROGRAM;
 use gcode_inspect::flutes::{FluteTracker, GrinderError, GrindingResult};
 use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
-use gcode_inspect::verify::{Tolerances, Verdict, stop_sentence, verify};
+use gcode_inspect::verify::{Answer, AnyVerdict, Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::remedy;
 use gcode_lang::control::Settings;
@@ -395,10 +396,15 @@ impl Simulation {
         let (machine, locate) = (&request.machine, |span| self.run.locate(span));
         let judge = || verify(&self.extracted, reference, tolerances, machine, &locate);
         let (mut verdict, dependencies) = assumptions::beside(self, request, judge);
-        let offsets = causes::unset_work_offsets(&self.run, machine, "holes").collect();
+        let mut likely: Vec<Diagnostic> = Vec::new();
+        if self.extracted.holes.is_empty() && verdict.answer() == Answer::Fail {
+            // Another program makes the holes.
+            likely.extend(verdict.take_findings(&MAIN_PROGRAM));
+        }
+        likely.extend(causes::unset_work_offsets(&self.run, machine, "holes"));
         let names = verdict.hole_names();
         let assumptions = || dependencies.assumptions(&self.run, |hole| names.get(&hole).cloned());
-        completion::complete(&mut verdict, request, &self.run, offsets, assumptions);
+        completion::complete(&mut verdict, request, &self.run, likely, assumptions);
         verdict
     }
 

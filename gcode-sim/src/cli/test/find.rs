@@ -143,6 +143,23 @@ fn accepted_label(path: &Path) -> Option<String> {
     label.is_empty().then(String::new).or_else(|| Some(label.strip_suffix('.')?.to_owned()))
 }
 
+/// Returns the reference that a case of this program has in its folder: `reference.csv`, or with the name of the main program if the folder has
+/// several. `path` chooses a program of the file.
+pub(in crate::cli) fn reference_beside(program: &Path, path: Option<&str>) -> Option<PathBuf> {
+    const NAMES: [&str; 3] = ["reference.json", "reference.csv", "job.toml"];
+    let folder = input::folder_of(program);
+    let programs: Vec<PathBuf> =
+        input::folder(folder).ok()?.into_iter().filter(|path| !path.is_dir() && is_program(path)).collect();
+    let mains = main_program::of(folder, &programs).ok()?;
+    let is_own = |main: &&MainProgram| {
+        main.file.file_name() == program.file_name()
+            && (main.path.is_none() || path.is_some() && main.path.as_deref() == path)
+    };
+    let own = mains.iter().find(is_own)?;
+    let prefix = if mains.len() == 1 { String::new() } else { own.label() + "." };
+    NAMES.iter().map(|name| folder.join(format!("{prefix}{name}"))).find(|path| path.is_file())
+}
+
 /// Returns true for a file that the program of a case uses.
 fn belongs_to_case(path: &Path) -> bool {
     const FILES: [&str; 6] =

@@ -55,6 +55,8 @@ pub struct HoleExtraction {
     pub(crate) covered_entries: Vec<usize>,
     /// Number of strokes of mills that count as milling.
     pub(crate) milled_strokes: u64,
+    /// Pockets are stated, and no block mills any of them.
+    pub(crate) has_unmilled_pockets: bool,
     /// First and last block of each run of blocks that mill stated pockets.
     pub(crate) milled_blocks: Vec<[Span; 2]>,
     /// Ends of the first feeds along the tool that go beside the part.

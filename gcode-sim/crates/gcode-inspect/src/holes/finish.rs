@@ -56,6 +56,7 @@ impl HoleExtractor<'_> {
             unsized_mills: self.unsized_mills,
             covered_entries,
             milled_strokes,
+            has_unmilled_pockets: !self.metal.pockets.is_empty() && self.milled_blocks.is_empty(),
             milled_blocks: self.milled_blocks.finish(),
             feeds_in_air: self.feeds_in_air,
             cycles_in_air: self.cycles_in_air.finish(),

@@ -17,7 +17,7 @@ use crate::machine::{HeadKind, TOUCH_DEPTH, ToolKind};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, LengthCompensation, Position};
 use gcode_lang::units::Deg;
-use gcode_part::Surface;
+use gcode_part::{Frustum, Surface, Taper};
 
 /// Largest angle between feed and tool, besides rounding.
 const MAX_FEED_TILT: Deg = Deg(0.05);
@@ -166,7 +166,12 @@ impl HoleExtractor<'_> {
         let is_known = self.setup.tool == tool && line.tool_axis.is_some() && !self.tool_body.is_empty();
         let Some(body) = self.surface.filter(|_| is_known) else { return true };
         let mut cutters = self.tool_body.iter().filter(|part| part.is_cutter);
-        cutters.any(|part| part.cuts(&body, (&start, &axis), &(bottom - start)))
+        cutters.any(|part| {
+            let (from, length) = (part.from, (part.to - part.from).max(0.0));
+            let taper = Taper { radius: part.taper.at(from), ..part.taper };
+            let base = start + axis.into_inner() * from;
+            body.touches(&Frustum { base, axis, length, taper }, &(bottom - start))
+        })
     }
 
     /// Returns how far above a known body a cycle stays, seen along the tool, while some axes are unknown; `None` if they move the

@@ -45,7 +45,10 @@ impl NotChecked {
 pub(super) fn gaps(all: &[NotChecked]) -> Vec<String> {
     let mut gaps: Vec<String> = Vec::new();
     for one in all.iter().filter(|one| one.is_gap) {
-        if !gaps.contains(&one.what) {
+        // One with its reason says the same.
+        let with_reason = format!("{} (", one.what);
+        let is_said = all.iter().any(|other| other.is_gap && other.what.starts_with(&with_reason));
+        if !is_said && !gaps.contains(&one.what) {
             gaps.push(one.what.clone());
         }
     }
@@ -170,6 +173,10 @@ pub(super) fn list(
         let what = format!("the shape of the milling ({})", milled_lines(&extraction.milled_blocks, locate));
         let reason = "it may remove all of its [[stock.pocket]], and nothing beside it; what it leaves there is not compared";
         all.push(NotChecked::gap(what, reason));
+    }
+    if extraction.has_unmilled_pockets {
+        let reason = "if this program should mill a [[stock.pocket]], blocks are missing";
+        all.push(NotChecked::gap("the stated pockets, which no feed cuts", reason));
     }
     let covered: Vec<&str> = extraction.covered_entries.iter().map(|index| comparison.id(*index)).collect();
     if !covered.is_empty() {
