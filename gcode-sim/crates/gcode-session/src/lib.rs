@@ -45,13 +45,12 @@ pub use open_depths::complete_depths;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use gcode_control::{Control, Limits, Observer, Outcome, Progress};
-use gcode_inspect::findings::MAIN_PROGRAM;
 use gcode_inspect::flutes::{FluteTracker, GrinderError, GrindingResult};
 use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
 use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
-use gcode_inspect::verify::{Answer, AnyVerdict, Tolerances, Verdict, stop_sentence, verify};
+use gcode_inspect::verify::{Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::remedy;
 use gcode_lang::control::Settings;
@@ -371,11 +370,8 @@ pub fn simulate_observed<S: EventSink>(
     let mut feeds = second_start::FeedTrace::default();
     let run = run_observed(request, library, &mut (&mut extractor, (&mut feeds, sink)), observer)?;
     let mut extracted = extractor.finish();
-    let is_stated = |h: &u32| {
-        request.machine.tools.iter().any(|tool| tool.number == *h && tool.stated_length_offset().is_some())
-    };
-    extracted.program_lengths =
-        run.control.tool_lengths().map(|(h, _)| h).filter(|h| !is_stated(h)).collect();
+    let lengths = run.control.tool_lengths().map(|(h, _)| h);
+    extracted.program_lengths = lengths.filter(|h| !request.states_length(*h)).collect();
     extracted.called_stubs = stubs::called_stubs(&run);
     extracted.findings.extend(second_start::finding(request, &run, &metal, (&extracted, feeds)));
     extracted.findings.extend(run.findings());
@@ -396,12 +392,7 @@ impl Simulation {
         let (machine, locate) = (&request.machine, |span| self.run.locate(span));
         let judge = || verify(&self.extracted, reference, tolerances, machine, &locate);
         let (mut verdict, dependencies) = assumptions::beside(self, request, judge);
-        let mut likely: Vec<Diagnostic> = Vec::new();
-        if self.extracted.holes.is_empty() && verdict.answer() == Answer::Fail {
-            // Another program makes the holes.
-            likely.extend(verdict.take_findings(&MAIN_PROGRAM));
-        }
-        likely.extend(causes::unset_work_offsets(&self.run, machine, "holes"));
+        let likely = causes::of_holes(self, &mut verdict, machine);
         let names = verdict.hole_names();
         let assumptions = || dependencies.assumptions(&self.run, |hole| names.get(&hole).cloned());
         completion::complete(&mut verdict, request, &self.run, likely, assumptions);
