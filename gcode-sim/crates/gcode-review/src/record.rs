@@ -204,9 +204,12 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     }
 }
 
+/// Block of a pass, its end point as bits, and its tool.
+type PassKey = (SourceId, u32, [u64; MAX_AXES], Option<u32>);
+
 /// Finds the step of each pass by its block, its end point and its tool: one block of a subprogram is executed with several.
 fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
-    let key = |block: Span, at: &Position, tool: Option<u32>| {
+    let key = |block: Span, at: &Position, tool: Option<u32>| -> PassKey {
         (block.source, block.start, at.0.map(f64::to_bits), tool)
     };
     let passes = |found: &DrilledHole| {
@@ -215,7 +218,7 @@ fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
         let finishing = key(found.backtrace.block, &found.axis_position, found.tool);
         passes.chain([finishing]).collect::<Vec<_>>()
     };
-    let mut steps: BTreeMap<(SourceId, u32, [u64; MAX_AXES], Option<u32>), Vec<usize>> =
+    let mut steps: BTreeMap<PassKey, Vec<usize>> =
         holes.iter().flat_map(passes).map(|key| (key, Vec::new())).collect();
     let numbers = if holes.is_empty() { 0 } else { recorder.steps.len() };
     let changes = recorder.steps.kinds().enumerate().take(numbers).filter_map(|(step, kind)| match kind {
