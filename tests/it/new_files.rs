@@ -156,6 +156,41 @@ fn a_hole_of_several_tools_is_listed_with_its_features() {
     }
 }
 
+/// T2 of 8 mills round 2 off the axis: 8 + 2·2 = 12, one turn of 1.75 up from Z-18. or eight; round 1 off it only 10 wide, which the drill of
+/// 10.2 has left open.
+#[test]
+fn a_milled_thread_is_listed_with_its_pitch() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    let head = "[head]\nkind = \"fixed\"\ndirection = [0, 0, 1]\n\n[stock]\nkind = \"box\"\n";
+    let stock = "min = [0, 0, -40]\nmax = [20, 20, 0]\n";
+    let tools = "\n[[tool]]\nnumber = 1\nkind = \"drill\"\ndiameter = 10.2\n\n[[tool]]\nnumber = 2\nkind = \"end-mill\"\ndiameter = 8\n";
+    std::fs::write(dir.join("machine.toml"), format!("{head}{stock}{tools}")).unwrap();
+    let drill = "T1 M6\nS900 M3\nG0 X9. Y8.\nG43 H1 Z50.\nG81 Z-25. R2. F90.\nG80 Z50.\n";
+    let header = HEADER.replace("diameter", "diameter,features");
+    let right_hand = "drill 10.2 25; tap 12 18 pitch=1.75";
+    let left_hand = format!("{right_hand} hand=left");
+    for (turns, code, offset, features) in [
+        (1, "G3", 2, right_hand),
+        (8, "G3", 2, right_hand),
+        (8, "G2", 2, left_hand.as_str()),
+        (8, "G3", 1, ""),
+    ] {
+        let turn = format!("{code} I-{offset}. Z1.75\n").repeat(turns);
+        let mill = format!("G0 Z-18.\nG1 X{}. F200.\nG91 {turn}G90 G1 X9.\nG0 Z50.\n", 9 + offset);
+        let program = format!("O1\nG90 G54\n{drill}T2 M6\nS900 M3\nG0 X9. Y8.\nG43 H2 Z50.\n{mill}M30\n");
+        std::fs::write(dir.join("O1.nc"), program).unwrap();
+        let (code, list, messages) = run("gcode-sim new reference --from O1.nc", dir);
+        assert_eq!(code, 0, "{messages}");
+        let expected = match features {
+            "" => format!("{HEADER}1,9,8,0,0,0,1,25,10.2\n"),
+            _ => format!("{header}1,9,8,0,0,0,1,25,,{features}\n"),
+        };
+        assert_eq!(list, expected, "{turns} turns, {offset}");
+        assert_eq!(messages.contains("feed-no-hole"), features.is_empty(), "{messages}");
+    }
+}
+
 #[test]
 fn no_list_is_written_of_a_run_that_stops_or_makes_no_hole() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,8 @@
 //! Command-line parts that both programs share: help, usage errors, colours.
 use std::ffi::OsString;
+use std::path::Path;
 
-use clap::error::{ContextKind, ErrorKind};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, ValueEnum};
 
 use super::{ExitStatus, UsageError, output};
@@ -49,6 +50,12 @@ fn unquoted(argument: OsString) -> OsString {
     }
 }
 
+/// Returns true for an argument that names a list of holes or a job.
+fn is_list_in_place_of_program(argument: &OsString) -> bool {
+    let ending = Path::new(argument).extension().map(|ending| ending.to_ascii_lowercase());
+    ending.is_some_and(|ending| ["csv", "json", "toml"].iter().any(|list| ending == *list))
+}
+
 /// Parses the arguments with clap and executes the command. Help and version count as results; anything else that
 /// clap rejects is an invalid request.
 pub fn main<A: Parser>(
@@ -56,12 +63,20 @@ pub fn main<A: Parser>(
     colours: impl Fn(&A) -> Colours,
     execute: impl FnOnce(A) -> Result<ExitStatus, UsageError>,
 ) -> ExitStatus {
-    let arguments = match A::try_parse_from(arguments.into_iter().map(unquoted)) {
+    let given: Vec<OsString> = arguments.into_iter().map(unquoted).collect();
+    let arguments = match A::try_parse_from(&given) {
         Ok(arguments) => arguments,
         Err(mut error) => {
             if error.kind() == ErrorKind::UnknownArgument {
                 // The tip to write `-- --flag` takes the flag for a value, which none is.
                 error.remove(ContextKind::Suggested);
+                if let Some(list) = given.iter().find(|one| is_list_in_place_of_program(one)) {
+                    let tip = format!(
+                        "{} goes behind --reference; the program is given alone",
+                        list.to_string_lossy()
+                    );
+                    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+                }
             }
             let text = error.render().ansi().to_string();
             if !error.use_stderr() && output::print(&text).is_ok() {

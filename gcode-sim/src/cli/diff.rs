@@ -102,7 +102,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     );
     match arguments.format {
         FindingFormat::Json => output::json(&report)?,
-        FindingFormat::Text => output::print(&report.text())?,
+        FindingFormat::Text => {
+            output::print(&report.text())?;
+            if new.simulation.run.control.is_inch() && !compared.changes.is_empty() {
+                output::print("the programs are in inches; above, lengths and Q are in mm, F in mm/min\n")?;
+            }
+        }
         FindingFormat::Sarif => output::sarif(findings(&compared, &new, &new_request.name), None)?,
     }
     if let Some(file) = &arguments.picture {

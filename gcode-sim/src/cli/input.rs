@@ -72,7 +72,8 @@ pub(super) fn program_text(path: &Path) -> Result<Bytes, UsageError> {
 /// Lines at the beginning of a file in which blocks are looked for.
 const FIRST_LINES: usize = 200;
 
-/// Returns the reason why bytes are no program: zero bytes, or lines of which hardly one begins as a block does.
+/// Returns the reason why bytes are no program: zero bytes, or lines of which hardly one begins as a block does, or from the first that does
+/// on not a third.
 fn not_a_program(bytes: &[u8]) -> Option<String> {
     // The leader and the trailer of a tape are zeros.
     let start = bytes.iter().position(|byte| *byte != 0).unwrap_or(bytes.len());
@@ -84,7 +85,9 @@ fn not_a_program(bytes: &[u8]) -> Option<String> {
     let lines = bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
     let lines: Vec<&[u8]> = lines.filter(|line| !line.is_empty()).take(FIRST_LINES).collect();
     let blocks = lines.iter().filter(|line| begins_as_block(line)).count();
-    let first = lines.first().filter(|_| blocks * 10 < lines.len())?;
+    // A transfer can have text in front of the program.
+    let program = lines.iter().skip_while(|line| !begins_as_block(line)).count();
+    let first = lines.first().filter(|_| blocks * 10 < lines.len() || blocks * 3 < program)?;
     let start = String::from_utf8_lossy(&first[..first.len().min(60)]);
     Some(format!("its first lines are no blocks; the first is '{}'", start.escape_debug()))
 }
@@ -96,7 +99,9 @@ fn begins_as_block(line: &[u8]) -> bool {
     let is_value = |byte: &u8| byte.is_ascii_digit() || b"+-.#[".contains(byte);
     let text = line.to_ascii_uppercase();
     match text.as_slice() {
-        [b'%' | b'(' | b'/' | b'#' | b':' | b';' | b'&' | b'\'' | b'!' | b'$', ..] => true,
+        [b'%' | b'(' | b'/' | b':' | b';' | b'&' | b'\'' | b'!' | b'$', ..] => true,
+        // A heading of a text has a space behind it.
+        [b'#', next, ..] => next.is_ascii_digit() || matches!(next, b'[' | b'#' | b'_'),
         [letter, rest @ ..]
             if letter.is_ascii_alphabetic() && rest.trim_ascii_start().first().is_some_and(is_value) =>
         {
@@ -212,6 +217,11 @@ mod tests {
         let header = "Machine 7, program of today\n".repeat(9);
         assert_eq!(why(&format!("{header}G0X1.\n")), None);
         assert!(why(&format!("{header}{header}G0X1.\n")).is_some());
+        // A text in which some lines look like blocks: from the first of them on, 2 of 7.
+        let text =
+            "# Plates\nO8101 for each hole\nand so on\nas it is\nM30 ends it\nwhere it is\nas said\nhere\n";
+        assert!(why(text).is_some());
+        assert_eq!(why("# Plates\nO8101 for each hole\nand so on\nas it is\nM30 ends it\n"), None);
         assert_eq!(
             why("Dear colleague,\nhere it is\n").unwrap(),
             "its first lines are no blocks; the first is 'Dear colleague,'"

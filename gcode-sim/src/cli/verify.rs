@@ -10,7 +10,10 @@ use super::format::FindingFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
 use super::render::Style;
-use super::{ExitStatus, UsageError, common, options, output, page, progress, render, unused_machine};
+use super::test::reference_beside;
+use super::{
+    ExitStatus, UsageError, common, options, output, page, progress, project, render, unused_machine,
+};
 use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view, top};
@@ -24,7 +27,7 @@ use gcode_session::{Criteria, Request, Run, Simulation};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct Arguments {
-    /// The reference: a hole list (JSON or CSV) or a job file (TOML) [default: that of the program in gcode.toml]
+    /// The reference: a hole list (JSON or CSV) or a job file (TOML) [default: that of the program in gcode.toml, or reference.csv beside it]
     #[arg(long, value_name = "REF", display_order = 0)]
     reference: Option<PathBuf>,
 
@@ -69,9 +72,16 @@ impl Arguments {
     /// Completes the arguments by the project of the program; returns them with the reference.
     fn completed(&self) -> Result<(Self, PathBuf), UsageError> {
         let (program, project) = self.program.completed()?;
-        let reference = self.reference.clone().or_else(|| project.reference()).ok_or_else(|| {
+        let stated = self.reference.clone().or_else(|| project.reference());
+        let beside = || {
+            let path = reference_beside(&program.program, program.conditions.main_program.as_deref())?;
+            project::say(&[format!("reference: {}", path.display())]);
+            Some(path)
+        };
+        let reference = stated.or_else(beside).ok_or_else(|| {
             UsageError::new(
-                "no reference: give --reference REF, or name the program in [references] of gcode.toml",
+                "no reference: give --reference REF, name the program in [references] of gcode.toml, or put \
+                 reference.csv beside it",
             )
         })?;
         Ok((Self { program, ..self.clone() }, reference))

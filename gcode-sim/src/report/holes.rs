@@ -24,7 +24,7 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
         Origin::FeedStart => (
             ["fed from x", "fed from y", "fed from z"],
             "deepest",
-            "fed from: start of the last tool's feed (R point level); axis: unit vector out of the part; \
+            "fed from: start of the last tool's feed (R point level); axis: unit vector out of the part\n\
              deepest: from there to the deepest point of any tool",
         ),
     };

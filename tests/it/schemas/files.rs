@@ -226,7 +226,8 @@ fn changed(value: &Value, name: &str, schemas: &[&Json]) -> Vec<(String, Value)>
 }
 
 /// Words of messages about keys that contradict each other, which a schema cannot state.
-const ACROSS: [&str; 54] = [
+const ACROSS: [&str; 55] = [
+    "the tool has a length",
     "below the depth",
     "which is not in [[tool]]",
     "names tools of [[tool]], but there are none",

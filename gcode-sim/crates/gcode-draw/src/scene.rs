@@ -123,10 +123,10 @@ pub enum Shape<const D: usize = 2> {
 pub enum Sign {
     /// Start of the path.
     Start,
-    /// End of the path.
-    End,
     /// Operator stop.
     Stop,
+    /// End of the path; it stands for a stop in its place, which its label names.
+    End,
     /// Position at which an alarm ends the run.
     Alarm,
 }

@@ -100,6 +100,11 @@ pub struct NominalAxes {
 }
 
 impl NominalAxes {
+    /// Returns true without any hole.
+    pub fn is_empty(&self) -> bool {
+        self.axes.is_empty()
+    }
+
     /// Returns the axes of a list of holes.
     pub fn of(holes: &[Hole]) -> Self {
         let mut axes: Vec<NominalAxis> = holes.iter().map(NominalAxis::of).collect();

@@ -204,20 +204,37 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     }
 }
 
-/// Finds the step of each pass by its block and its end point.
+/// Block of a pass, its end point as bits, and its tool.
+type PassKey = (SourceId, u32, [u64; MAX_AXES], Option<u32>);
+
+/// Finds the step of each pass by its block, its end point and its tool: one block of a subprogram is executed with several.
 fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
-    let key = |block: Span, at: &Position| (block.source, block.start, at.0.map(f64::to_bits));
-    let passes = |found: &DrilledHole| {
-        let passes = found.earlier_passes.iter().map(|cut| key(cut.backtrace.block, &cut.axis_position));
-        passes.chain([key(found.backtrace.block, &found.axis_position)]).collect::<Vec<_>>()
+    let key = |block: Span, at: &Position, tool: Option<u32>| -> PassKey {
+        (block.source, block.start, at.0.map(f64::to_bits), tool)
     };
-    let mut steps: BTreeMap<(SourceId, u32, [u64; MAX_AXES]), Vec<usize>> =
+    let passes = |found: &DrilledHole| {
+        let earlier = found.earlier_passes.iter();
+        let passes = earlier.map(|cut| key(cut.backtrace.block, &cut.axis_position, cut.tool));
+        let finishing = key(found.backtrace.block, &found.axis_position, found.tool);
+        passes.chain([finishing]).collect::<Vec<_>>()
+    };
+    let mut steps: BTreeMap<PassKey, Vec<usize>> =
         holes.iter().flat_map(passes).map(|key| (key, Vec::new())).collect();
     let numbers = if holes.is_empty() { 0 } else { recorder.steps.len() };
-    for number in (0..numbers).rev().filter(|number| recorder.steps.is_move(*number)) {
+    let changes = recorder.steps.kinds().enumerate().take(numbers).filter_map(|(step, kind)| match kind {
+        StepKind::Tool(number) => Some((step, *number)),
+        _ => None,
+    });
+    let mut changes: Vec<(usize, u32)> = changes.collect();
+    for number in (0..numbers).rev() {
+        changes.pop_if(|(change, _)| number < *change);
+        let tool = changes.last().map(|(_, tool)| *tool);
+        if !recorder.steps.is_move(number) {
+            continue;
+        }
         let step = recorder.steps.at(number);
         let block = recorder.numbers.start_of(step.block_number);
-        if let Some(of_pass) = steps.get_mut(&key(block, &step.at)) {
+        if let Some(of_pass) = steps.get_mut(&key(block, &step.at, tool)).filter(|_| !step.is_rapid()) {
             of_pass.push(number);
         }
     }

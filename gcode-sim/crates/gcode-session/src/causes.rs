@@ -1,9 +1,10 @@
 //! Likely causes of a verdict: unset work offsets, and what a check of the program's text finds; and of an endless loop: a
 //! counter that its assignment does not change.
-use super::{Request, Run};
+use super::{Request, Run, Simulation};
 use gcode_control::{Control, Outcome, UnsetWorkOffset, Value, additional_system_name};
 use gcode_inspect::findings::{MAIN_PROGRAM, WORK_OFFSET};
 use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, AnyVerdict, Verdict};
 use gcode_lang::control::Dialect;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Backtrace;
@@ -95,6 +96,18 @@ pub(super) fn choose_main(memory: &mut Memory, request: &Request) -> Option<Diag
     let finding = Diagnostic::new(&MAIN_PROGRAM, message);
     let finding = finding.with_backtrace(Backtrace { block: program.span, calls: None });
     Some(finding.help("choose another program with --program"))
+}
+
+/// Returns the likely causes of a verdict on holes besides the program's text: another program of the file, unset work offsets.
+/// A finding that is one moves from the verdict.
+pub(super) fn of_holes(simulation: &Simulation, verdict: &mut Verdict, machine: &Machine) -> Vec<Diagnostic> {
+    let mut likely: Vec<Diagnostic> = Vec::new();
+    if simulation.extracted.holes.is_empty() && verdict.answer() == Answer::Fail {
+        // Another program makes the holes.
+        likely.extend(verdict.take_findings(&MAIN_PROGRAM));
+    }
+    likely.extend(unset_work_offsets(&simulation.run, machine, "holes"));
+    likely
 }
 
 /// Returns the work offsets used by the run that neither the machine file nor the program sets. Each counts

@@ -21,6 +21,11 @@ impl Request {
         Self { process_limits: reference.process_limits.clone(), ..self.clone() }
     }
 
+    /// Returns true if the machine file states the length offset H of a number.
+    pub(super) fn states_length(&self, h: u32) -> bool {
+        self.machine.tools.iter().any(|tool| tool.number == h && tool.stated_length_offset().is_some())
+    }
+
     /// Returns what is known to be metal of a reference: its stock overrides that of the machine.
     pub fn metal(&self, reference: &Reference) -> Metal {
         reference.metal(self.machine.stock.as_ref())

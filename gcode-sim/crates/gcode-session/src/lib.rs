@@ -33,6 +33,7 @@ mod marked_events;
 mod open_depths;
 mod outside_text;
 mod second_start;
+mod stubs;
 mod trace;
 
 use std::sync::Arc;
@@ -222,7 +223,7 @@ fn set_up_control_behind(
     Ok(control)
 }
 
-/// Returns the variables of a machine that is set up: work offsets (#5221…, #14001…), and the tool lengths and cutter radii as
+/// Returns the variables of a machine that is set up: work offsets (#5221…, #14001…), and the length offsets and cutter radii as
 /// geometry offsets H and D (#11001…, #13001…, or #2001…, #2401… on a Haas).
 fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
     let work = machine.offsets.iter().flat_map(|offset| {
@@ -236,7 +237,7 @@ fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<It
         machine.tools.iter().filter(|tool| (1..=settings.tool_offsets).contains(&(tool.number as usize)));
     let offsets = tools.flat_map(move |tool| {
         let unit = if settings.has_diameter_offsets() { 2.0 } else { 1.0 };
-        let length = settings.length_variable(tool.number).zip(tool.length);
+        let length = settings.length_variable(tool.number).zip(tool.stated_length_offset());
         let radius =
             settings.radius_variable(tool.number).zip(tool.radius_offset.map(|radius| radius * unit));
         length.into_iter().chain(radius)
@@ -369,10 +370,9 @@ pub fn simulate_observed<S: EventSink>(
     let mut feeds = second_start::FeedTrace::default();
     let run = run_observed(request, library, &mut (&mut extractor, (&mut feeds, sink)), observer)?;
     let mut extracted = extractor.finish();
-    let is_stated =
-        |h: &u32| request.machine.tools.iter().any(|tool| tool.number == *h && tool.length.is_some());
-    extracted.program_lengths =
-        run.control.tool_lengths().map(|(h, _)| h).filter(|h| !is_stated(h)).collect();
+    let lengths = run.control.tool_lengths().map(|(h, _)| h);
+    extracted.program_lengths = lengths.filter(|h| !request.states_length(*h)).collect();
+    extracted.called_stubs = stubs::called_stubs(&run);
     extracted.findings.extend(second_start::finding(request, &run, &metal, (&extracted, feeds)));
     extracted.findings.extend(run.findings());
     Ok(Simulation { run, extracted, metal })
@@ -393,10 +393,10 @@ impl Simulation {
         let (machine, locate) = (&request.machine, |span| self.run.locate(span));
         let judge = || verify(&self.extracted, reference, tolerances, machine, &locate);
         let (mut verdict, dependencies) = assumptions::beside(self, request, judge);
-        let offsets = causes::unset_work_offsets(&self.run, machine, "holes").collect();
+        let likely = causes::of_holes(self, &mut verdict, machine);
         let names = verdict.hole_names();
         let assumptions = || dependencies.assumptions(&self.run, |hole| names.get(&hole).cloned());
-        completion::complete(&mut verdict, request, &self.run, offsets, assumptions);
+        completion::complete(&mut verdict, request, &self.run, likely, assumptions);
         verdict
     }
 

@@ -70,7 +70,7 @@ pub(super) fn finding(
             let aside = pairs.filter(|(one, other)| !is_same(one, other)).count();
             match aside + extracted.holes.len().abs_diff(again.len()) {
                 0 if feeds.0.finish() == feeds_again.0.finish() => return None,
-                0 => "its holes are the same, and other feeds are elsewhere or at another rate".to_owned(),
+                0 => "its holes are the same, but other feeds lead elsewhere or have another rate".to_owned(),
                 1 => "one hole is elsewhere".to_owned(),
                 count => format!("{count} holes are elsewhere"),
             }
@@ -169,7 +169,7 @@ mod tests {
     fn feeds_beside_the_holes_count() {
         let groove = "G43 H5 Z5.\nG1 Z-1. F80.\nX40.\nG0 Z50.\nG49\nG91 G10 L11 P5 R-0.1\nG90";
         let found = message(Dialect::Fanuc31i, groove).unwrap();
-        assert!(found.contains("H5 wear at -0.1") && found.contains("other feeds are elsewhere"), "{found}");
+        assert!(found.contains("H5 wear at -0.1") && found.contains("other feeds lead elsewhere"), "{found}");
         let set = groove.replace("G43 H5", "G90 G10 L11 P5 R0\nG43 H5");
         assert_eq!(message(Dialect::Fanuc31i, &set), None);
     }

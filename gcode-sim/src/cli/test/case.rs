@@ -16,6 +16,7 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_part::{Assumption, NominalPart, Total};
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
+use gcode_session::files::PROGRAM_ENDINGS;
 use gcode_session::{Criteria, Run};
 
 /// Name of the file with the accepted result; behind the program's label and a point if the folder has several cases.
@@ -29,6 +30,8 @@ pub(super) struct Case {
     pub folder: PathBuf,
     /// The programs in the folder; empty if only an accepted result is left.
     pub programs: Vec<PathBuf>,
+    /// Files that begin as programs and have another ending, if the folder has no program.
+    pub others: Vec<PathBuf>,
     /// Label of the main program, if the folder has several cases: its files begin with it, `O0001.accepted.json`.
     pub label: Option<String>,
     /// The main program; `None` if the folder has none, for a reason that the run of the case states.
@@ -102,6 +105,14 @@ impl Case {
         let folder = self.folder.display();
         if self.folder.is_symlink() && !self.folder.exists() {
             return Some(UsageError::new(format!("{folder} is a broken link")));
+        }
+        if let Some(other) = self.others.first().filter(|_| self.programs.is_empty()) {
+            let endings = PROGRAM_ENDINGS.join(", .");
+            let (other, right) = (other.display(), other.with_extension("nc"));
+            let right = right.file_name().unwrap_or_default().to_string_lossy();
+            return Some(UsageError::new(format!(
+                "{other} begins as a program, and its ending is none of .{endings}: rename it to {right}"
+            )));
         }
         self.programs.is_empty().then(|| {
             let remedy = "restore the program, or delete the folder if the part is no longer made";

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use super::case::{ACCEPTED, Case};
 use super::main_program::{self, MainProgram};
-use crate::cli::{UsageError, input};
+use super::other_endings::programs_of_other_endings;
+use crate::cli::{UsageError, input, output};
 use gcode_session::files::{PROGRAM_ENDINGS, begins_program};
 
 /// Folder of a case's called programs; a folder below it is a case only if it has an accepted result.
@@ -21,6 +22,13 @@ pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, UsageError> {
     }
     while let Some(link) = search.links.pop() {
         search.look(link)?;
+    }
+    for path in &search.unnamed {
+        let endings = PROGRAM_ENDINGS.join(", .");
+        output::print_message(&format!(
+            "note: {}: begins as a program, and is no case: programs end with .{endings}\n",
+            path.display()
+        ));
     }
     let mut found = search.found;
     found.sort_by(|(a, one), (b, other)| (a, &one.name).cmp(&(b, &other.name)));
@@ -47,6 +55,8 @@ struct Search {
     /// Folders behind links, searched last.
     links: Vec<CaseFolder>,
     seen: BTreeSet<PathBuf>,
+    /// Files that begin as programs and have another ending, beside other programs or without files of a case.
+    unnamed: Vec<PathBuf>,
 }
 
 impl Search {
@@ -61,7 +71,14 @@ impl Search {
             let accepted: Vec<String> = entries.iter().filter_map(|path| accepted_label(path)).collect();
             let programs: Vec<PathBuf> =
                 entries.iter().filter(|path| !path.is_dir() && is_program(path)).cloned().collect();
-            let is_case = !accepted.is_empty() || !programs.is_empty() && !in_library;
+            let others = if in_library { Vec::new() } else { programs_of_other_endings(&entries) };
+            // Without a program the files of a case would guard nothing.
+            let is_unread =
+                programs.is_empty() && !others.is_empty() && entries.iter().any(|path| belongs_to_case(path));
+            let is_case = !accepted.is_empty() || is_unread || !programs.is_empty() && !in_library;
+            if !is_unread {
+                self.unnamed.extend(others.iter().cloned());
+            }
             for path in entries {
                 let own = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let below = if name.is_empty() { own.clone() } else { format!("{name}/{own}") };
@@ -77,7 +94,8 @@ impl Search {
             }
             if is_case {
                 let name = if name.is_empty() { ".".to_owned() } else { name };
-                let case = Case { name, folder, programs, ..Case::default() };
+                let others = if is_unread { others } else { Vec::new() };
+                let case = Case { name, folder, programs, others, ..Case::default() };
                 self.found.extend(case.by_main_program(&accepted).into_iter().map(|case| (root, case)));
             }
         }
@@ -101,7 +119,8 @@ impl Case {
         let lost = accepted.iter().filter(|label| !label.is_empty() && !labels.contains(label));
         let lost: Vec<_> =
             lost.map(|label| Self { programs: Vec::new(), ..self.of_main(label, None) }).collect();
-        let has_own = !self.programs.is_empty() || accepted.iter().any(String::is_empty);
+        let has_own =
+            !self.programs.is_empty() || !self.others.is_empty() || accepted.iter().any(String::is_empty);
         let mut mains = mains.into_iter();
         let mut cases: Vec<_> = match is_plain {
             true => has_own.then(|| Self { main: mains.next(), ..self }).into_iter().collect(),
@@ -114,7 +133,7 @@ impl Case {
     fn of_main(&self, label: &str, main: Option<MainProgram>) -> Self {
         let (folder, programs) = (self.folder.clone(), self.programs.clone());
         let name = if self.name == "." { label.to_owned() } else { format!("{}/{label}", self.name) };
-        Self { name, folder, programs, label: Some(label.to_owned()), main }
+        Self { name, folder, programs, others: self.others.clone(), label: Some(label.to_owned()), main }
     }
 }
 
@@ -122,6 +141,33 @@ impl Case {
 fn accepted_label(path: &Path) -> Option<String> {
     let label = path.file_name()?.to_str()?.strip_suffix(ACCEPTED)?;
     label.is_empty().then(String::new).or_else(|| Some(label.strip_suffix('.')?.to_owned()))
+}
+
+/// Returns the reference that a case of this program has in its folder: `reference.csv`, or with the name of the main program if the folder has
+/// several. `path` chooses a program of the file.
+pub(in crate::cli) fn reference_beside(program: &Path, path: Option<&str>) -> Option<PathBuf> {
+    const NAMES: [&str; 3] = ["reference.json", "reference.csv", "job.toml"];
+    let folder = input::folder_of(program);
+    let programs: Vec<PathBuf> =
+        input::folder(folder).ok()?.into_iter().filter(|path| !path.is_dir() && is_program(path)).collect();
+    let mains = main_program::of(folder, &programs).ok()?;
+    let is_own = |main: &&MainProgram| {
+        main.file.file_name() == program.file_name()
+            && (main.path.is_none() || path.is_some() && main.path.as_deref() == path)
+    };
+    let own = mains.iter().find(is_own)?;
+    let prefix = if mains.len() == 1 { String::new() } else { own.label() + "." };
+    NAMES.iter().map(|name| folder.join(format!("{prefix}{name}"))).find(|path| path.is_file())
+}
+
+/// Returns true for a file that the program of a case uses.
+fn belongs_to_case(path: &Path) -> bool {
+    const FILES: [&str; 6] =
+        ["machine.toml", "control.toml", "claims.toml", "job.toml", "reference.csv", "reference.json"];
+    path.file_name().and_then(|name| name.to_str()).is_some_and(|name| {
+        FILES.iter().any(|file| name == *file || name.ends_with(&format!(".{file}")))
+            || accepted_label(path).is_some()
+    })
 }
 
 /// Returns true for a file with the ending of a program, and for one with `.txt` or without ending that begins as a program

@@ -4,6 +4,7 @@ mod claims;
 mod find;
 mod main_program;
 mod merge;
+mod other_endings;
 mod watch;
 
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use clap::Args;
 
 use self::case::{Case, CaseResult, Terms};
+pub(super) use self::find::reference_beside;
 use super::conditions::DenyArguments;
 use super::format::TestFormat;
 use super::options::EqualityArguments;

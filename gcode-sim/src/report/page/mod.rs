@@ -133,6 +133,10 @@ impl Page<'_> {
         let memory = self.new.revision.simulation.run.control.memory();
         let label = words::shown(&memory.get(memory.main()).label());
         match &self.old {
+            // Several programs of a dump would have one title.
+            Some((old, _)) if self.new.request.main.is_some() => {
+                format!("Review of {label}, {} against {}", name(&self.new), name(old))
+            }
             Some((old, _)) => format!("Review of {} against {}", name(&self.new), name(old)),
             None => {
                 let name = name(&self.new);

@@ -381,7 +381,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                 @if data.sides.iter().any(|side| !side.scene.strokes.is_empty() && !side.ends_with_alarm) {
                     li.end { "end" }
                 }
-                @if data.sides.iter().any(|side| side.ends_with_alarm) { li.alarm-end { "position at the alarm" } }
+                @if data.sides.iter().any(|side| side.ends_with_alarm) { li.alarm-end { "where the run stopped" } }
             }
             details.note #keys {
                 summary { "Mouse, touch and keys" }

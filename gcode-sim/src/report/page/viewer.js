@@ -5,6 +5,8 @@ const MOST_PIXELS = 0.3;
 const MOST_LETTERS = 1.6e6;
 // Height of the strip for the scale bar below the drawing, pixels.
 const STRIP = 40;
+// Half the length of the cross in place of a ring that is wider than the canvas, pixels.
+const CROSS = 10;
 // Number of shades of the feeds by their height.
 const SHADES = 6;
 
@@ -295,19 +297,24 @@ class Side {
     }
   }
 
+  // Returns where a point of the path is marked: beyond the canvas at its edge, clear of the caption and of the scale bar.
+  inside(at) {
+    const { width, height } = this.view;
+    const seen = [this.screen[at], this.screen[at + 1]];
+    const [x, y] = [Math.max(10, Math.min(width - 10, seen[0])), Math.max(10, Math.min(height - 10, seen[1]))];
+    if (x === seen[0] && y === seen[1]) return seen;
+    if (this.focus && y < 30 && x < 0.6 * width) return [x, 36];
+    return [x, x > width - 145 && y > height - 36 ? height - 46 : y];
+  }
+
   // Marks the start of the path by a triangle and, unless an alarm ends it, its end by a square: holes are rings.
   drawEnds(colours, hasAlarm) {
     if (this.moves.length === 0) return;
     const context = this.context;
     const last = 2 * (this.starts[this.moves.length] - 1);
-    // Beyond the canvas they are at its edge.
-    const inside = (at) => [
-      Math.max(8, Math.min(this.view.width - 8, this.screen[at])),
-      Math.max(8, Math.min(this.view.height - 8, this.screen[at + 1])),
-    ];
     Object.assign(context, { strokeStyle: colours.paper, fillStyle: colours.ink, lineWidth: 1.5 });
-    const [endX, endY] = inside(last);
-    const [startX, startY] = inside(0);
+    const [endX, endY] = this.inside(last);
+    const [startX, startY] = this.inside(0);
     context.beginPath();
     if (!hasAlarm) context.rect(endX - 5, endY - 5, 10, 10);
     context.stroke();
@@ -394,7 +401,7 @@ class Side {
   drawAlarm(colours) {
     if (this.moves.length === 0) return;
     const at = 2 * (this.starts[this.moves.length] - 1);
-    const [x, y] = [this.screen[at], this.screen[at + 1]];
+    const [x, y] = this.inside(at);
     const context = this.context;
     for (const [strokeStyle, lineWidth] of [[colours.paper, 6], [colours.wrong, 3]]) {
       Object.assign(context, { strokeStyle, lineWidth });
@@ -464,7 +471,7 @@ class Side {
   // Writes a hole's name beside it at the first free position; without one, a click on the hole shows it.
   label(hole, taken, colours, always) {
     const [x, y] = this.point(hole.entry);
-    const [away, wide, high] = [this.radius(hole) + 6, this.context.measureText(hole.id).width, 13];
+    const [away, wide, high] = [(this.isBeyond(hole) ? CROSS : this.radius(hole)) + 6, this.context.measureText(hole.id).width, 13];
     const [right, left] = [x + away, x - away - wide];
     const corners = [y - away + 3, y + away + high - 6, y + high / 2 - 2, y - away - high + 3, y + away + 2 * high - 6];
     const places = corners.flatMap((bottom) => [[right, bottom], [left, bottom]]);
@@ -488,6 +495,11 @@ class Side {
     return Math.max(this.holes.length > 500 ? 1.5 : 3, hole.radius * this.view.scale);
   }
 
+  // Whether the ring of a hole is wider than the canvas.
+  isBeyond(hole) {
+    return this.radius(hole) > Math.hypot(this.view.width, this.view.height) / 2;
+  }
+
   strokeHoles(holes, ringed) {
     const context = this.context;
     context.beginPath();
@@ -495,6 +507,13 @@ class Side {
       const [x, y] = this.point(hole.entry);
       context.moveTo(x, y);
       context.lineTo(...this.point(hole.bottom));
+      if (this.isBeyond(hole)) {
+        for (const [dx, dy] of [[CROSS, 0], [0, CROSS]]) {
+          context.moveTo(x - dx, y - dy);
+          context.lineTo(x + dx, y + dy);
+        }
+        continue;
+      }
       for (const radius of ringed ? [this.radius(hole), this.radius(hole) + 4] : [this.radius(hole)]) {
         context.moveTo(x + radius, y);
         context.arc(x, y, radius, 0, 2 * Math.PI);

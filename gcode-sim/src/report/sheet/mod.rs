@@ -158,10 +158,18 @@ impl ProgramSheet<'_> {
 
     fn programs(&self) -> Markup {
         let memory = self.simulation.run.control.memory();
-        let of_memory = memory.sources().iter().map(|(source, text)| {
-            let programs = memory.programs().iter().filter(|program| program.span.source == source);
-            let labels: Vec<String> = programs.map(|program| program.label()).collect();
-            vec![cell(&text.name), cell(labels.join(", ")), digest(text.bytes.file_content())]
+        let labels = |source| {
+            let programs = memory.programs().iter().filter(move |program| program.span.source == source);
+            programs.map(|program| program.label()).collect::<Vec<String>>()
+        };
+        let stubs = &self.simulation.extracted.called_stubs;
+        // A stub must not replace the macro that the control has.
+        let is_for_control =
+            |labels: &[String]| labels.is_empty() || labels.iter().any(|label| !stubs.contains(label));
+        let of_memory = memory.sources().iter().filter_map(|(source, text)| {
+            let labels = labels(source);
+            let row = || vec![cell(&text.name), cell(labels.join(", ")), digest(text.bytes.file_content())];
+            is_for_control(&labels).then(row)
         });
         let others = self.files.iter().map(|(kind, name, bytes)| vec![cell(name), cell(kind), digest(bytes)]);
         html! {
@@ -170,6 +178,12 @@ impl ProgramSheet<'_> {
             p.note {
                 "Compare the hash before the file goes to the control: " code { "certutil -hashfile FILE SHA256" }
                 " (Windows) or " code { "sha256sum FILE" } ". An edited file is not the simulated one."
+            }
+            @if !stubs.is_empty() {
+                p {
+                    b { "Stubs, not for the control: " } (stubs.join(", "))
+                    ". They have M99 alone here; the control needs its own programs of these numbers."
+                }
             }
         }
     }
@@ -246,12 +260,24 @@ impl ProgramSheet<'_> {
     fn lengths(&self, one: &ToolUse) -> String {
         let names = one.length_offsets.iter().map(|offset| match offset {
             LengthCompensation::Off => "none".to_owned(),
-            LengthCompensation::Plus(number) => format!("H{number}{}", self.mark_of(&format!("H{number}"))),
-            LengthCompensation::Minus(number) => {
-                format!("H{number} (G44){}", self.mark_of(&format!("H{number}")))
-            }
+            LengthCompensation::Plus(number) => format!("H{number}{}", self.length_offset(*number)),
+            LengthCompensation::Minus(number) => format!("H{number} (G44){}", self.length_offset(*number)),
         });
         names.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Returns ` = -412.35` for a length offset that the machine file or a flag states, nothing for the length of a tool.
+    fn length_offset(&self, number: u32) -> String {
+        let Request { machine, variables, settings, .. } = self.request;
+        let stated =
+            machine.tools.iter().find(|tool| tool.number == number).and_then(|tool| tool.length_offset);
+        let variable = settings.length_variable(number);
+        let by_flag = variables.iter().rev().find(|(set, _)| Some(*set) == variable);
+        match (by_flag, stated) {
+            (Some((_, value)), _) => format!(" = {} (--set)", short(*value)),
+            (None, Some(value)) => format!(" = {}", self.in_unit(value)),
+            (None, None) => self.mark_of(&format!("H{number}")).to_owned(),
+        }
     }
 
     /// Returns `O1234 line 12, called from O1 line 5`.

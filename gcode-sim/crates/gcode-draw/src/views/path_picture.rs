@@ -209,6 +209,8 @@ fn legend(
     let has_zero = scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Zero(_)));
     let pale = Style { tint: Some(Tint::Pale), width: Some(0.6), ..Style::default() };
     let outline = if path.stock.is_some() { "stock" } else { "part outline" };
+    let is_limit = path.places.iter().any(|place| place.sign == Sign::Alarm && place.label == "limit");
+    let stopped = if is_limit { "limit of the run" } else { "alarm" };
     let others = [
         (has_pen(Pen::Rapid), Sample::Pen(Pen::Rapid), "rapid"),
         (has_pen(Pen::Probe), Sample::Pen(Pen::Probe), "probing move"),
@@ -220,7 +222,7 @@ fn legend(
         (has_sign(Sign::Start), Sample::Sign(Sign::Start), "start"),
         (has_sign(Sign::End), Sample::Sign(Sign::End), "end"),
         (has_sign(Sign::Stop), Sample::Sign(Sign::Stop), "stop"),
-        (has_sign(Sign::Alarm), Sample::Sign(Sign::Alarm), "alarm"),
+        (has_sign(Sign::Alarm), Sample::Sign(Sign::Alarm), stopped),
     ];
     let drawn = others.into_iter().filter(|(is_drawn, ..)| *is_drawn);
     items.extend(drawn.map(|(_, sample, text)| LegendItem::new(sample, text)));

@@ -96,6 +96,9 @@ impl DrawnHole {
 /// other.
 pub(super) const MAX_NUMBERED: usize = 60;
 
+/// Difference of two diameters that are one, mm.
+const SAME_DIAMETER: f64 = 1e-3;
+
 /// Cosine of the largest angle between a hole and the line of sight at which its features are circles: 2.6°.
 const ALONG: f64 = 0.999;
 
@@ -120,9 +123,15 @@ pub(super) fn hole_mark(hole: &DrawnHole, view: &TopView) -> Option<Mark<3>> {
     let shown = hole.shown()?;
     let actual = hole.actual.as_ref().filter(|_| hole.nominal.is_some());
     let features = shown.features.iter().map(|feature| feature.diameter);
+    // A thread has a broken circle of its own, which a solid one would cover.
+    let is_thread = |diameter: &f64| {
+        let mut threads = shown.features.iter().filter(|feature| feature.kind == FeatureKind::Tap);
+        threads.any(|thread| (thread.diameter - diameter).abs() < SAME_DIAMETER)
+    };
+    let diameter = shown.diameter.filter(|own| !is_thread(own)).or_else(|| widest(shown));
     Some(Mark {
         rim: features.fold(0.0, f64::max) / 2.0,
-        radius: shown.diameter.or_else(|| widest(shown)).unwrap_or(0.0) / 2.0,
+        radius: diameter.unwrap_or(0.0) / 2.0,
         depth: shown.depth,
         label: view.label(hole),
         direction: Some(shown.axis),

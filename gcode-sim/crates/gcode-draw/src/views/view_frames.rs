@@ -15,6 +15,9 @@ const GAP: f64 = 0.1;
 /// Length of a tick and distance of a name from its frame, in parts of the largest extent of all views.
 const TICK: f64 = 0.008;
 
+/// Height of a name above its frame, in ticks: between them is a line for the label of a place on the edge.
+const NAME_HEIGHT: f64 = 5.0;
+
 /// Width of a frame under which its name would meet the letter of its upright axis, in parts of the largest extent of all views.
 const NARROW: f64 = 0.15;
 
@@ -272,7 +275,7 @@ impl Frames {
             return strokes;
         }
         // Above a narrow frame the name is clear of the letter of the upright axis.
-        let height = if right - left < NARROW * self.extent { 5.5 } else { 2.5 };
+        let height = if right - left < NARROW * self.extent { 5.5 } else { NAME_HEIGHT };
         let at = view.moved([(left + right) / 2.0, top + height * TICK * self.extent]);
         let name = Shape::Text { at, align: Align::Centre, text: view.kind.name().to_owned() };
         strokes.push(Stroke::new(Pen::Scale, name));

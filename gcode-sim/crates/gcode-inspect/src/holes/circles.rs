@@ -102,8 +102,16 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the turns at nominal threads; a turn along a thread cuts no hole. Of several at one thread the widest decides how far
-    /// the path leads beyond them.
+    /// the path leads beyond them. Without nominal holes those count that cut the wall of a drilled hole.
     fn thread_turns(&self, turns: Vec<&Ring>, cutter: Option<f64>) -> Vec<HoleCircles> {
+        if self.strokes.nominal_axes().is_empty() {
+            let is_at_wall = |ring: &&Ring| self.strokes.is_at_drilled_wall(ring, cutter, self.machine);
+            let whole = turns
+                .into_iter()
+                .filter(is_at_wall)
+                .filter_map(|ring| self.engagement.circles(&[ring], cutter).filter(HoleCircles::is_whole));
+            return whole.collect();
+        }
         let entry = |ring: &&Ring| {
             let axis = self.strokes.nominal_of_ring(ring, true)?;
             (axis.thread.is_some() && self.is_at_nominal_wall(ring, cutter)).then_some(axis.entry)

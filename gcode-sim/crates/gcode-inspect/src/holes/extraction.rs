@@ -27,6 +27,8 @@ pub struct HoleExtraction {
     pub(crate) offset_tools: BTreeSet<Option<u32>>,
     /// H numbers of the tool lengths that the program sets, without 0.
     pub program_lengths: BTreeSet<u32>,
+    /// Called programs that do nothing here: stubs of M99 alone, as `O9811`.
+    pub called_stubs: Vec<String>,
     /// Rapids whose path over the part is unknown; `None` if there are none.
     pub(crate) unknown_rapids: Option<UnknownRapids>,
     /// Rotary axes of the default machine that the program never commands, as bits; they count as 0.
@@ -53,6 +55,8 @@ pub struct HoleExtraction {
     pub(crate) covered_entries: Vec<usize>,
     /// Number of strokes of mills that count as milling.
     pub(crate) milled_strokes: u64,
+    /// Pockets are stated, and no block mills any of them.
+    pub(crate) has_unmilled_pockets: bool,
     /// First and last block of each run of blocks that mill stated pockets.
     pub(crate) milled_blocks: Vec<[Span; 2]>,
     /// Ends of the first feeds along the tool that go beside the part.

@@ -292,7 +292,12 @@ fn push_holes<'p>(
             first_on_line,
         }
     };
-    let starting = cutting.iter().filter(|pass| finish.cut.milled.is_some() || pass.tool == finish.tool);
+    // A mill comes down in rapid to the bottom of a thread: the hole begins where another tool does.
+    let has_other = is_thread(finish) && cutting.iter().any(|pass| !is_thread(pass));
+    let starting = cutting.iter().filter(|pass| match has_other {
+        true => !is_thread(pass),
+        false => finish.cut.milled.is_some() || pass.tool == finish.tool,
+    });
     let start = starting.map(|pass| height(&pass.cut.start)).fold(f64::NEG_INFINITY, f64::max);
     let mut finished = hole(finish, start, lowest, earlier.collect());
     finished.unknown_axes =

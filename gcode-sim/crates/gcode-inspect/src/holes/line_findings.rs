@@ -15,9 +15,9 @@ use crate::findings::{
 };
 use crate::machine::{HeadKind, TOUCH_DEPTH, ToolKind};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Backtrace, LengthCompensation};
+use gcode_lang::motion::{Backtrace, LengthCompensation, Position};
 use gcode_lang::units::Deg;
-use gcode_part::Surface;
+use gcode_part::{Frustum, Surface, Taper};
 
 /// Largest angle between feed and tool, besides rounding.
 const MAX_FEED_TILT: Deg = Deg(0.05);
@@ -133,23 +133,73 @@ impl HoleExtractor<'_> {
 
     /// Records a drilling cycle that cuts nothing of a known body.
     pub(super) fn note_cycle_in_air(&mut self, line: &CuttingLine) {
-        let is_known = without_assumed(line.unknown_axes, self.machine).is_none();
-        let (start, bottom) = (line.start, line.bottom());
+        let unknown = without_assumed(line.unknown_axes, self.machine);
+        let bottom = line.bottom();
         let is_in_body = |surface: Surface| surface.is_deeper(&bottom, TOUCH_DEPTH);
-        if !line.is_cycle || !is_known || self.surface.is_none_or(is_in_body) {
+        if !line.is_cycle || unknown.is_none() && self.surface.is_none_or(is_in_body) {
             return;
         }
-        let axis = line.tool_axis.unwrap_or(line.out);
-        let radius = self.machine.diameter_of(line.cutting_state.tool).unwrap_or(0.0) / 2.0;
-        if self.metal.is_touched(&start, &bottom, &axis, radius) {
-            return;
-        }
+        let place = match unknown.is_none() {
+            true if self.is_cut_by_cycle(line) => return,
+            true => format!("the part has no metal at {}", format_point(&bottom)),
+            false => {
+                let Some(height) = self.height_above_part(line, unknown.all()) else { return };
+                let names = self.machine.axes.names(unknown.all());
+                format!("it stays {height:.3} mm above the part, at any position of {names}")
+            }
+        };
         self.cycles_in_air.add(&CYCLE_IN_AIR, line.backtrace(), 0, |kind| {
-            let message =
-                format!("a drilling cycle cuts nothing: the part has no metal at {}", format_point(&bottom));
-            Diagnostic::new(kind, message)
+            Diagnostic::new(kind, format!("a drilling cycle cuts nothing: {place}"))
                 .help("check X, Y and Z of the cycle; remove it if it is not meant to cut")
         });
+    }
+
+    /// Returns true if the tool of a cycle may cut a known body: its point and its flutes, or a cylinder as wide where the tool
+    /// or its direction is unknown.
+    fn is_cut_by_cycle(&self, line: &CuttingLine) -> bool {
+        let (start, bottom, tool) = (line.start, line.bottom(), line.cutting_state.tool);
+        let axis = line.tool_axis.unwrap_or(line.out);
+        let radius = self.machine.diameter_of(tool).unwrap_or(0.0) / 2.0;
+        if !self.metal.is_touched(&start, &bottom, &axis, radius) {
+            return false;
+        }
+        let is_known = self.setup.tool == tool && line.tool_axis.is_some() && !self.tool_body.is_empty();
+        let Some(body) = self.surface.filter(|_| is_known) else { return true };
+        let mut cutters = self.tool_body.iter().filter(|part| part.is_cutter);
+        cutters.any(|part| {
+            let (from, length) = (part.from, (part.to - part.from).max(0.0));
+            let taper = Taper { radius: part.taper.at(from), ..part.taper };
+            let base = start + axis.into_inner() * from;
+            body.touches(&Frustum { base, axis, length, taper }, &(bottom - start))
+        })
+    }
+
+    /// Returns how far above a known body a cycle stays, seen along the tool, while some axes are unknown; `None` if they move the
+    /// tool along itself, or if it comes lower.
+    fn height_above_part(&self, line: &CuttingLine, unknown: u8) -> Option<f64> {
+        let (body, axis) = self.surface.zip(line.tool_axis)?;
+        let pose =
+            |at: &Position| self.machine.tool_pose(at, &self.setup).relative_to(&self.machine.part_frame(at));
+        let here = pose(&self.axis_position);
+        let moves_across = |index: usize| {
+            let mut at = self.axis_position;
+            at.0[index] += 1.0;
+            let there = pose(&at);
+            let is_parallel =
+                there.axis.is_some_and(|there| (there.into_inner() - axis.into_inner()).norm() < 1e-9);
+            !self.machine.axes.is_rotary(index)
+                && is_parallel
+                && (there.tip - here.tip).dot(&axis).abs() < 1e-9
+        };
+        if !(0..self.machine.axes.len()).filter(|index| unknown & 1 << index != 0).all(moves_across) {
+            return None;
+        }
+        let [low, high] = body.bounds();
+        let farthest =
+            |i: usize| if axis[i] == 0.0 { 0.0 } else { (low[i] * axis[i]).max(high[i] * axis[i]) };
+        let top: f64 = (0..3).map(farthest).sum();
+        let lowest = line.start.coords.dot(&axis).min(line.bottom().coords.dot(&axis));
+        (top + TOUCH_DEPTH < lowest).then_some(lowest - top)
     }
 
     /// Records a tool of unknown diameter that mills the part: it may cut more than its path shows.

@@ -30,6 +30,11 @@ impl MilledBlocks {
         self.is_last_open = false;
     }
 
+    /// Returns true if no block mills.
+    pub(super) fn is_empty(&self) -> bool {
+        self.runs.is_empty()
+    }
+
     /// Returns the first and the last block of each run.
     pub(super) fn finish(self) -> Vec<[Span; 2]> {
         self.runs

@@ -8,6 +8,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::HoleExtractor;
 use super::arc_run::Ring;
 use super::drill_pass::{DrillPass, PassCut};
+use super::group::MAX_LINE_OFFSET;
 use super::line::CuttingLine;
 use super::per_block::with_count_note;
 use super::start_holes::StartHoles;
@@ -162,6 +163,25 @@ impl Strokes {
             true => self.nominal.nearest_above(pass, &ring.out, MAX_AXIS_DISTANCE),
             false => self.nominal.nearest(pass, &ring.out, MAX_AXIS_DISTANCE).map(|(axis, _)| axis),
         }
+    }
+
+    /// Returns true if a circle of a mill cuts the wall of a hole on its axis that an earlier pass has made.
+    pub(super) fn is_at_drilled_wall(&self, ring: &Ring, cutter: Option<f64>, machine: &Machine) -> bool {
+        let Some(cutter) = cutter else { return false };
+        let [inner, outer] = [ring.radius - cutter / 2.0, ring.radius + cutter / 2.0];
+        self.passes.iter().any(|(_, pass)| {
+            let to = ring.centre - pass.cut.bottom;
+            let level = to.dot(&ring.out);
+            let is_thread =
+                pass.cut.milled.and_then(|circle| circle.helix).is_some_and(|helix| helix.is_thread);
+            let is_wall = pass.diameter(machine).is_some_and(|hole| inner < hole / 2.0 && hole / 2.0 < outer);
+            is_wall
+                && !is_thread
+                && PARALLEL_COSINE <= pass.axis.dot(&ring.out)
+                && (to - ring.out.into_inner() * level).norm() <= MAX_LINE_OFFSET
+                && -LEVEL_TOLERANCE <= level
+                && ring.centre.coords.dot(&ring.out) <= pass.cut.start.coords.dot(&ring.out)
+        })
     }
 
     /// Returns the axis of the nominal hole that a stroke cuts.

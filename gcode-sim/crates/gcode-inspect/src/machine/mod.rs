@@ -100,6 +100,8 @@ pub struct Tool {
     pub holder_diameter: Option<f64>,
     /// Length of the holder below the gauge line, mm.
     pub holder_length: Option<f64>,
+    /// Geometry of the length offset H of the tool's number, mm, of a tool without `length`; `None` for that of the control.
+    pub length_offset: Option<f64>,
     /// Cutter radius offset D of the tool's number, mm; `None` for that of the control.
     pub radius_offset: Option<f64>,
     /// Kind; `None` if unknown.
@@ -108,6 +110,14 @@ pub struct Tool {
     pub point_angle: Option<Deg>,
     /// Hand; `None` for a right-hand tool.
     pub hand: Option<Hand>,
+}
+
+impl Tool {
+    /// Returns the geometry of the length offset of its number that the machine file states: its length, or that of a tool
+    /// touched off at the part.
+    pub fn stated_length_offset(&self) -> Option<f64> {
+        self.length.or(self.length_offset)
+    }
 }
 
 /// A work offset at the start of a run.

@@ -2,7 +2,7 @@
 use super::assumption::{denied_assumptions, denied_words};
 use super::conclusion::{Answer, SummaryWords};
 use super::verdict_finding::{Finding, finding_of, limit_per_kind};
-use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
 use gcode_part::{Assumption, Total};
@@ -34,6 +34,13 @@ pub trait AnyVerdict {
     /// Returns true if there is a finding above a note.
     fn has_findings(&mut self) -> bool {
         self.parts().diagnostics.iter().any(|finding| Severity::Warning <= finding.severity)
+    }
+
+    /// Removes the findings of a kind and returns them.
+    fn take_findings(&mut self, kind: &'static FindingKind) -> Vec<Diagnostic> {
+        let parts = self.parts();
+        parts.findings.retain(|finding| finding.code != kind.code);
+        parts.diagnostics.extract_if(.., |finding| finding.kind == kind).collect()
     }
 
     /// Inserts findings about the program's text before those that they may explain; the answer stays.

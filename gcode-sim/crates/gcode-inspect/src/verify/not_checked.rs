@@ -45,7 +45,10 @@ impl NotChecked {
 pub(super) fn gaps(all: &[NotChecked]) -> Vec<String> {
     let mut gaps: Vec<String> = Vec::new();
     for one in all.iter().filter(|one| one.is_gap) {
-        if !gaps.contains(&one.what) {
+        // One with its reason says the same.
+        let with_reason = format!("{} (", one.what);
+        let is_said = all.iter().any(|other| other.is_gap && other.what.starts_with(&with_reason));
+        if !is_said && !gaps.contains(&one.what) {
             gaps.push(one.what.clone());
         }
     }
@@ -73,6 +76,7 @@ pub(super) fn list(
     all.extend(lengths(extraction, machine));
     all.extend(holders(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
+    all.extend(stubs(&extraction.called_stubs));
     if extraction.findings.iter().any(|finding| finding.kind == &BACK_BORED) {
         all.push(NotChecked::gap("bores made backwards", "their depth and diameter"));
     }
@@ -170,6 +174,10 @@ pub(super) fn list(
         let reason = "it may remove all of its [[stock.pocket]], and nothing beside it; what it leaves there is not compared";
         all.push(NotChecked::gap(what, reason));
     }
+    if extraction.has_unmilled_pockets {
+        let reason = "if this program should mill a [[stock.pocket]], blocks are missing";
+        all.push(NotChecked::gap("the stated pockets, which no feed cuts", reason));
+    }
     let covered: Vec<&str> = extraction.covered_entries.iter().map(|index| comparison.id(*index)).collect();
     if !covered.is_empty() {
         let holes = hole_names(&covered);
@@ -212,6 +220,24 @@ fn hole_names(ids: &[&str]) -> String {
         [one] => format!("hole {one}"),
         _ => format!("{} holes (first {})", ids.len(), ids[0]),
     }
+}
+
+/// Returns the effect of called programs that are stubs here.
+fn stubs(programs: &[String]) -> Option<NotChecked> {
+    let what = match programs {
+        [] => return None,
+        [one] => format!("what {one} does (a stub, M99 alone)"),
+        [first, others @ ..] => {
+            let last = others.last()?;
+            let between =
+                others[..others.len() - 1].iter().map(|name| format!(", {name}")).collect::<String>();
+            format!("what {first}{between} and {last} do (stubs, M99 alone)")
+        }
+    };
+    Some(NotChecked::gap(
+        what,
+        "the control has another program of this number; offsets and positions that it sets are unknown",
+    ))
 }
 
 /// Returns the holes of unknown diameter, by their tools.

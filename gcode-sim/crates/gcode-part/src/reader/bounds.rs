@@ -288,7 +288,8 @@ ranges! {
     OffsetNumber: Any i64, 1, 99_999_999, "";
     GaugeLength: Any f64, 0.0, 10_000.0, "mm";
     TipLength: Any f64, 0.0, 10_000.0,
-        "mm from the gauge line to the tip; leave it out if tools are touched off at the part (H is negative)";
+        "mm from the gauge line to the tip; of a tool touched off at the part write length_offset, its H";
+    LengthOffset: Any f64, -10_000.0, 10_000.0, "mm";
     RadiusOffset: Any f64, -10_000.0, 10_000.0, "mm";
     ToolDiameter: Any f64, 0.001, 10_000.0, "mm";
     PointAngle: Any f64, 10.0, 180.0, "degrees";

@@ -215,7 +215,8 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
 
 /// Returns what the machine file and the reference state.
 fn stated_values(request: &Request) -> StatedValues {
-    let lengths = request.machine.tools.iter().filter(|tool| tool.length.is_some()).map(|tool| tool.number);
+    let lengths = request.machine.tools.iter().filter(|tool| tool.stated_length_offset().is_some());
+    let lengths = lengths.map(|tool| tool.number);
     let radii =
         request.machine.tools.iter().filter(|tool| tool.radius_offset.is_some()).map(|tool| tool.number);
     let clamp = request.process_limits.clamp.iter().flat_map(|clamp| [clamp.on, clamp.off]);

@@ -386,7 +386,11 @@ tilt = [0.0, nan, 0.0]
 [[tool]]
 number = 1
 length = -412.35
-=> line 3: key 'tool.length' is -412.35: 0 to 10000 mm from the gauge line to the tip; leave it out if tools are touched off at the part (H is negative)
+=> line 3: key 'tool.length' is -412.35: 0 to 10000 mm from the gauge line to the tip; of a tool touched off at the part write length_offset, its H
+
+tool = [{ number = 1, length = 100.0, length_offset = -412.35 }]
+head = { kind = "manual" }
+=> line 1: key 'tool.length_offset': the tool has a length, which is its H; state one of them
 
 tool = [{ number = 1, length = 5.0 }]
 => line 1: key 'tool.length' acts along the tool"#;

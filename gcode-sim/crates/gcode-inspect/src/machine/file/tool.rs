@@ -6,7 +6,7 @@ use crate::machine::{Head, HeadKind, Tool, ToolKind};
 use gcode_lang::units::Deg;
 use gcode_part::Hand;
 use gcode_part::reader::bounds::{
-    Bounded, GaugeLength, OffsetNumber, PointAngle, RadiusOffset, TipLength, ToolDiameter,
+    Bounded, GaugeLength, LengthOffset, OffsetNumber, PointAngle, RadiusOffset, TipLength, ToolDiameter,
 };
 use gcode_part::reader::{FileError, FileKey, Optional, Reader, Word, WordList};
 
@@ -20,6 +20,9 @@ pub(super) struct FileTool {
     length: Option<Bounded<TipLength>>,
     /// mm [default: unknown].
     diameter: Option<Bounded<ToolDiameter>>,
+    /// Of a tool touched off at the part, instead of `length`: geometry of the length offset H of its number, as the offset page
+    /// shows it, mm [default: what the program sets, else 0].
+    length_offset: Option<Bounded<LengthOffset>>,
     /// Cutter radius offset D of its number, mm [default: what the program sets, else 0].
     radius_offset: Option<Bounded<RadiusOffset>>,
     /// Its kind [default: unknown].
@@ -69,6 +72,11 @@ impl FileTool {
                            with its kind, or remove the length";
             return Err(reader.error(length, message));
         }
+        if let (Some(offset), Some(_)) = (&self.length_offset, &self.length) {
+            let message =
+                "key 'tool.length_offset': the tool has a length, which is its H; state one of them";
+            return Err(reader.error(offset, message));
+        }
         let Self { length, diameter, flute_length, shank_diameter, holder_diameter, holder_length, .. } =
             self;
         self.check_pair(
@@ -98,6 +106,7 @@ impl FileTool {
             shank_diameter: shank_diameter.as_ref().map(Bounded::get),
             holder_diameter: holder_diameter.as_ref().map(Bounded::get),
             holder_length: holder_length.as_ref().map(Bounded::get),
+            length_offset: self.length_offset.as_ref().map(Bounded::get),
             radius_offset: self.radius_offset.as_ref().map(Bounded::get),
             kind: self.kind,
             point_angle: self.point_angle.as_ref().map(Bounded::get).map(Deg),

@@ -1,6 +1,6 @@
 //! Nominal holes that are not drilled, each with the nearest extra hole.
 use super::*;
-use crate::findings::HOLE_MISSING;
+use crate::findings::{HOLE_MISSING, MAIN_PROGRAM};
 use crate::machine::COS_30;
 use crate::verify::bottom;
 
@@ -28,6 +28,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         let cosine = |one: &[i32; 3]| Vector3::from(one.map(f64::from)).dot(&out) / DIRECTION_STEPS;
         directions.is_empty() || directions.iter().any(|one| MIN_SIDE_COSINE <= cosine(one))
     };
+    let is_choice_open = comparison.actual.is_empty()
+        && inspection.extraction.findings.iter().any(|finding| finding.kind == &MAIN_PROGRAM);
     for nominal in &comparison.missing {
         let end = bottom(&comparison.nominal[*nominal]);
         let finding = Diagnostic::new(&HOLE_MISSING, format!("hole {} is missing", comparison.id(*nominal)));
@@ -61,6 +63,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                     ))
                     .help("if that feed is for the hole, correct its position; otherwise add the hole")
                     .with_backtrace(backtrace.clone()),
+                None if is_choice_open => finding.help("choose the program that makes it with --program"),
                 None => finding.help("add the hole to the program"),
             },
         };

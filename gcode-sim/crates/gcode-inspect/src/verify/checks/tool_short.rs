@@ -137,7 +137,7 @@ fn describe(tool: &Tool, part: ToolPart, depth: f64, place: &str) -> (String, &'
                 size(tool.length),
                 size(tool.length) + depth
             ),
-            "check that the length in the machine file runs from the spindle gauge line to the tip; otherwise use \
+            "check that the length in the machine file is in mm, from the spindle gauge line to the tip; otherwise use \
              a longer tool",
         ),
     }
