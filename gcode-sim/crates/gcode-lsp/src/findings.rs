@@ -182,7 +182,8 @@ impl FindingContext<'_> {
     }
 }
 
-fn calling_blocks(calls: &CallChain) -> impl Iterator<Item = Span> {
+/// Iterates over the blocks that called, the innermost first.
+pub(crate) fn calling_blocks(calls: &CallChain) -> impl Iterator<Item = Span> {
     std::iter::successors(calls.as_deref(), |call| call.outer_calls.as_deref()).map(|call| call.calling_block)
 }
 
