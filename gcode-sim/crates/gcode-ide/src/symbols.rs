@@ -47,8 +47,8 @@ pub struct WorkspaceSymbol {
     pub location: Location,
 }
 
-/// Most sequence numbers of a file that are listed as symbols.
-const MAX_NUMBERS: usize = 20_000;
+/// Most sequence numbers of a file that are listed as symbols: in JSON each is some 300 bytes.
+const MAX_NUMBERS: usize = 5_000;
 
 impl Project {
     /// Returns the programs of a file with their sequence numbers and loops.
