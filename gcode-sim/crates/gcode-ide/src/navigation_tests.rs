@@ -125,8 +125,7 @@ fn the_order_in_which_files_are_opened_decides_nothing() {
         let name = |file| project.file_name(file).unwrap().to_owned();
         let id = project.files().map(|(id, _)| id).find(|id| name(*id) == "p/O9.nc").unwrap();
         // Of the O word and of #500.
-        let references =
-            [1, 5].map(|offset| project.references(id, offset, true)).concat().into_iter();
+        let references = [1, 5].map(|offset| project.references(id, offset, true)).concat().into_iter();
         let places = references.map(|found| (name(found.location.file), found.location.range));
         let callers = project.incoming_calls(ProgramKey { file: id, program: 0 }).into_iter();
         let definition = project.definition(id, 5).unwrap().targets.into_iter();

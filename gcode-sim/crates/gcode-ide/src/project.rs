@@ -92,9 +92,9 @@ impl Project {
         let index = FileIndex::new(text, &self.settings);
         self.remove_file(file);
         let name = name.into();
-        let place = self.order.partition_point(|other| {
-            (self.file_name(*other), *other) < (Some(name.as_str()), file)
-        });
+        let place = self
+            .order
+            .partition_point(|other| (self.file_name(*other), *other) < (Some(name.as_str()), file));
         self.order.insert(place, file);
         self.files.insert(file, ProjectFile { name, index, others: BTreeMap::new() });
         self.add_names(file);

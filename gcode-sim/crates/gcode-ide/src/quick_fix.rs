@@ -225,11 +225,7 @@ fn relation_sign(finding: &Finding<'_>) -> Option<QuickFix> {
     let before = if is_blank(first.checked_sub(1).and_then(|at| code.get(at))) { "" } else { " " };
     let after = if is_blank(code.get(behind)) { "" } else { " " };
     let place = [first, behind].map(|at| finding.line.start + at as u32);
-    fix(
-        format!("Write {letters}"),
-        TextRange::new(place[0], place[1]),
-        format!("{before}{letters}{after}"),
-    )
+    fix(format!("Write {letters}"), TextRange::new(place[0], place[1]), format!("{before}{letters}{after}"))
 }
 
 /// Letters become capitals, comments aside.

@@ -116,11 +116,6 @@ impl Repetitions {
         }
     }
 
-    /// Returns true if moves of a program with so many blocks are left out.
-    pub(super) fn has_program_of(&self, blocks: usize) -> bool {
-        self.programs.iter().any(|(_, whole)| blocks <= whole.block_count())
-    }
-
     /// Puts the programs back that have more than `max_blocks` blocks and that `is_one` accepts. Returns them.
     pub(super) fn restore_long(
         &mut self,
@@ -150,16 +145,6 @@ impl Repetitions {
             let place = finding.backtrace.as_ref().map(|place| (place.block.source, place.block.start));
             finding.kind != rules::DOUBLED_N && place.is_some_and(|place| self.stand_ins.contains(&place))
         })
-    }
-
-    /// Returns true if a jump may lead to a sequence number that is left out.
-    pub(super) fn may_numbers_matter(
-        &self,
-        memory: &Memory,
-        programs: impl IntoIterator<Item = ProgramId>,
-    ) -> bool {
-        let may_lead_there = |op: &Op| may_jump(op.kind());
-        self.has_numbers && programs.into_iter().flat_map(|id| memory.get(id).ops()).any(may_lead_there)
     }
 
     /// Returns the sequence numbers that are left out of a program, in the order of the blocks.
@@ -224,6 +209,11 @@ impl MoveModes {
         let has_feed = form.letters & 1 << (b'F' - b'A') != 0;
         Self { code: form.code.or(self.code), has_feed: self.has_feed || has_feed }
     }
+}
+
+/// Returns true if a block of some programs may jump to a sequence number.
+pub(super) fn have_jumps(memory: &Memory, programs: impl IntoIterator<Item = ProgramId>) -> bool {
+    programs.into_iter().flat_map(|id| memory.get(id).ops()).any(|op| may_jump(op.kind()))
 }
 
 /// Returns true for a block that may jump to a sequence number, or call a program that does.
@@ -295,8 +285,9 @@ mod tests {
 
     fn block() -> impl Strategy<Value = String> {
         let number = "-?[0-9]{1,2}\\.?[0-9]?";
-        let moves =
-            format!("(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(R{number})?(F[0-9]0\\.?)?( ?\\(A\\) ?)?");
+        let moves = format!(
+            "(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(R{number})?(F[0-9]0\\.?)?( ?\\(A\\) ?)?"
+        );
         let others = "N9999 M9|M30|M99|G81Z-1\\.R1\\.|G80|#1=#2|IF\\[#1EQ#0\\]GOTO[1-4]0|GOTO[1-4]0|M98P2|M98P2Q20|WHILE\\[#1LT2\\]DO1|END1\
             |G10L52|G11|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|G40 X1\\.|U5\\.|O2|M3M4|M99P20|X#1";
         let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();

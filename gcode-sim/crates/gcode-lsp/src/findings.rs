@@ -63,7 +63,8 @@ pub(crate) fn check(
     let control = (&setup.settings, setup.knowledge);
     let checked = gcode_lint::check_edited(text, before, control, &mut library);
     let sources = checked.memory.sources();
-    let context = FindingContext { uri, document, sources, client, host: files.host(), pages: RefCell::default() };
+    let context =
+        FindingContext { uri, document, sources, client, host: files.host(), pages: RefCell::default() };
     let is_of_document = |finding: &&Finding| place(finding).is_none_or(|span| span.source == SourceId(0));
     let is_allowed = |finding: &Finding| setup.project.allows(finding.kind.code, &setup.path, files);
     // A note without a remedy states a limit of the simulator, no fault of the program; but the run stops at an alarm that
