@@ -1,9 +1,10 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use gcode_control::static_eval::VariableTable;
+use gcode_control::static_plan::StaticPlanner;
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
@@ -45,6 +46,10 @@ pub(crate) struct CheckContext<'a> {
     unit_indices: BTreeMap<ProgramId, usize>,
     /// Files for calculator-type input, see the rule `missing-point`.
     pub calculator_files: OnceLock<BTreeSet<SourceId>>,
+    /// A program may call a macro modally, see the rule `refused-words`.
+    pub may_call_modally: OnceLock<bool>,
+    /// A planner of single blocks that no rule uses now: there is none per program.
+    pub planner: Mutex<Option<StaticPlanner>>,
 }
 
 /// Sequence number of a block that is left out of a check.
@@ -131,9 +136,18 @@ impl<'a> CheckContext<'a> {
         let unit_indices = programs.iter().enumerate().map(|(unit, program)| (program.id, unit)).collect();
         let units = programs.into_iter().map(|program| ProgramUnit::new(memory, program)).collect();
         let variables = VariableTable::new(settings);
-        let calculator_files = OnceLock::new();
-        let mut context =
-            Self { memory, settings, knowledge, variables, units, rules, unit_indices, calculator_files };
+        let mut context = Self {
+            memory,
+            settings,
+            knowledge,
+            variables,
+            units,
+            rules,
+            unit_indices,
+            calculator_files: OnceLock::new(),
+            may_call_modally: OnceLock::new(),
+            planner: Mutex::new(None),
+        };
         context.link_calls();
         context
     }
