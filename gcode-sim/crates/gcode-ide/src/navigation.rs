@@ -137,7 +137,7 @@ impl Project {
         }
         if scope == VariableScope::Local {
             for (from, call) in self.all_calls().filter(|(_, call)| call.record.has_own_locals) {
-                let arguments = call.record.arguments.iter().filter(|argument| argument.local == number);
+                let arguments = call.record.arguments.iter().filter(|argument| argument.local() == number);
                 let mut arguments = arguments.peekable();
                 if arguments.peek().is_none() {
                     continue;
@@ -145,7 +145,7 @@ impl Project {
                 if self.called_program(from.file, &call.record.target).is_some_and(|key| keys.contains(&key))
                 {
                     found.extend(arguments.map(|argument| {
-                        let location = Location { file: from.file, range: call.place(argument.range) };
+                        let location = Location { file: from.file, range: call.place(argument.range()) };
                         Reference { location, access: Access::Write }
                     }));
                 }
