@@ -1,6 +1,5 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::RangeInclusive;
 use std::sync::{Mutex, OnceLock};
 
 use gcode_control::static_eval::VariableTable;
@@ -29,9 +28,6 @@ use super::variables::{self, VariableRead};
 
 /// Note of a finding that is none on a control with another option.
 pub const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
-
-/// Program numbers of macros, which a control protects.
-pub(crate) const MACROS: RangeInclusive<u32> = 9000..=9999;
 
 /// Input of a rule.
 #[derive(Debug)]
@@ -334,11 +330,7 @@ impl<'a> ProgramUnit<'a> {
         if !self.callers.is_empty() {
             return Role::Called;
         }
-        if self.program.number().is_some_and(|number| MACROS.contains(&number)) {
-            return Role::Resident;
-        }
-        let (returns, ends) = self.returns_or_ends();
-        if returns && !ends { Role::Resident } else { Role::Main }
+        Role::of_uncalled(self.program.number(), self.returns_or_ends())
     }
 
     /// Returns whether a block returns, and whether one ends the run.

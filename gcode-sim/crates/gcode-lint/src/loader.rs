@@ -42,9 +42,9 @@ impl<'a, L: Library> Loader<'a, L> {
 
     /// Puts the moves back that were left out. Programs that become long are no longer loaded.
     pub(super) fn restore(&mut self, max_blocks: usize) {
-        let is_called = |id: ProgramId| self.first_called <= id.0 as usize;
         let mut repetitions = std::mem::take(&mut self.repetitions);
-        let long = repetitions.restore_long(self.memory, max_blocks, |id| !is_called(id));
+        let first_called = self.first_called;
+        let long = repetitions.restore_long(self.memory, max_blocks, |id| (id.0 as usize) < first_called);
         self.loaded.retain(|program| !long.contains(&program.id));
         self.long.extend(long.iter().filter(|id| !self.long.contains(id)).copied().collect::<Vec<_>>());
         self.long.sort_unstable();

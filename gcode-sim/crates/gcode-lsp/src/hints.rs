@@ -37,8 +37,10 @@ pub(crate) fn inlay_hints(
     let first = params.range.start.line.saturating_add(1);
     let last = params.range.end.line.saturating_add(1);
     for (line, holes) in facts.holes.range(first..=last.max(first)) {
-        let tooltip = "Position of the hole against the reference (ISO 1101), and what else is wrong with it";
-        hints.push(hint(&text, *line, holes_text(holes), tooltip));
+        let errors = holes.errors.iter().map(|error| format!(", FAIL {error}"));
+        let tooltip =
+            format!("Position of the hole against the reference (ISO 1101){}", errors.collect::<String>());
+        hints.push(hint(&text, *line, holes_text(holes), &tooltip));
     }
     hints.sort_by_key(|hint| hint.position);
     Ok(Some(hints))
@@ -115,7 +117,7 @@ fn is_literal(value: &Expr) -> bool {
     }
 }
 
-/// Returns `Φ0.019 of Φ0.1`, with the errors of the holes and the number of those that the reference lacks.
+/// Returns `Φ0.019 of Φ0.1`, with the errors that this hides and the number of holes that the reference lacks.
 fn holes_text(holes: &HolesOfLine) -> String {
     let HolesOfLine { worst, count, errors, extra } = holes;
     let Some((phi, tolerance)) = worst else { return "no hole of the reference here".to_owned() };
@@ -123,7 +125,8 @@ fn holes_text(holes: &HolesOfLine) -> String {
     if 1 < *count {
         text += &format!(", worst of {count} holes");
     }
-    if !errors.is_empty() {
+    // A position out of tolerance says it itself, as far as three decimals show it.
+    if *phi < tolerance + 0.0005 && !errors.is_empty() {
         text += &format!(", FAIL {}", errors.iter().copied().collect::<Vec<_>>().join(", "));
     }
     match extra {
