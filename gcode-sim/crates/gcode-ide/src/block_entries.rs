@@ -240,12 +240,7 @@ fn record_call(builder: &mut ChunkBuilder<'_>, words: &Words, block: &Block) {
         return;
     }
     let arguments = site.arguments.iter().map(|argument| {
-        let range = TextRange::new(argument.span.start, argument.span.start + 1);
-        ArgumentRecord {
-            letter: argument.letter,
-            local: argument.local as u32,
-            range: builder.relative(range),
-        }
+        ArgumentRecord::new(argument.letter, argument.local, argument.span.start - builder.base)
     });
     let record = CallRecord {
         kind: site.kind,

@@ -68,7 +68,11 @@ impl Project {
     }
 
     fn groups(&self, places: BTreeMap<ProgramKey, Vec<TextRange>>) -> Vec<CallGroup> {
-        let groups = places.into_iter();
-        groups.filter_map(|(key, places)| Some(CallGroup { item: self.item(key)?, places })).collect()
+        let mut groups: Vec<_> = places.into_iter().collect();
+        groups.sort_by_key(|(key, _)| (self.file_name(key.file), key.program));
+        groups
+            .into_iter()
+            .filter_map(|(key, places)| Some(CallGroup { item: self.item(key)?, places }))
+            .collect()
     }
 }

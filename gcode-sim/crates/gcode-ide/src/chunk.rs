@@ -42,6 +42,7 @@ pub(crate) fn read(bytes: &[u8], range: TextRange, settings: &Settings) -> Chunk
         LineItem::Block(block) => builder.push_block(&block),
     });
     builder.chunk.entries.shrink_to_fit();
+    builder.chunk.calls.shrink_to_fit();
     builder.chunk
 }
 

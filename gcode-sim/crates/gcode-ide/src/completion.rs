@@ -194,8 +194,8 @@ impl Project {
             .record
             .arguments
             .iter()
-            .filter(|argument| !call.place(argument.range).touches(offset))
-            .map(|argument| argument.local)
+            .filter(|argument| !call.place(argument.range()).touches(offset))
+            .map(|argument| argument.local())
             .collect();
         let mut lacking = self.parameters_of(called);
         lacking.retain(|parameter| !passed.contains(&parameter.local));

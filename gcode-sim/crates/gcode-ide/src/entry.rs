@@ -92,20 +92,37 @@ pub(crate) struct CallRecord {
     pub arguments: Box<[ArgumentRecord]>,
 }
 
-/// Argument of a call.
+/// Argument of a call, eight bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ArgumentRecord {
     pub letter: u8,
-    pub local: u32,
-    /// Range of the letter.
-    pub range: TextRange,
+    /// #1 to #33.
+    local: u8,
+    /// Offset of the letter.
+    start: u32,
+}
+
+impl ArgumentRecord {
+    pub(crate) fn new(letter: u8, local: usize, start: u32) -> Self {
+        Self { letter, local: local as u8, start }
+    }
+
+    /// Returns the number of the local.
+    pub(crate) fn local(self) -> u32 {
+        self.local.into()
+    }
+
+    /// Returns the range of the letter.
+    pub(crate) fn range(self) -> TextRange {
+        TextRange::new(self.start, self.start + 1)
+    }
 }
 
 impl CallRecord {
     /// Moves all ranges.
     pub(crate) fn shift(&mut self, by: u32) {
-        let ranges = self.arguments.iter_mut().map(|argument| &mut argument.range);
-        for range in ranges.chain([&mut self.block]).chain(&mut self.target_range) {
+        self.arguments.iter_mut().for_each(|argument| argument.start += by);
+        for range in std::iter::once(&mut self.block).chain(&mut self.target_range) {
             *range = TextRange::new(range.start + by, range.end + by);
         }
     }

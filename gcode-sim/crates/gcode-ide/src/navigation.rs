@@ -67,7 +67,7 @@ impl Project {
         (!targets.is_empty()).then_some(Definition { origin, targets })
     }
 
-    /// Returns the references of the symbol at an offset, by file and place.
+    /// Returns the references of the symbol at an offset, by the name of their file and by place.
     pub fn references(&self, file: FileId, offset: u32, with_declaration: bool) -> Vec<Reference> {
         let Some((symbol, _)) = self.symbol_at(file, offset) else { return Vec::new() };
         let mut found = self.symbol_references(&symbol, file);
@@ -102,7 +102,10 @@ impl Project {
         };
         found.sort_unstable();
         found.dedup();
-        found
+        let mut by_file: Vec<_> =
+            found.chunk_by(|one, other| one.location.file == other.location.file).collect();
+        by_file.sort_by_key(|references| self.file_name(references[0].location.file));
+        by_file.concat()
     }
 
     fn variable_references(&self, number: u32, scope: VariableScope, program: ProgramKey) -> Vec<Reference> {
@@ -134,7 +137,7 @@ impl Project {
         }
         if scope == VariableScope::Local {
             for (from, call) in self.all_calls().filter(|(_, call)| call.record.has_own_locals) {
-                let arguments = call.record.arguments.iter().filter(|argument| argument.local == number);
+                let arguments = call.record.arguments.iter().filter(|argument| argument.local() == number);
                 let mut arguments = arguments.peekable();
                 if arguments.peek().is_none() {
                     continue;
@@ -142,7 +145,7 @@ impl Project {
                 if self.called_program(from.file, &call.record.target).is_some_and(|key| keys.contains(&key))
                 {
                     found.extend(arguments.map(|argument| {
-                        let location = Location { file: from.file, range: call.place(argument.range) };
+                        let location = Location { file: from.file, range: call.place(argument.range()) };
                         Reference { location, access: Access::Write }
                     }));
                 }
@@ -253,7 +256,7 @@ impl Project {
         };
         let writes = references.iter().filter(|reference| reference.access == Access::Write);
         let mut writes: Vec<_> = writes.map(|reference| reference.location).collect();
-        writes.sort_by_key(|location| (!is_own(location), *location));
+        writes.sort_by_key(|location| (!is_own(location), self.file_name(location.file), *location));
         if let Some(first) = writes.first().filter(|location| is_own(location)) {
             return vec![self.block_target(*first)];
         }

@@ -1,6 +1,9 @@
 //! Tests of definitions, references, symbols, folding, calls and links.
+use gcode_lang::control::Settings;
+
 use crate::folding::FoldingKind;
 use crate::navigation::Access;
+use crate::project::{ProgramKey, Project};
 use crate::symbols::DocumentSymbol;
 use crate::testing::fixture;
 use crate::text::FileId;
@@ -90,14 +93,53 @@ fn symbols_are_nested() {
     let symbols = fixture.project.document_symbols(FileId(0));
     assert_eq!(shown(&symbols), "(O0001(N10 WHILE[#1 LT 3]DO1(N20) N30) O0002(DO2))");
     assert_eq!((symbols[0].detail.as_str(), symbols[0].children[0].detail.as_str()), ("TITLE", "G0"));
-    fn check(symbols: &[DocumentSymbol], start: u32, end: u32) {
-        for symbol in symbols {
-            assert!(start <= symbol.range.start && symbol.range.end <= end, "{symbol:?}");
-            assert!(symbol.range.start <= symbol.selection.start && symbol.selection.end <= symbol.range.end);
-            check(&symbol.children, symbol.range.start, symbol.range.end);
-        }
+    check_nesting(&symbols, 0, u32::MAX);
+}
+
+/// Checks that symbols lie in a range, their names in them, and so on inside.
+fn check_nesting(symbols: &[DocumentSymbol], start: u32, end: u32) {
+    for symbol in symbols {
+        assert!(start <= symbol.range.start && symbol.range.end <= end, "{symbol:?}");
+        assert!(symbol.range.start <= symbol.selection.start && symbol.selection.end <= symbol.range.end);
+        check_nesting(&symbol.children, symbol.range.start, symbol.range.end);
     }
-    check(&symbols, 0, u32::MAX);
+}
+
+#[test]
+fn a_symbol_of_the_last_line_ends_with_its_program() {
+    for text in ["O1\nG21\nN9 ", "O1\nN9 X1. % Y2.\n", "O1\nDO1\nN9 \t", "O1\nDO1\nX1.\nEND1  "] {
+        check_nesting(&fixture(text).project.document_symbols(FileId(0)), 0, u32::MAX);
+    }
+}
+
+#[test]
+fn the_order_in_which_files_are_opened_decides_nothing() {
+    let main = ("p/O1.nc", "O1\nG65 P9 A1.\n#500=1.\nM30\n");
+    let other = ("p/O2.nc", "O2\nG65 P9 A2.\n#500=2.\nM30\n");
+    let called = ("p/O9.nc", "O9\nX#500\nM99\n");
+    let shown = |files: [(&str, &str); 3]| {
+        let mut project = Project::new(Settings::default());
+        for (id, (name, text)) in (0..).zip(files) {
+            project.set_file(FileId(id), name, text.as_bytes().to_vec());
+        }
+        let name = |file| project.file_name(file).unwrap().to_owned();
+        let id = project.files().map(|(id, _)| id).find(|id| name(*id) == "p/O9.nc").unwrap();
+        // Of the O word and of #500.
+        let references = [1, 5].map(|offset| project.references(id, offset, true)).concat().into_iter();
+        let places = references.map(|found| (name(found.location.file), found.location.range));
+        let callers = project.incoming_calls(ProgramKey { file: id, program: 0 }).into_iter();
+        let definition = project.definition(id, 5).unwrap().targets.into_iter();
+        (
+            places.collect::<Vec<_>>(),
+            callers.map(|group| group.item.name).collect::<Vec<_>>(),
+            definition.map(|target| name(target.file)).collect::<Vec<_>>(),
+        )
+    };
+    let first = shown([main, other, called]);
+    assert_eq!(first.1, ["O0001", "O0002"]);
+    assert_eq!(first.2, ["p/O1.nc", "p/O2.nc"]);
+    assert_eq!(shown([called, other, main]), first);
+    assert_eq!(shown([other, main, called]), first);
 }
 
 #[test]

@@ -22,6 +22,8 @@ pub struct Project {
     control: u32,
     before: Vec<(u32, Settings)>,
     files: BTreeMap<FileId, ProjectFile>,
+    /// Files by name: in which order they were opened decides no answer.
+    order: Vec<FileId>,
     /// Programs by the name that calls state.
     names: BTreeMap<ProgramName, BTreeSet<ProgramKey>>,
 }
@@ -89,7 +91,12 @@ impl Project {
     pub fn set_file(&mut self, file: FileId, name: impl Into<String>, text: impl Into<Bytes>) {
         let index = FileIndex::new(text, &self.settings);
         self.remove_file(file);
-        self.files.insert(file, ProjectFile { name: name.into(), index, others: BTreeMap::new() });
+        let name = name.into();
+        let place = self
+            .order
+            .partition_point(|other| (self.file_name(*other), *other) < (Some(name.as_str()), file));
+        self.order.insert(place, file);
+        self.files.insert(file, ProjectFile { name, index, others: BTreeMap::new() });
         self.add_names(file);
     }
 
@@ -114,6 +121,7 @@ impl Project {
     pub fn remove_file(&mut self, file: FileId) {
         self.remove_names(file);
         self.files.remove(&file);
+        self.order.retain(|other| *other != file);
     }
 
     fn add_names(&mut self, file: FileId) {
@@ -148,9 +156,9 @@ impl Project {
         self.files.get(&file).map(|found| found.name.as_str())
     }
 
-    /// Iterates over the files.
+    /// Iterates over the files, by name.
     pub fn files(&self) -> impl Iterator<Item = (FileId, &FileIndex)> {
-        self.files.iter().map(|(id, file)| (*id, &file.index))
+        self.order.iter().filter_map(|id| Some((*id, self.file(*id)?)))
     }
 
     /// Iterates over all programs, by file.

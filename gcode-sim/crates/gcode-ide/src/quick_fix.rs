@@ -219,8 +219,13 @@ fn relation_sign(finding: &Finding<'_>) -> Option<QuickFix> {
     let first = at + code.get(at..)?.iter().position(is_sign)?;
     let rest = &code[first..];
     let (sign, letters) = SIGNS.iter().find(|(sign, _)| rest.starts_with(sign.as_bytes()))?;
-    let start = finding.line.start + first as u32;
-    fix(format!("Write {letters}"), TextRange::new(start, start + sign.len() as u32), format!(" {letters} "))
+    let behind = first + sign.len();
+    // One blank on each side, with those that stand there.
+    let is_blank = |byte: Option<&u8>| byte == Some(&b' ');
+    let before = if is_blank(first.checked_sub(1).and_then(|at| code.get(at))) { "" } else { " " };
+    let after = if is_blank(code.get(behind)) { "" } else { " " };
+    let place = [first, behind].map(|at| finding.line.start + at as u32);
+    fix(format!("Write {letters}"), TextRange::new(place[0], place[1]), format!("{before}{letters}{after}"))
 }
 
 /// Letters become capitals, comments aside.
@@ -316,6 +321,8 @@ mod tests {
             ("GOTO N10", "GOTO 10", "Write GOTO 10"),
             ("G0 X\u{2212}10.", "G0 X-10.", "Write the minus '-'"),
             ("IF[#1==2]GOTO 5", "IF[#1 EQ 2]GOTO 5", "Write EQ"),
+            ("IF[#1 > 2.]GOTO 5", "IF[#1 GT 2.]GOTO 5", "Write GT"),
+            ("IF[#1 >2.]GOTO 5", "IF[#1 GT 2.]GOTO 5", "Write GT"),
             ("#1=1E3", "#1=1000.", "Write 1000."),
             ("G0 Z--5.", "G0 Z-5.", "Write Z-5."),
             ("G0 X1. (OPEN X2.", "G0 X1. (OPEN X2.)", "Close the comment at the end of the line"),

@@ -105,8 +105,8 @@ impl Project {
                     };
                     let called = self.called_program(file, &call.record.target);
                     for argument in &call.record.arguments {
-                        let (letter, local) = (char::from(argument.letter), argument.local);
-                        offer(Symbol::Argument { letter, local, called }, call.place(argument.range));
+                        let (letter, local) = (char::from(argument.letter), argument.local());
+                        offer(Symbol::Argument { letter, local, called }, call.place(argument.range()));
                     }
                     let names_program = call.record.target != CalledProgramName::Missing;
                     if let Some(range) = call.target_range() {

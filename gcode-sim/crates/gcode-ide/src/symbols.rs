@@ -47,8 +47,8 @@ pub struct WorkspaceSymbol {
     pub location: Location,
 }
 
-/// Most sequence numbers of a file that are listed as symbols.
-const MAX_NUMBERS: usize = 20_000;
+/// Most sequence numbers of a file that are listed as symbols: in JSON each is some 300 bytes.
+const MAX_NUMBERS: usize = 5_000;
 
 impl Project {
     /// Returns the programs of a file with their sequence numbers and loops.
@@ -75,20 +75,22 @@ impl Project {
     fn program_symbols(&self, key: ProgramKey, left: &mut usize) -> Vec<DocumentSymbol> {
         let Some(index) = self.file(key.file) else { return Vec::new() };
         let text = index.text();
+        // Behind the last word a line may go on, but the program ends.
+        let program_end = self.program(key).map_or(0, |outline| outline.range.end);
         // Open loops, the program first.
         let mut open: Vec<(u32, DocumentSymbol)> = Vec::new();
         let mut top = Vec::new();
         for entry in index.program_entries(key.program) {
-            let line = line_range(text, entry.range.start);
+            let line_end = line_range(text, entry.range.start).end.min(program_end).max(entry.range.end);
             match entry.kind {
                 EntryKind::Number if *left > 0 => {
                     *left -= 1;
-                    let behind = TextRange::new(entry.range.end, line.end);
+                    let behind = TextRange::new(entry.range.end, line_end);
                     let symbol = DocumentSymbol {
                         name: format!("N{}", entry.value),
                         detail: lossy(behind.of(text)).trim().to_owned(),
                         kind: SymbolKind::Number,
-                        range: TextRange::new(entry.range.start, line.end),
+                        range: TextRange::new(entry.range.start, line_end),
                         selection: entry.range,
                         children: Vec::new(),
                     };
@@ -99,7 +101,7 @@ impl Project {
                         name: lossy(entry.range.of(text)),
                         detail: String::new(),
                         kind: SymbolKind::Loop,
-                        range: TextRange::new(entry.range.start, line.end),
+                        range: TextRange::new(entry.range.start, line_end),
                         selection: entry.range,
                         children: Vec::new(),
                     };
@@ -110,7 +112,7 @@ impl Project {
                     let Some(at) = open.iter().rposition(|(number, _)| *number == entry.value) else {
                         continue;
                     };
-                    close_loops(&mut open, &mut top, at, line.end);
+                    close_loops(&mut open, &mut top, at, line_end);
                 }
                 _ => {}
             }

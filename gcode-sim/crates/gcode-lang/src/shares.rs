@@ -6,8 +6,9 @@ const MIN_TO_SHARE: usize = 2000;
 
 /// Returns the number of blocks in the share of one thread; at least 1.
 pub(crate) fn share_length(blocks: usize) -> usize {
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let threads = if blocks < MIN_TO_SHARE { 1 } else { cores };
+    // The system is asked for long programs alone: the answer takes as long as the work on a short one.
+    let cores = || thread::available_parallelism().map_or(1, usize::from);
+    let threads = if blocks < MIN_TO_SHARE { 1 } else { cores() };
     blocks.div_ceil(threads).max(1)
 }
 

@@ -1,9 +1,9 @@
 //! Programs under check, each with its text, blocks, control flow and calls.
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::RangeInclusive;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use gcode_control::static_eval::VariableTable;
+use gcode_control::static_plan::StaticPlanner;
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, FindingKind, Severity};
@@ -29,9 +29,6 @@ use super::variables::{self, VariableRead};
 /// Note of a finding that is none on a control with another option.
 pub const CONTROL_ASSUMED: &str = "no file states the control: an option or the machine builder may give it";
 
-/// Program numbers of macros, which a control protects.
-pub(crate) const MACROS: RangeInclusive<u32> = 9000..=9999;
-
 /// Input of a rule.
 #[derive(Debug)]
 pub(crate) struct CheckContext<'a> {
@@ -45,6 +42,10 @@ pub(crate) struct CheckContext<'a> {
     unit_indices: BTreeMap<ProgramId, usize>,
     /// Files for calculator-type input, see the rule `missing-point`.
     pub calculator_files: OnceLock<BTreeSet<SourceId>>,
+    /// A program may call a macro modally, see the rule `refused-words`.
+    pub may_call_modally: OnceLock<bool>,
+    /// A planner of single blocks that no rule uses now: there is none per program.
+    pub planner: Mutex<Option<StaticPlanner>>,
 }
 
 /// Sequence number of a block that is left out of a check.
@@ -131,9 +132,18 @@ impl<'a> CheckContext<'a> {
         let unit_indices = programs.iter().enumerate().map(|(unit, program)| (program.id, unit)).collect();
         let units = programs.into_iter().map(|program| ProgramUnit::new(memory, program)).collect();
         let variables = VariableTable::new(settings);
-        let calculator_files = OnceLock::new();
-        let mut context =
-            Self { memory, settings, knowledge, variables, units, rules, unit_indices, calculator_files };
+        let mut context = Self {
+            memory,
+            settings,
+            knowledge,
+            variables,
+            units,
+            rules,
+            unit_indices,
+            calculator_files: OnceLock::new(),
+            may_call_modally: OnceLock::new(),
+            planner: Mutex::new(None),
+        };
         context.link_calls();
         context
     }
@@ -320,11 +330,7 @@ impl<'a> ProgramUnit<'a> {
         if !self.callers.is_empty() {
             return Role::Called;
         }
-        if self.program.number().is_some_and(|number| MACROS.contains(&number)) {
-            return Role::Resident;
-        }
-        let (returns, ends) = self.returns_or_ends();
-        if returns && !ends { Role::Resident } else { Role::Main }
+        Role::of_uncalled(self.program.number(), self.returns_or_ends())
     }
 
     /// Returns whether a block returns, and whether one ends the run.

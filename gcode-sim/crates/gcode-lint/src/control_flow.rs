@@ -218,14 +218,17 @@ impl ControlFlowGraph {
         let mut open: Vec<_> = starts.into_iter().collect();
         while let Some((place, state)) = open.pop() {
             let Some(known) = states.get_mut(place) else { continue };
-            let before = known.clone();
             match known {
-                Some(known) => join(known, state),
+                Some(known) => {
+                    let before = known.clone();
+                    join(known, state);
+                    if *known == before {
+                        continue;
+                    }
+                }
                 None => *known = Some(state),
             }
-            if *known != before {
-                known.iter().for_each(|state| next(place, state, &mut open));
-            }
+            known.iter().for_each(|state| next(place, state, &mut open));
         }
         states
     }

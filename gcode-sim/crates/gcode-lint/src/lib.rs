@@ -64,7 +64,6 @@ use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::KnownBlocks;
 use loader::Loader;
 use piece_ends::PieceSizes;
-use repetition::Repetitions;
 pub use variables::variables_read;
 
 /// Result of a check: the findings and the texts they refer to.
@@ -149,56 +148,41 @@ fn check_sized(
     if loader.may_numbers_matter() {
         loader.restore(sizes.whole);
     }
-    if let Some((findings, programs)) = check_in_pieces(&mut loader, control.1, sizes) {
-        return CheckResult { programs, memory, findings, blocks: CheckedBlocks::default() };
+    let mut findings = check_programs(&mut loader, &mut known, control.1, sizes);
+    if loader.repetitions.stand_for_found(&findings) {
+        loader.restore(sizes.whole);
+        findings = check_programs(&mut loader, &mut known, control.1, sizes);
     }
-    loader.load_long(&mut known);
-    let Loader { mut repetitions, loaded: units, .. } = loader;
-    let mut context = CheckContext::new(&memory, control, units, rules::codes());
-    for unit in &mut context.units {
-        unit.left_out_numbers = repetitions.take_numbers(unit.id);
-    }
-    let mut findings = rules::findings(&context);
-    let mut units = context.into_loaded();
-    if repetitions.stand_for_found(&findings) {
-        if repetitions.has_program_of(sizes.whole + 1) {
-            let mut loader = Loader::of_loaded(&mut memory, control.0, library, (repetitions, units));
-            loader.restore(sizes.whole);
-            if let Some((findings, programs)) = check_in_pieces(&mut loader, control.1, sizes) {
-                return CheckResult { programs, memory, findings, blocks: CheckedBlocks::default() };
-            }
-            loader.load_long(&mut known);
-            (repetitions, units) = (Repetitions::default(), loader.loaded);
-        }
-        repetitions.restore(&mut memory, control.0, &mut units);
-        let context = CheckContext::new(&memory, control, units, rules::codes());
-        findings = rules::findings(&context);
-        units = context.into_loaded();
-    }
-    let programs = units.len();
-    let blocks = CheckedBlocks::new(&memory, control.0, units);
+    let Loader { loaded, long, .. } = loader;
+    let programs = loaded.len() + long.len();
+    let blocks = match long.is_empty() {
+        true => CheckedBlocks::new(&memory, control.0, loaded),
+        false => CheckedBlocks::default(),
+    };
     CheckResult { programs, memory, findings, blocks }
 }
 
-/// Returns the findings, and the number of programs, if one is long and can be checked in pieces.
-fn check_in_pieces<L: Library>(
+/// Returns the findings of all programs: the long ones in pieces if that is possible, otherwise they are loaded too.
+fn check_programs<L: Library>(
     loader: &mut Loader<'_, L>,
+    known: &mut KnownBlocks,
     knowledge: ControlKnowledge,
     sizes: PieceSizes,
-) -> Option<(Vec<Diagnostic>, usize)> {
-    if loader.long.is_empty() {
-        return None;
+) -> Vec<Diagnostic> {
+    if !loader.long.is_empty() {
+        if let Some(findings) = pieces::findings(loader, knowledge, sizes) {
+            return findings;
+        }
+        loader.load_long(known);
     }
-    // The numbers of moves that are left out are not known to the pieces.
-    if loader.repetitions.has_numbers() {
-        loader.restore(sizes.whole);
+    let units = std::mem::take(&mut loader.loaded);
+    let mut context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+    for unit in &mut context.units {
+        unit.left_out_numbers = loader.repetitions.take_numbers(unit.id);
     }
-    let mut findings = pieces::findings(loader, knowledge, sizes)?;
-    if loader.repetitions.stand_for_found(&findings) {
-        loader.restore(sizes.whole);
-        findings = pieces::findings(loader, knowledge, sizes)?;
-    }
-    Some((findings, loader.loaded.len() + loader.long.len()))
+    let findings = rules::findings(&context);
+    loader.loaded = context.into_loaded();
+    findings
 }
 
 impl CheckResult {

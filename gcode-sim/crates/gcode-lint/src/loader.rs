@@ -7,7 +7,7 @@ use gcode_lang::syntax::KnownBlocks;
 
 use super::calls::{CallSite, CalledProgramName};
 use super::context::LoadedProgram;
-use super::repetition::Repetitions;
+use super::repetition::{Repetitions, have_jumps};
 
 /// Programs that are found, and those of them that are loaded.
 pub(super) struct Loader<'a, L> {
@@ -34,44 +34,17 @@ impl<'a, L: Library> Loader<'a, L> {
         Self { memory, settings, library, repetitions, loaded, long, found, known, first_called, next: 0 }
     }
 
-    /// Takes programs that are loaded with all that they call.
-    pub(super) fn of_loaded(
-        memory: &'a mut Memory,
-        settings: &'a Settings,
-        library: &'a mut L,
-        (repetitions, loaded): (Repetitions, Vec<LoadedProgram>),
-    ) -> Self {
-        let found: Vec<_> = loaded.iter().map(|program| program.id).collect();
-        let known = found.iter().copied().collect();
-        // Programs of the files in memory come first, by their ids.
-        let first_called = found.iter().zip(0..).take_while(|(id, place)| id.0 == *place).count();
-        let next = found.len();
-        Self {
-            memory,
-            settings,
-            library,
-            repetitions,
-            loaded,
-            long: Vec::new(),
-            found,
-            known,
-            first_called,
-            next,
-        }
-    }
-
-    /// Returns true if a jump may lead to a sequence number that is left out.
+    /// Returns true if a jump may lead to a sequence number that is left out. Of a long program it is not known.
     pub(super) fn may_numbers_matter(&self) -> bool {
-        // Of a long program it is not known.
         let loaded = self.loaded.iter().map(|program| program.id);
-        self.long.is_empty() && self.repetitions.may_numbers_matter(self.memory, loaded)
+        self.repetitions.has_numbers() && (!self.long.is_empty() || have_jumps(self.memory, loaded))
     }
 
     /// Puts the moves back that were left out. Programs that become long are no longer loaded.
     pub(super) fn restore(&mut self, max_blocks: usize) {
-        let is_called = |id: ProgramId| self.first_called <= id.0 as usize;
         let mut repetitions = std::mem::take(&mut self.repetitions);
-        let long = repetitions.restore_long(self.memory, max_blocks, |id| !is_called(id));
+        let first_called = self.first_called;
+        let long = repetitions.restore_long(self.memory, max_blocks, |id| (id.0 as usize) < first_called);
         self.loaded.retain(|program| !long.contains(&program.id));
         self.long.extend(long.iter().filter(|id| !self.long.contains(id)).copied().collect::<Vec<_>>());
         self.long.sort_unstable();

@@ -13,7 +13,7 @@ use gcode_lang::source::Span;
 use gcode_lang::syntax::KnownBlocks;
 
 use super::ControlKnowledge;
-use super::context::{CheckContext, LoadedProgram, MACROS, ProgramUnit, Role};
+use super::context::{CheckContext, LoadedProgram, ProgramUnit, Role};
 use super::control_flow::ControlFlowGraph;
 use super::literal;
 use super::loader::Loader;
@@ -104,7 +104,7 @@ fn findings_of_others<L: Library>(
     of_others
 }
 
-/// Checks a long program, first as a main program or a macro, whichever its end suggests.
+/// Checks a long program, first in the role that its number suggests; another one shows only at its end.
 fn findings_of_program<L: Library>(
     loader: &mut Loader<'_, L>,
     id: ProgramId,
@@ -114,29 +114,19 @@ fn findings_of_program<L: Library>(
     let whole = loader.memory.get(id);
     let part = whole.part(0..0);
     let whole = loader.memory.replace(id, part);
-    let mut result = Err(NotInPieces);
-    let roles = [Role::Main, Role::Resident];
-    for role in if is_macro(&whole) { [Role::Resident, Role::Main] } else { roles } {
-        result = findings_as(loader, (id, &whole, role), knowledge, sizes);
-        if result.as_ref().is_ok_and(|found| found.role(&whole) != role) {
-            continue;
+    let suggested = Role::of_uncalled(whole.number(), (false, false));
+    let mut result = findings_as(loader, (id, &whole, suggested), knowledge, sizes);
+    if let Ok(found) = &result {
+        let role = Role::of_uncalled(whole.number(), (found.returns, found.ends));
+        if role != suggested {
+            result = findings_as(loader, (id, &whole, role), knowledge, sizes);
         }
-        break;
     }
     loader.memory.replace(id, whole);
     result
 }
 
-fn is_macro(program: &Program) -> bool {
-    program.number().is_some_and(|number| MACROS.contains(&number))
-}
-
-impl WholeProgram {
-    fn role(&self, program: &Program) -> Role {
-        if is_macro(program) || self.returns && !self.ends { Role::Resident } else { Role::Main }
-    }
-}
-
+/// Checks a long program piece by piece, in a role.
 fn findings_as<L: Library>(
     loader: &mut Loader<'_, L>,
     (id, whole, role): (ProgramId, &Program, Role),

@@ -1,7 +1,7 @@
 //! Repeated moves, left out of a check: they tell no rule anything that an earlier move of the same form does not.
 //!
-//! A long file consists of moves of axis words with decimal points. No rule depends on their values, only on the form of a
-//! block (its letters and its code) and the modes in which it stands. In a run of moves one block of each form in each mode
+//! A long file consists of moves of axis words with decimal points. No rule depends on their values and comments, only on the form
+//! of a block (its letters and its code) and the modes in which it stands. In a run of moves one block of each form in each mode
 //! stands for all of them, and the last block for the end of the run. If a rule finds something at such a block, or a jump
 //! may lead to a sequence number that is left out, all blocks are checked. The rule of repeated sequence numbers knows those
 //! that are left out.
@@ -72,7 +72,8 @@ impl Repetitions {
         let mut is_left_out = vec![false; program.block_count()];
         let mut run = MoveRun::default();
         let mut numbers: Vec<(OpIndex, LeftOutNumber)> = Vec::new();
-        program.visit_number_blocks(|block, op| {
+        program.visit_number_blocks(|block, read| {
+            let op = read.filter(|(_, comment)| !is_read_by_rule(comment)).map(|(op, _)| op);
             let form = op.and_then(|op| MoveForm::of(op, settings).zip(Some(op)));
             let Some((form, op)) = form else {
                 self.end_run(&std::mem::take(&mut run), source, &mut is_left_out);
@@ -115,11 +116,6 @@ impl Repetitions {
         }
     }
 
-    /// Returns true if moves of a program with so many blocks are left out.
-    pub(super) fn has_program_of(&self, blocks: usize) -> bool {
-        self.programs.iter().any(|(_, whole)| blocks <= whole.block_count())
-    }
-
     /// Puts the programs back that have more than `max_blocks` blocks and that `is_one` accepts. Returns them.
     pub(super) fn restore_long(
         &mut self,
@@ -151,16 +147,6 @@ impl Repetitions {
         })
     }
 
-    /// Returns true if a jump may lead to a sequence number that is left out.
-    pub(super) fn may_numbers_matter(
-        &self,
-        memory: &Memory,
-        programs: impl IntoIterator<Item = ProgramId>,
-    ) -> bool {
-        let may_lead_there = |op: &Op| may_jump(op.kind());
-        self.has_numbers && programs.into_iter().flat_map(|id| memory.get(id).ops()).any(may_lead_there)
-    }
-
     /// Returns the sequence numbers that are left out of a program, in the order of the blocks.
     pub(super) fn take_numbers(&mut self, id: ProgramId) -> Vec<LeftOutNumber> {
         self.numbers.remove(&id).unwrap_or_default()
@@ -177,6 +163,12 @@ impl Repetitions {
             }
         }
     }
+}
+
+/// Returns true for a comment that a rule may read: it turns rules off, or has a jump.
+fn is_read_by_rule(comment: &[u8]) -> bool {
+    const READ: [&[u8]; 2] = [b"CHECK-OFF", b"GOTO"];
+    READ.iter().any(|word| comment.windows(word.len()).any(|part| part.eq_ignore_ascii_case(word)))
 }
 
 impl MoveForm {
@@ -217,6 +209,11 @@ impl MoveModes {
         let has_feed = form.letters & 1 << (b'F' - b'A') != 0;
         Self { code: form.code.or(self.code), has_feed: self.has_feed || has_feed }
     }
+}
+
+/// Returns true if a block of some programs may jump to a sequence number.
+pub(super) fn have_jumps(memory: &Memory, programs: impl IntoIterator<Item = ProgramId>) -> bool {
+    programs.into_iter().flat_map(|id| memory.get(id).ops()).any(|op| may_jump(op.kind()))
 }
 
 /// Returns true for a block that may jump to a sequence number, or call a program that does.
@@ -278,13 +275,19 @@ mod tests {
         let changes = "O1\nF9.\nG1X1.\nG2X2.R5.\nG1X3.\nG2X4.R5.\nG1X5.\nX6.\nX7.\nX8.\n";
         assert_eq!(left_out(changes), 1);
         assert_eq!(left_out("O1\nX1\nX2\nX3\n"), 0, "without a point");
-        assert_eq!(left_out("O1\nX1.\nX2. (A)\nX3.\n"), 0, "a comment ends the run");
+        assert_eq!(left_out("O1\nX1.\nX2. (A)\nX3.(B) \nX4.\n"), 2, "comments are none of the form");
+        let read = ["(CHECK-OFF MISSING-FEED)", "(IF[#1 EQ 1]goto 5)", "(A)(B)", "(A(B))", "(A", "(A) Y1."];
+        for comment in read {
+            let text = format!("O1\nX1.\nX2. {comment}\nX3.\n");
+            assert_eq!(left_out(&text), 0, "{comment} ends the run");
+        }
     }
 
     fn block() -> impl Strategy<Value = String> {
         let number = "-?[0-9]{1,2}\\.?[0-9]?";
-        let moves =
-            format!("(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(R{number})?(F[0-9]0\\.?)?");
+        let moves = format!(
+            "(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(R{number})?(F[0-9]0\\.?)?( ?\\(A\\) ?)?"
+        );
         let others = "N9999 M9|M30|M99|G81Z-1\\.R1\\.|G80|#1=#2|IF\\[#1EQ#0\\]GOTO[1-4]0|GOTO[1-4]0|M98P2|M98P2Q20|WHILE\\[#1LT2\\]DO1|END1\
             |G10L52|G11|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|G40 X1\\.|U5\\.|O2|M3M4|M99P20|X#1";
         let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();

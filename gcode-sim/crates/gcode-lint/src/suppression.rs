@@ -31,6 +31,10 @@ pub(super) fn suppressions(unit: &ProgramUnit<'_>) -> Vec<Suppression> {
     for (block, written) in unit.blocks.iter().enumerate() {
         let is_in_head = block < head;
         for comment in &written.comments {
+            let begins = comment.text.trim_ascii_start().get(..KEYWORD.len());
+            if begins.is_none_or(|begins| !begins.eq_ignore_ascii_case(KEYWORD.as_bytes())) {
+                continue;
+            }
             let text = String::from_utf8_lossy(&comment.text).to_ascii_uppercase();
             let Some(names) = text.trim().strip_prefix(KEYWORD) else { continue };
             let mut names: Vec<_> = names.split([' ', ',', '\t']).filter(|name| !name.is_empty()).collect();

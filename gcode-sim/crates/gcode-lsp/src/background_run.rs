@@ -5,16 +5,19 @@ use std::sync::Arc;
 
 use gcode_control::{Limits, Outcome, Progress};
 use gcode_ide::{FileId, ProgramKey, Project};
+use gcode_inspect::verify::Verdict;
 use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::Backtrace;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
 use gcode_part::{NominalPart, Reference};
 use gcode_session::{Criteria, HoleJudgement, Request, Trace};
 
 use crate::failure::Failure;
+use crate::findings::calling_blocks;
 use crate::overlay::Overlay;
 use crate::program_setup::ProgramSetup;
-use crate::run_facts::{HoleDeviation, RunFacts};
+use crate::run_facts::{HolesOfLine, RunFacts};
 use crate::snapshot::Snapshot;
 
 /// Largest number of blocks that are executed for an editor.
@@ -57,30 +60,13 @@ fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts 
     let source = memory.sources().iter().find(|(_, source)| Path::new(&source.name) == path);
     let source = source.map(|(id, _)| id);
     let blocks = trace.blocks().filter(|executed| Some(executed.block.source) == source);
-    let holes = match &verdict {
-        Some(verdict) => {
-            let tolerance = verdict.tolerance;
-            let is_own = |label: &str| {
-                let programs = snapshot.project.programs();
-                programs
-                    .filter(|(key, _)| key.file == file)
-                    .any(|(key, _)| snapshot.project.label(key) == label)
-            };
-            let mut holes: BTreeMap<u32, HoleDeviation> = BTreeMap::new();
-            for hole in &verdict.holes {
-                let mut chain = std::iter::once(&hole.from).chain(&hole.calls);
-                let Some(origin) = chain.rfind(|origin| is_own(&origin.program)) else {
-                    continue;
-                };
-                let deviation = HoleDeviation { phi: hole.position_deviation, tolerance, count: 0 };
-                let known = holes.entry(origin.line).or_insert(deviation);
-                known.phi = known.phi.max(deviation.phi);
-                known.count += 1;
-            }
-            holes
-        }
-        None => BTreeMap::new(),
+    let line_of = |drilled: usize| {
+        let Backtrace { block, calls } = &simulation.extracted.holes.get(drilled)?.backtrace;
+        let chain = std::iter::once(*block).chain(calling_blocks(calls));
+        let outermost = chain.filter(|span| Some(span.source) == source).last()?;
+        Some(memory.sources().get(outermost.source).line_column(outermost.start).line)
     };
+    let holes = verdict.map(|verdict| holes_by_line(&verdict, line_of)).unwrap_or_default();
     RunFacts {
         blocks: blocks.cloned().collect(),
         commons: run.control.variables().filter(|(number, _)| 33 < *number).collect(),
@@ -89,6 +75,24 @@ fn run(snapshot: &Snapshot, file: FileId, progress: &Arc<Progress>) -> RunFacts 
         is_cut_off: matches!(run.outcome, Outcome::Limit),
         main: memory.get(memory.main()).label(),
     }
+}
+
+/// Returns the holes of each line; `line_of` returns that of a drilled hole.
+fn holes_by_line(verdict: &Verdict, line_of: impl Fn(usize) -> Option<u32>) -> BTreeMap<u32, HolesOfLine> {
+    let mut lines: BTreeMap<u32, HolesOfLine> = BTreeMap::new();
+    for hole in &verdict.holes {
+        let Some(line) = line_of(hole.drilled_index) else { continue };
+        let known = lines.entry(line).or_default();
+        let phi = known.worst.map_or(hole.position_deviation, |(phi, _)| phi.max(hole.position_deviation));
+        known.worst = Some((phi, verdict.tolerance));
+        known.count += 1;
+        let errors = hole.error_codes.iter().map(|code| code.trim_start_matches("hole-"));
+        known.errors.extend(errors);
+    }
+    for line in verdict.extra.iter().filter_map(|extra| line_of(extra.drilled_index)) {
+        lines.entry(line).or_default().extra += 1;
+    }
+    lines
 }
 
 /// Returns the message of a finding with its code in front, if it is an alarm's.

@@ -1,4 +1,5 @@
 //! Findings of `check` as diagnostics of the protocol.
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -62,7 +63,8 @@ pub(crate) fn check(
     let control = (&setup.settings, setup.knowledge);
     let checked = gcode_lint::check_edited(text, before, control, &mut library);
     let sources = checked.memory.sources();
-    let context = FindingContext { uri, document, sources, client, host: files.host() };
+    let context =
+        FindingContext { uri, document, sources, client, host: files.host(), pages: RefCell::default() };
     let is_of_document = |finding: &&Finding| place(finding).is_none_or(|span| span.source == SourceId(0));
     let is_allowed = |finding: &Finding| setup.project.allows(finding.kind.code, &setup.path, files);
     // A note without a remedy states a limit of the simulator, no fault of the program; but the run stops at an alarm that
@@ -106,6 +108,8 @@ struct FindingContext<'a> {
     sources: &'a Sources,
     client: &'a Client,
     host: &'a dyn Host,
+    /// Pages of the codes so far.
+    pages: RefCell<BTreeMap<String, Option<Uri>>>,
 }
 
 impl FindingContext<'_> {
@@ -142,8 +146,13 @@ impl FindingContext<'_> {
 
     /// Returns the link to the page that explains a code.
     fn page_of(&self, code: &str) -> Option<CodeDescription> {
-        let href = document_uri::of_path(&self.host.explanation(code)?)?;
-        Some(CodeDescription { href })
+        let known = self.pages.borrow().get(code).cloned();
+        let href = known.unwrap_or_else(|| {
+            let page = self.host.explanation(code).and_then(|path| document_uri::of_path(&path));
+            self.pages.borrow_mut().insert(code.to_owned(), page.clone());
+            page
+        });
+        Some(CodeDescription { href: href? })
     }
 
     /// Returns a range of the document, without the end of its line.
@@ -174,7 +183,8 @@ impl FindingContext<'_> {
     }
 }
 
-fn calling_blocks(calls: &CallChain) -> impl Iterator<Item = Span> {
+/// Iterates over the blocks that called, the innermost first.
+pub(crate) fn calling_blocks(calls: &CallChain) -> impl Iterator<Item = Span> {
     std::iter::successors(calls.as_deref(), |call| call.outer_calls.as_deref()).map(|call| call.calling_block)
 }
 

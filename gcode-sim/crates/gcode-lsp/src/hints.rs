@@ -12,7 +12,7 @@ use lsp_types::{InlayHint, InlayHintLabel, InlayHintParams, InlayHintTooltip};
 
 use crate::background_run;
 use crate::failure::Failure;
-use crate::run_facts::{HoleDeviation, RunFacts, value_text};
+use crate::run_facts::{HolesOfLine, RunFacts, value_text};
 use crate::snapshot::Snapshot;
 use crate::text_document::TextDocument;
 
@@ -36,13 +36,11 @@ pub(crate) fn inlay_hints(
     let mut hints = value_hints(&text, &facts, range, snapshot.project.settings());
     let first = params.range.start.line.saturating_add(1);
     let last = params.range.end.line.saturating_add(1);
-    for (line, deviation) in facts.holes.range(first..=last.max(first)) {
-        hints.push(hint(
-            &text,
-            *line,
-            deviation_text(deviation),
-            "Position of the hole against the reference (ISO 1101)",
-        ));
+    for (line, holes) in facts.holes.range(first..=last.max(first)) {
+        let errors = holes.errors.iter().map(|error| format!(", FAIL {error}"));
+        let tooltip =
+            format!("Position of the hole against the reference (ISO 1101){}", errors.collect::<String>());
+        hints.push(hint(&text, *line, holes_text(holes), &tooltip));
     }
     hints.sort_by_key(|hint| hint.position);
     Ok(Some(hints))
@@ -119,10 +117,23 @@ fn is_literal(value: &Expr) -> bool {
     }
 }
 
-fn deviation_text(deviation: &HoleDeviation) -> String {
-    let HoleDeviation { phi, tolerance, count } = deviation;
-    let holes = if *count == 1 { String::new() } else { format!(", worst of {count} holes") };
-    format!("Φ{phi:.3} of Φ{tolerance}{holes}")
+/// Returns `Φ0.019 of Φ0.1`, with the errors that this hides and the number of holes that the reference lacks.
+fn holes_text(holes: &HolesOfLine) -> String {
+    let HolesOfLine { worst, count, errors, extra } = holes;
+    let Some((phi, tolerance)) = worst else { return "no hole of the reference here".to_owned() };
+    let mut text = format!("Φ{phi:.3} of Φ{tolerance}");
+    if 1 < *count {
+        text += &format!(", worst of {count} holes");
+    }
+    // A position out of tolerance says it itself, as far as three decimals show it.
+    if *phi < tolerance + 0.0005 && !errors.is_empty() {
+        text += &format!(", FAIL {}", errors.iter().copied().collect::<Vec<_>>().join(", "));
+    }
+    match extra {
+        0 => text,
+        1 => text + ", 1 extra hole",
+        _ => text + &format!(", {extra} extra holes"),
+    }
 }
 
 /// Returns a hint behind the text of a line, counted from 1.

@@ -136,17 +136,28 @@ impl ProvedStates<'_> {
             return Ok(Vec::new());
         };
         let new = self.texts.get(&main).unwrap_or(&old);
-        let request = |state: &Snapshot, text: &Bytes| {
+        let renamed = program.clone().map(|program| name_after(&old, new, program));
+        let request = |state: &Snapshot, (text, program): (&Bytes, Option<ProgramPath>)| {
             let mut request = state.setup(main).request(text.clone());
-            request.main = program.clone();
+            request.main = program;
             request.limits = Limits { blocks: MAX_BLOCKS };
             request.settings.main_program_cycles.get_or_insert(1);
             request.progress = Some(Arc::clone(self.progress));
             request
         };
-        let old = Side { snapshot: self.old, file: main, request: request(self.old, &old) };
-        let new = Side { snapshot: self.new, file: main, request: request(self.new, new) };
+        let old = Side { snapshot: self.old, file: main, request: request(self.old, (&old, program)) };
+        let new = Side { snapshot: self.new, file: main, request: request(self.new, (new, renamed)) };
         compare(&old, &new, self.renamed)
+    }
+}
+
+/// Returns the name that a program of a text has after an edit: programs keep their order.
+fn name_after(old: &[u8], new: &[u8], program: ProgramPath) -> ProgramPath {
+    let (before, after) = (programs_in(old), programs_in(new));
+    let place = before.iter().position(|name| *name == program.name);
+    match place.and_then(|place| after.get(place)).filter(|_| before.len() == after.len()) {
+        Some(name) => ProgramPath { name: name.clone(), ..program },
+        None => program,
     }
 }
 

@@ -1,5 +1,5 @@
 //! Facts of a run that an editor shows: values of variables by block, deviations of holes by call, the end.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_control::Value;
 use gcode_ide::TextRange;
@@ -12,8 +12,8 @@ pub(crate) struct RunFacts {
     pub blocks: Vec<ExecutedBlock>,
     /// Common variables at the end.
     pub commons: BTreeMap<u32, f64>,
-    /// Worst hole of each calling line, lines counted from 1.
-    pub holes: BTreeMap<u32, HoleDeviation>,
+    /// Holes of each calling line, lines counted from 1.
+    pub holes: BTreeMap<u32, HolesOfLine>,
     /// Why the run is not complete.
     pub stop: Option<String>,
     /// A limit ended the run, or it did not begin: values may still change.
@@ -22,15 +22,18 @@ pub(crate) struct RunFacts {
     pub main: String,
 }
 
-/// Deviation of the worst hole of a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct HoleDeviation {
-    /// Diameter of the smallest zone that contains the axis, mm.
-    pub phi: f64,
-    /// Diameter of the tolerance zone, mm.
-    pub tolerance: f64,
-    /// Number of holes of the line.
+/// Holes of a line, held against the reference.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct HolesOfLine {
+    /// Diameters of the smallest zone that contains the worst axis, and of the tolerance zone, mm; `None` if the reference has
+    /// none of the holes.
+    pub worst: Option<(f64, f64)>,
+    /// Number of holes that the reference has.
     pub count: usize,
+    /// Kinds of their errors.
+    pub errors: BTreeSet<&'static str>,
+    /// Number of holes that the reference lacks.
+    pub extra: usize,
 }
 
 impl RunFacts {

@@ -12,6 +12,10 @@ use crate::snapshot::Snapshot;
 const MODIFIERS: [SemanticTokenModifier; 2] =
     [SemanticTokenModifier::DECLARATION, SemanticTokenModifier::MODIFICATION];
 
+/// Largest text whose tokens are answered all at once, bytes: in JSON they are ten times as long. Of a longer one a client asks
+/// for those of the lines that it shows.
+const MAX_TEXT: usize = 2 << 20;
+
 /// Returns the names of the tokens: those of the protocol where it has one, own ones for motions and scopes.
 pub(crate) fn legend() -> SemanticTokensLegend {
     let token_types = TokenKind::ALL.map(token_type).to_vec();
@@ -48,6 +52,9 @@ pub(crate) fn full(
     params: SemanticTokensParams,
 ) -> Result<Option<SemanticTokensResult>, Failure> {
     let file = snapshot.file(&params.text_document)?;
+    if MAX_TEXT < snapshot.text_of(file)?.bytes().len() {
+        return Ok(None);
+    }
     Ok(Some(SemanticTokensResult::Tokens(tokens(snapshot, file, None)?)))
 }
 

@@ -5,6 +5,7 @@ use crate::protocol::arguments::{Evaluate, SetExpression, SetVariable};
 use crate::protocol::bodies;
 use crate::run::{Change, ChangeRefusal};
 use gcode_control::{Control, Evaluation, Value};
+use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{Expression, parse_target};
 
 /// Types of values as a client shows them.
@@ -28,11 +29,27 @@ fn typed_value(control: &Control, text: &str, level: usize) -> Result<Value, Str
         return Ok(Value::Vacant);
     }
     let refused = |alarm| format!("'{text}': {}", values::alarm(&alarm));
-    let expression = Expression::parse(text).map_err(refused)?;
-    match control.evaluate(&expression, level).map_err(refused)? {
+    match control.evaluate(&typed_expression(text)?, level).map_err(refused)? {
         Evaluation::Value(value) => Ok(value),
         Evaluation::Condition(_) => Err(format!("'{text}' is a condition and no value")),
     }
+}
+
+/// Reads an expression or a condition as typed. A reason about the block round it is none of what was typed.
+fn typed_expression(text: &str) -> Result<Expression, String> {
+    let text = text.trim();
+    if text.is_empty() {
+        return Err("nothing is typed: type an expression, such as #100*2".to_owned());
+    }
+    Expression::parse(text).map_err(|alarm| match alarm {
+        Alarm::MixedStatements | Alarm::MissingEquals | Alarm::NotAWord { .. } => {
+            format!("'{text}' is no expression")
+        }
+        Alarm::MissingOpenBracket if !text.contains(['[', ']']) => {
+            format!("'{text}' is no expression: a function has its argument in brackets, SIN[30.]")
+        }
+        alarm => format!("'{text}': {}", values::alarm(&alarm)),
+    })
 }
 
 impl<H: Host> Adapter<H> {
@@ -44,7 +61,7 @@ impl<H: Host> Adapter<H> {
                 "an assignment is no expression: set the variable among those of its scope".to_owned()
             );
         }
-        let expression = Expression::parse(&arguments.expression).map_err(|alarm| values::alarm(&alarm))?;
+        let expression = typed_expression(&arguments.expression)?;
         let result = control.evaluate(&expression, level).map_err(|alarm| values::alarm(&alarm))?;
         let kind = match result {
             Evaluation::Value(value) => kind(value),

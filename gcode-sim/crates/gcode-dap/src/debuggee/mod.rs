@@ -330,7 +330,7 @@ impl Debuggee {
         while self.run.control().is_next_empty() && self.run.step(&mut ()).is_none() {}
     }
 
-    /// Goes back to the block before; false at the start of the run.
+    /// Goes back to the block before, or to the first one from the choice of another. False at the start of the run.
     pub(crate) fn step_back(&mut self) -> bool {
         let from = self.run.position();
         let mut to = from;
@@ -342,7 +342,13 @@ impl Debuggee {
             }
         }
         self.stand();
-        self.run.position() < from
+        if self.run.position() < from {
+            return true;
+        }
+        // In front of the first block only the choice of another one can be undone.
+        let is_undone = self.run.undo_jump();
+        self.stand();
+        is_undone
     }
 
     /// Goes to a position, where the run then stands.
@@ -382,7 +388,7 @@ impl Debuggee {
         *end = start;
         (start == 0).then(|| {
             self.stand_at(0);
-            Stop::Entry
+            if self.run.has_jumped_here() { Stop::Goto } else { Stop::Entry }
         })
     }
 

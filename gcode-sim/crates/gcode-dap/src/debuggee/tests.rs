@@ -330,6 +330,17 @@ fn a_goto_stays_in_its_program_and_is_part_of_the_run() {
     assert_eq!((next(&debuggee).as_str(), number(&debuggee, 2)), ("M30", None), "#100 is vacant");
     assert!(debuggee.step_back());
     assert_eq!(next(&debuggee), "#2=#100");
+    // Nothing was executed before the choice: it is undone, with what was changed behind it alone.
+    let first = "#1=1";
+    assert!(debuggee.step_back());
+    assert_eq!(next(&debuggee), first);
+    assert!(!debuggee.step_back());
+    debuggee.change(Change::Assign { level: 0, number: 101, value: Value::Number(5.0) }).unwrap();
+    debuggee.change(Change::Jump { to: block("#2=#100") }).unwrap();
+    debuggee.change(Change::Assign { level: 0, number: 102, value: Value::Number(6.0) }).unwrap();
+    assert!(debuggee.step_back());
+    assert_eq!((next(&debuggee).as_str(), number(&debuggee, 101)), (first, Some(5.0)));
+    assert_eq!(number(&debuggee, 102), None);
 }
 
 #[test]

@@ -174,6 +174,28 @@ impl ReversibleRun {
         Ok(())
     }
 
+    /// Returns true if a block was chosen as the next one here.
+    pub(crate) fn has_jumped_here(&self) -> bool {
+        self.last_jump().is_some_and(|jump| self.changes[jump].position == self.position)
+    }
+
+    fn last_jump(&self) -> Option<usize> {
+        let made = &self.changes[..self.made_changes];
+        made.iter().rposition(|recorded| matches!(recorded.change, Change::Jump { .. }))
+    }
+
+    /// Drops the last choice of a block here and the changes behind it. Returns false without one.
+    pub(crate) fn undo_jump(&mut self) -> bool {
+        let Some(jump) = self.last_jump().filter(|_| self.has_jumped_here()) else { return false };
+        let position = self.position;
+        self.changes.truncate(jump);
+        self.revision += 1;
+        // The checkpoint of this position may have the choice.
+        self.checkpoints.rewind(position.saturating_sub(1));
+        self.go_back_to(position);
+        true
+    }
+
     /// Goes to an earlier position, or to this one as it was before the block that has ended the run.
     pub(crate) fn go_back_to(&mut self, position: u64) {
         let checkpoint = self.checkpoints.rewind(position);

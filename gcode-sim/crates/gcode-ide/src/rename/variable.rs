@@ -245,7 +245,7 @@ impl Project {
         edits: &mut Vec<FileEdit>,
     ) -> Result<(), Refusal> {
         for (from, call) in self.all_calls().filter(|(_, call)| call.record.has_own_locals) {
-            let locals = call.record.arguments.iter().map(|argument| argument.local);
+            let locals = call.record.arguments.iter().map(|argument| argument.local());
             let passes = |local: u32| locals.clone().any(|other| other == local);
             let is_called = |key: &ProgramKey| keys.contains(key);
             let is_every_block = self.is_every_block(call.record.kind, call.record.is_modal);
@@ -270,8 +270,9 @@ impl Project {
                     format!("with {letter} for #{new} the arguments of {place} would set other variables");
                 return Err(refused(reason));
             }
-            let arguments = call.record.arguments.iter().filter(|argument| argument.local == number);
-            edits.extend(arguments.map(|argument| file_edit(from.file, call.place(argument.range), letter)));
+            let arguments = call.record.arguments.iter().filter(|argument| argument.local() == number);
+            edits
+                .extend(arguments.map(|argument| file_edit(from.file, call.place(argument.range()), letter)));
         }
         Ok(())
     }
@@ -281,9 +282,9 @@ impl Project {
         let is_every_block = self.is_every_block(call.record.kind, call.record.is_modal);
         let mut locals = ArgumentLocals::new(self.settings().reads_ijk_plainly, is_every_block);
         call.record.arguments.iter().all(|argument| {
-            let is_renamed = argument.local == number;
+            let is_renamed = argument.local() == number;
             let written = if is_renamed { letter as u8 } else { argument.letter };
-            let expected = if is_renamed { new } else { argument.local };
+            let expected = if is_renamed { new } else { argument.local() };
             matches!(locals.next(written), Ok(Some(local)) if local as u32 == expected)
         })
     }

@@ -68,13 +68,18 @@ impl Blocks {
         self.texts.starts.len()
     }
 
-    /// Calls `each` with every block in order: with its operation if it consists of numbers alone.
-    pub(super) fn visit_numbers(&self, mut each: impl FnMut(OpIndex, Option<&Op>)) {
+    /// Calls `each` with every block in order: with its operation and the text of its comment if it consists of numbers, and one
+    /// comment at most.
+    pub(super) fn visit_numbers<'t>(&'t self, mut each: impl FnMut(OpIndex, Option<(&Op, &'t [u8])>)) {
         let mut op = Op::default();
+        let text = &self.texts.text;
         for (index, start) in self.texts.starts.iter().enumerate() {
-            let is_numbers = !self.texts.separate_trees.contains_key(&(index as u32))
-                && op.refill(self.texts.text.source, self.texts.text.content(), *start);
-            each(index, is_numbers.then_some(&op));
+            let is_separate = self.texts.separate_trees.contains_key(&(index as u32));
+            let comment = match is_separate {
+                true => None,
+                false => op.refill_commented(text.source, text.content(), *start),
+            };
+            each(index, comment.map(|comment| (&op, comment)));
         }
     }
 

@@ -317,8 +317,9 @@ impl Program {
         self.blocks.texts()
     }
 
-    /// Calls `each` with every block in order: its index, and its operation if it consists of numbers alone.
-    pub fn visit_number_blocks(&self, each: impl FnMut(OpIndex, Option<&Op>)) {
+    /// Calls `each` with every block in order: its index, and its operation and the text of its comment if it consists of numbers,
+    /// and one comment at most. Without a comment its text is empty.
+    pub fn visit_number_blocks<'t>(&'t self, each: impl FnMut(OpIndex, Option<(&Op, &'t [u8])>)) {
         self.blocks.visit_numbers(each);
     }
 

@@ -17,25 +17,45 @@ impl Op {
             self.body = OpBody::Plain(OpKind::Words(Words::default()));
         }
         let OpBody::Plain(OpKind::Words(words)) = &mut self.body else { return false };
-        let Some((number, end)) = fill(words.cleared_list(), source, text, start) else { return false };
+        let filled = fill(words.cleared_list(), source, text, start);
+        let Some((numbers, end)) = filled.filter(|(numbers, _)| numbers.is_at_end()) else { return false };
         if words.list.is_empty() {
             self.body = OpBody::default();
         }
         self.span = Span { source, start, end };
-        self.number = number;
+        self.number = numbers.sequence_number;
         true
+    }
+
+    /// Replaces the operation as [`Op::refill`] does, also by a block of numbers with one comment behind them. Returns the text of
+    /// the comment, which is empty without one.
+    pub(super) fn refill_commented<'t>(
+        &mut self,
+        source: SourceId,
+        text: &'t [u8],
+        start: u32,
+    ) -> Option<&'t [u8]> {
+        if self.refill(source, text, start) {
+            return Some(&[]);
+        }
+        let OpBody::Plain(OpKind::Words(words)) = &mut self.body else { return None };
+        let (numbers, _) = fill(words.cleared_list(), source, text, start)?;
+        let (comment, end) = numbers.comment_at_end().filter(|_| !words.list.is_empty())?;
+        self.span = Span { source, start, end };
+        self.number = numbers.sequence_number;
+        Some(comment)
     }
 }
 
-/// Appends the words of the line at `start` to an empty list; returns the sequence number and the end of the last word,
-/// `None` for any other line.
+/// Appends the words of the line at `start` to an empty list, up to anything but a word with a number. Returns the iterator behind
+/// them, which has the sequence number, and the end of the last word; `None` for a call.
 #[inline(always)]
-fn fill(
+fn fill<'t>(
     list: &mut Vec<LoweredWord>,
     source: SourceId,
-    text: &[u8],
+    text: &'t [u8],
     start: u32,
-) -> Option<(Option<u32>, u32)> {
+) -> Option<(NumberWords<'t>, u32)> {
     let mut numbers = NumberWords::new(source, text, start)?;
     let mut end = numbers.words_start;
     for NumberWord { letter, number, span } in numbers.by_ref() {
@@ -50,7 +70,7 @@ fn fill(
             _ => list.push(lowered_word(WordOperand::Literal(number))),
         }
     }
-    numbers.is_at_end().then_some((numbers.sequence_number, end))
+    Some((numbers, end))
 }
 
 #[cfg(test)]
@@ -75,16 +95,18 @@ mod tests {
         #[test]
         fn a_block_of_numbers_lowers_like_its_tree(
             words in vec("[A-Z]|G(1|0?4|54\\.1|65|5\\.55|-1)|M(3|9[7-9]|198)|[XNIFO][-+]?[0-9]{0,10}[.]?[0-9]{0,10}|[XNY][0-9]{1,3}\\.?[0-9]{1,3} ?|[ \t\x1a]|[#%(;/n]", 1..8),
-            end in proptest::sample::select(vec!["", "\n", "\r\n", " \nX5", "\t\r"]),
+            end in proptest::sample::select(vec!["", "\n", "\r\n", " \nX5", "\t\r", " (A B)\n", "(C) \r\nX5"]),
             after in proptest::sample::select(vec!["", FOLLOWING]),
         ) {
             let text = format!("{}{end}{after}", words.concat().trim_start_matches([' ', '\t', '\x1a']));
             let mut op = another();
-            if op.refill(SourceId(0), text.as_bytes(), 0) {
+            if let Some(comment) = op.refill_commented(SourceId(0), text.as_bytes(), 0) {
                 prop_assume!(op.span.end > 0);
                 let tree = block_at(SourceId(0), text.as_bytes(), 0).unwrap();
                 let lowered = Lowering::default().lower_block(&tree, None);
                 prop_assert_eq!(format!("{op:?}"), format!("{lowered:?}"), "{:?}", text);
+                let comments: Vec<_> = tree.comments.iter().map(|comment| comment.text.as_slice()).collect();
+                prop_assert!(comments.concat() == comment && comments.len() < 2, "{:?}", text);
             }
         }
     }

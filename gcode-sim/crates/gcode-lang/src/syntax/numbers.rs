@@ -60,6 +60,17 @@ impl<'a> NumberWords<'a> {
         matches!(self.behind_spaces(), [] | [b'\n' | b'\r', ..])
     }
 
+    /// Returns the text of the comment that is the rest of the line, and the offset behind it; `None` for any other rest.
+    pub(crate) fn comment_at_end(&self) -> Option<(Input<'a>, u32)> {
+        let rest = self.behind_spaces();
+        let inside = rest.strip_prefix(b"(")?;
+        let length = inside.iter().position(|byte| b"()\r\n%;".contains(byte))?;
+        let (comment, behind) = inside.split_at(length);
+        let behind = behind.strip_prefix(b")")?;
+        let is_last = matches!(unspaced(behind), [] | [b'\n' | b'\r', ..]);
+        is_last.then_some((comment, (self.text.len() - behind.len()) as u32))
+    }
+
     /// Returns true if the next byte after spaces is a capital.
     pub(super) fn is_at_letter(&self) -> bool {
         self.behind_spaces().first().is_some_and(u8::is_ascii_uppercase)

@@ -125,9 +125,11 @@ fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> 
 /// Returns true if a block of the program, of a piece also one before it, commands inch.
 pub(crate) fn is_in_inch(unit: &ProgramUnit<'_>) -> bool {
     let is_begun_in_inch = unit.piece.as_ref().is_some_and(|piece| piece.start.is_inch);
-    let mut words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
+    let words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
     is_begun_in_inch
-        || words.any(|words| BlockCodes::of(words).has(|effect| *effect == Effect::Unit(Unit::Inch)))
+        || words
+            .flat_map(|words| words.g_codes().filter_map(|found| found.row_for_any()))
+            .any(|row| row.effect == Effect::Unit(Unit::Inch))
 }
 
 /// Iterates over the literals that are lengths, angles or seconds.

@@ -151,8 +151,9 @@ type Found = (Vec<(usize, Vec<Diagnostic>)>, Option<(usize, Vec<BlockMarks>)>);
 /// Returns the findings in one program, rule by rule.
 pub(super) fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let shares = unit.blocks.len().div_ceil(SHARE);
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let threads = if unit.blocks.len() < MIN_BLOCKS_TO_SHARE { 1 } else { cores.min(ALL.len()) };
+    // The system is asked for long programs alone: the answer takes as long as the work on a short one.
+    let cores = || thread::available_parallelism().map_or(1, usize::from);
+    let threads = if unit.blocks.len() < MIN_BLOCKS_TO_SHARE { 1 } else { cores().min(ALL.len()) };
     let next = AtomicUsize::new(0);
     let find_next = || -> Option<Found> {
         let place = next.fetch_add(1, Ordering::Relaxed);

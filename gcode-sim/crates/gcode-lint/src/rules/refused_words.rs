@@ -1,6 +1,8 @@
 //! Rule: words that raise an alarm in their block whatever runs before: G83 without Q, L in a canned cycle, `S900.`.
 //!
 //! The control itself plans the block in every mode in which it can be read.
+use std::sync::PoisonError;
+
 use gcode_control::static_plan::StaticPlanner;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Motion;
@@ -20,10 +22,11 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     if unit.calls.iter().any(|call| call.is_modal) {
         return Vec::new();
     }
-    let mut planner = StaticPlanner::new(context.settings.clone());
+    let known = context.planner.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let mut planner = known.unwrap_or_else(|| StaticPlanner::new(context.settings.clone()));
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
-    let has_modal_call = may_call_modally(context);
+    let has_modal_call = *context.may_call_modally.get_or_init(|| may_call_modally(context));
     for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
         if let Some(call) = alarming_cancel(context, words).filter(|_| !has_modal_call) {
             let alarm = Alarm::CancelWithoutModalCall.located_at(call);
@@ -56,6 +59,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
             });
         }
     }
+    *context.planner.lock().unwrap_or_else(PoisonError::into_inner) = Some(planner);
     found
 }
 
