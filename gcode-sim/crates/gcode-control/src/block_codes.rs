@@ -162,7 +162,7 @@ impl Planner<'_> {
             && modal.scaling == Scaling::On
             && let Some(row) = self.words.g_codes().find(|row| row.facts.coordinates != CoordinateUse::Free)
         {
-            return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(self.block));
+            return Err(Alarm::CodeInScaling(spelled(row.code)).located_at(self.block));
         }
         self.check_transform_order(before, state)
     }

@@ -165,10 +165,7 @@ impl Planner<'_> {
             } else {
                 continue;
             };
-            let code = spelled(row.code);
-            return Err(
-                self.not_simulated(format!("G{code} while {active} is on (command {cancel} before it)"))
-            );
+            return Err(self.code_in_mode(spelled(row.code), (active, cancel)));
         }
         Ok(())
     }
