@@ -22,9 +22,7 @@ impl Planner<'_> {
             && state.modal.distance == Distance::Absolute
             && !self.registers.lookahead.is_offset();
         if !is_allowed {
-            return Err(self.not_simulated(
-                "G150 in G91, in another plane or in cutter compensation",
-            ));
+            return Err(self.not_simulated("G150 in G91, in another plane or in cutter compensation"));
         }
         let missing = |letter| Alarm::MissingWord { code: "G150", letter }.located_at(self.block);
         let program = self.words.count(b'P')?.ok_or_else(|| missing('P'))?;

@@ -69,7 +69,8 @@ fn after_words(context: &CheckContext<'_>, words: &Words, before: &PossibleModes
             after = after.after_effect(row.effect);
         }
     }
-    if context.has_effect(words, |effect| effect == Effect::Mirror(Mirror::On)) && !context.names_axis(words) {
+    if context.has_effect(words, |effect| effect == Effect::Mirror(Mirror::On)) && !context.names_axis(words)
+    {
         after.certain.mirror = before.certain.mirror;
     }
     let has_pecks = after.is_in_cycle && words.list.iter().any(|word| b"QIJK".contains(&word.letter));

@@ -126,7 +126,9 @@ impl PossibleModes {
                 ..self
             },
             Effect::Distance(distance) => Self { is_absolute: distance == Distance::Absolute, ..self },
-            Effect::Rotation(rotation) => self.with_certain(|modes| modes.rotation = rotation == Rotation::On),
+            Effect::Rotation(rotation) => {
+                self.with_certain(|modes| modes.rotation = rotation == Rotation::On)
+            }
             Effect::Scaling(scaling) => self.with_certain(|modes| modes.scaling = scaling == Scaling::On),
             Effect::Mirror(mirror) => self.with_certain(|modes| modes.mirror = mirror == Mirror::On),
             Effect::Cutter(side) => self.with_certain(|modes| modes.cutter = side != CutterSide::Off),

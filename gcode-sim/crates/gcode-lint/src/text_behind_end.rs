@@ -14,9 +14,8 @@ pub(crate) fn leave_out(result: &mut CheckResult) {
     result.programs = result.programs.saturating_sub(behind.len());
     result.findings.retain(|finding| {
         let place = finding.backtrace.as_ref().map(|backtrace| backtrace.block).or(finding.span);
-        let is_behind = |from: &Span| {
-            place.is_some_and(|place| place.source == from.source && from.start <= place.start)
-        };
+        let is_behind =
+            |from: &Span| place.is_some_and(|place| place.source == from.source && from.start <= place.start);
         !behind.iter().any(is_behind)
     });
 }
@@ -40,7 +39,7 @@ mod tests {
 
     fn checked(text: &str) -> (usize, Vec<String>) {
         let result = crate::check("O1.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
-        (result.programs, result.findings.iter().map(|finding| finding.code().to_owned()).collect())
+        (result.programs, result.findings.iter().map(|finding| finding.code().into_owned()).collect())
     }
 
     #[test]

@@ -161,7 +161,8 @@ impl Alarm {
 }
 
 /// Remedy for what the simulator does not execute.
-const NOT_EXECUTED: &str = "avoid it, or check it on a control that has it: this simulator does not execute it";
+const NOT_EXECUTED: &str =
+    "avoid it, or check it on a control that has it: this simulator does not execute it";
 
 /// Returns the number of a G code with two digits before the point, as manuals write it.
 fn two_digits(code: &str) -> String {

@@ -290,7 +290,8 @@ fn dwell_with_two_times(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<Str
     let Alarm::WordNotSimulated(_) = alarm else { return None };
     let line = alarm_line.whole;
     let is_dwell = line.split(|c: char| !c.is_ascii_alphanumeric()).any(|word| matches!(word, "G4" | "G04"));
-    (is_dwell && line.contains('P')).then(|| "write one time for a dwell: X in seconds or P in milliseconds".to_owned())
+    (is_dwell && line.contains('P'))
+        .then(|| "write one time for a dwell: X in seconds or P in milliseconds".to_owned())
 }
 
 /// Detects the P of G10 L2 or of an additional work coordinate system, whose ranges differ from those of H and D.

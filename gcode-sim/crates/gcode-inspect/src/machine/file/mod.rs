@@ -230,7 +230,8 @@ impl FileControl {
         Axes::new(letters.as_ref()).filter(|axes| !axes.is_empty()).ok_or_else(|| {
             let required = "1 to 8 different letters of X Y Z A B C U V W E are required, axis 1 first";
             let other = letters.as_ref().chars().find_map(|letter| Some((letter, other_meaning(letter)?)));
-            let reason = other.map(|(letter, meaning)| format!("; {letter} can't be an axis: it is {meaning}"));
+            let reason =
+                other.map(|(letter, meaning)| format!("; {letter} can't be an axis: it is {meaning}"));
             let reason = reason.unwrap_or_default();
             reader.error(letters, format!("key 'control.axes' is '{}': {required}{reason}", letters.as_ref()))
         })
