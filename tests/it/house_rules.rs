@@ -1,4 +1,4 @@
-//! House rules: dependencies, opening sentences, no unfinished work.
+//! House rules: dependencies, opening sentences, no unfinished work, paths that exist.
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -173,5 +173,50 @@ fn no_file_is_too_long() {
     for path in all_sources() {
         let lines = std::fs::read_to_string(&path).unwrap().lines().count();
         assert!(lines <= 500, "{} has {lines} lines", path.display());
+    }
+}
+
+/// Returns the paths between backticks in a page: text with a `/`, or the name of a file.
+fn named_paths(page: &str) -> Vec<&str> {
+    let is_path = |text: &&str| {
+        let may_stand = |c: char| c.is_ascii_alphanumeric() || "_./-".contains(c);
+        let is_file =
+            [".rs", ".md", ".toml", ".nc", ".txt", ".mjs", ".sh"].iter().any(|end| text.ends_with(end));
+        text.chars().all(may_stand) && (text.contains('/') || is_file)
+    };
+    // Code stands between an odd backtick and the next one.
+    page.lines().flat_map(|line| line.split('`').skip(1).step_by(2)).filter(is_path).collect()
+}
+
+/// Adds the paths of all files and folders below a folder; build results and what npm and Git keep are left out.
+fn add_entries(folder: &Path, known: &mut BTreeSet<String>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        if matches!(name, "target" | "node_modules" | ".git") {
+            continue;
+        }
+        known.insert(path.strip_prefix(workspace()).unwrap().to_str().unwrap().to_owned());
+        if path.is_dir() {
+            add_entries(&path, known);
+        }
+    }
+}
+
+#[test]
+fn every_path_in_the_pages_for_contributors_exists() {
+    assert_eq!(named_paths("see `a/b.rs`, `x.rs` and `<name>.rs`, not `word`"), ["a/b.rs", "x.rs"]);
+    let mut known = BTreeSet::new();
+    add_entries(&workspace(), &mut known);
+    // Each path counts with any number of folders left out before it.
+    let is_known =
+        |path: &str| known.iter().any(|known| known == path || known.ends_with(&format!("/{path}")));
+    for page in ["CONTRIBUTING.md", "ARCHITECTURE.md"] {
+        let text = std::fs::read_to_string(workspace().join(page)).unwrap();
+        let paths = named_paths(&text);
+        assert!(10 < paths.len(), "{page} names paths");
+        for path in paths {
+            assert!(is_known(path.trim_end_matches('/')), "{page}: {path} does not exist");
+        }
     }
 }

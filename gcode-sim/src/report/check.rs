@@ -97,15 +97,18 @@ pub(crate) fn text(checked: &CheckResult, shows_all: bool) -> String {
     text
 }
 
+/// Rule each finding of which names another program.
+const MISSING_PROGRAM: &str = "missing-program";
+
 /// Returns the first finding of each kind and severity in each file, with the lines of the others in a note. Each error has
-/// to be corrected: those of one kind have one message and one remedy.
+/// to be corrected, and each missing program to be found: those of one kind have one message and one remedy.
 fn fold(findings: &[Diagnostic], sources: &Sources) -> Vec<Diagnostic> {
     let mut groups: BTreeMap<_, (usize, Vec<u32>)> = BTreeMap::new();
     let mut firsts = Vec::new();
     for finding in findings {
         let at = finding.span.or(finding.backtrace.as_ref().map(|backtrace| backtrace.block));
-        let is_error = finding.severity == Severity::Error;
-        let error = is_error.then(|| (finding.message.clone(), finding.help.clone()));
+        let is_separate = finding.severity == Severity::Error || finding.kind.code == MISSING_PROGRAM;
+        let error = is_separate.then(|| (finding.message.clone(), finding.help.clone()));
         let key = (finding.kind.code, finding.severity, at.map(|span| span.source), error);
         match groups.get_mut(&key) {
             Some((_, lines)) => lines.extend(at.map(|span| sources.line_column(span).line)),

@@ -30,9 +30,6 @@ use gcode_lang::program::{
 };
 use gcode_lang::source::Span;
 
-/// Words behind the letter of a word that nothing reads.
-pub(super) const IN_THIS_BLOCK: &str = " in this block";
-
 impl Control {
     /// Executes the next block, and after a statement the blocks that follow it until the run [pauses]: a statement never
     /// leads into another program.
@@ -264,7 +261,7 @@ impl Planner<'_> {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });
                 Ok(())
             }
-            _ => Err(Alarm::NotSimulated { what: format!("{letter}{IN_THIS_BLOCK}") }.located_at(span)),
+            _ => Err(Alarm::WordNotSimulated(letter).located_at(span)),
         }
     }
 

@@ -162,7 +162,7 @@ impl Planner<'_> {
             && modal.scaling == Scaling::On
             && let Some(row) = self.words.g_codes().find(|row| row.facts.coordinates != CoordinateUse::Free)
         {
-            return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(self.block));
+            return Err(Alarm::CodeInScaling(spelled(row.code)).located_at(self.block));
         }
         self.check_transform_order(before, state)
     }
@@ -268,13 +268,15 @@ impl Planner<'_> {
     fn check_misplaced_words(&self, plan: &BlockPlan) -> ExecResult<()> {
         let mut owned = self.words.letters_of_codes();
         // E of a Haas: a percentage of the rapid rate, or the speed that throws off chips after a hole.
+        let axis_letters = self.data.settings.axes.letter_bits();
         if self.data.settings.codes == Dialect::HaasNgc
+            && axis_letters & Letters::of(b"E").bits() == 0
             && (plan.state.modal.cycle.is_some() || plan.state.modal.motion == Motion::Rapid)
         {
             self.words.mark_read(Letters::of(b"E"));
             owned |= Letters::of(b"E").bits();
         }
-        if let Some(letter) = self.words.first_present(Letters::of(b"ENO").bits() & !owned) {
+        if let Some(letter) = self.words.first_present(Letters::of(b"ENO").bits() & !owned & !axis_letters) {
             return Err(self.improper_address(letter));
         }
         if self.words.has_non_motion_code(|effect| effect == Effect::LookAhead)
@@ -292,7 +294,7 @@ impl Planner<'_> {
             return Err(self.improper_address(b'L'));
         }
         let axes = Letters::of(b"ABCUVWXYZ").bits() & !owned;
-        if let Some(letter) = self.words.first_present(axes & !self.data.settings.axes.letter_bits()) {
+        if let Some(letter) = self.words.first_present(axes & !axis_letters) {
             return Err(self.improper_address(letter));
         }
         Ok(())

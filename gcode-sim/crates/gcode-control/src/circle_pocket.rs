@@ -5,7 +5,7 @@ use super::plan::BlockPlan;
 use super::planner::Planner;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::PlanarArc;
-use gcode_lang::program::modes::{CutterSide, Motion, Plane};
+use gcode_lang::program::modes::{Motion, Plane};
 use gcode_lang::units::Deg;
 
 /// Largest number of circles in one block; more are a typing error.
@@ -19,10 +19,9 @@ impl Planner<'_> {
         let clockwise = motion == Motion::Clockwise;
         let code = if clockwise { "G12" } else { "G13" };
         let modal = &plan.state.modal;
-        let is_allowed = modal.plane == Plane::Xy && modal.cycle.is_none() && modal.cutter == CutterSide::Off;
-        if !is_allowed || self.words.has_any(b"XY") {
-            return Err(self
-                .not_simulated(format!("{code} with X, Y, another plane, compensation or a canned cycle")));
+        self.check_outside_cycle_and_offset(&code[1..], modal)?;
+        if modal.plane != Plane::Xy || self.words.has_any(b"XY") {
+            return Err(self.not_simulated(format!("{code} with X, Y or another plane")));
         }
         let radii = self.radii(code, plan)?;
         let plane = self.locate(self.data.plane_axes(Plane::Xy))?;

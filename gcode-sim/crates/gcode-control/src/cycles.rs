@@ -342,7 +342,7 @@ impl Planner<'_> {
             HolePattern::Line => "G72",
         };
         let Some(cycle) = plan.state.modal.cycle else {
-            return Err(Alarm::NoCycle { code }.located_at(self.block));
+            return Err(Alarm::NoCycle(code).located_at(self.block));
         };
         if plan.state.modal.plane != Plane::Xy {
             return Err(self.not_simulated(format!("{code} outside plane G17")));

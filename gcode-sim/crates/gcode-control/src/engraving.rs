@@ -6,7 +6,6 @@ use super::plan::BlockPlan;
 use super::planner::Planner;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::UnknownAxes;
-use gcode_lang::program::modes::CutterSide;
 
 /// Most characters of a text.
 const MAX_TEXT: u32 = 500;
@@ -17,9 +16,7 @@ impl Planner<'_> {
     /// rapid to X Y and to R, feeds with E to Z, cuts along the base, and goes back to R; X and Y are unknown then.
     pub(super) fn plan_engraving(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &plan.state;
-        if state.modal.cycle.is_some() || state.modal.cutter != CutterSide::Off {
-            return Err(self.not_simulated("G47 in a canned cycle or in cutter compensation"));
-        }
+        self.check_outside_cycle_and_offset("47", &state.modal)?;
         let missing = |letter: u8| Alarm::ImproperAddress { letter: char::from(letter) };
         let find = |letter: u8| self.data.settings.axes.find(letter).ok_or_else(|| missing(letter));
         let [x, y, z] = [self.locate(find(b'X'))?, self.locate(find(b'Y'))?, self.locate(find(b'Z'))?];

@@ -305,12 +305,14 @@ fn is_true(condition: Value) -> bool {
 impl Registers {
     /// Rounds to the increment of an address: ROUND in a word.
     pub(super) fn round_to_address(&self, letter: u8, value: f64) -> f64 {
+        let has_e_axis = || self.data.settings.axes.find(b'E').is_some();
         match letter {
-            b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
+            b'F' => value,
+            b'E' if !has_e_axis() => value,
+            b'A'..=b'C' | b'E' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
                 let scale = POWERS[self.data.decimals(letter, self.state.modal.unit)];
                 round_scaled(value, scale) / scale
             }
-            b'F' | b'E' => value,
             _ => value.round(),
         }
     }

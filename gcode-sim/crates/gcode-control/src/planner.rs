@@ -5,13 +5,13 @@ use super::flow::ProgramFlow;
 use super::functions::{ExecResult, locate};
 use super::linear_motion::{CoordinateBasis, Endpoint};
 use super::registers::Registers;
-use super::state::{PolarPoint, State};
+use super::state::{Modal, PolarPoint, State};
 use super::words::{BlockWords, WordNumber};
 use crate::contour::Blend;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::Words;
-use gcode_lang::program::modes::{Distance, Polar, Unit};
+use gcode_lang::program::modes::{CutterSide, Distance, Polar, Unit};
 use gcode_lang::source::Span;
 use gcode_lang::units::POWERS;
 
@@ -39,6 +39,26 @@ impl Planner<'_> {
     /// Returns the alarm of a block that the simulator does not execute.
     pub(super) fn not_simulated(&self, what: impl Into<String>) -> LocatedAlarm {
         Alarm::NotSimulated { what: what.into() }.located_at(self.block)
+    }
+
+    /// Returns the alarm of a G code in a mode that rules it out, named with the code that ends the mode.
+    pub(super) fn code_in_mode(
+        &self,
+        code: impl Into<String>,
+        (active, cancel): (&'static str, &'static str),
+    ) -> LocatedAlarm {
+        Alarm::CodeInMode(code.into(), active, cancel).located_at(self.block)
+    }
+
+    /// Raises the alarm of a G code that the simulator executes neither in a canned cycle nor in cutter compensation.
+    pub(super) fn check_outside_cycle_and_offset(&self, code: &str, modal: &Modal) -> ExecResult<()> {
+        if modal.cycle.is_some() {
+            return Err(self.code_in_mode(code, ("a canned cycle", "G80")));
+        }
+        if modal.cutter != CutterSide::Off {
+            return Err(self.code_in_mode(code, ("cutter compensation", "G40")));
+        }
+        Ok(())
     }
 
     pub(super) fn names_axis(&self) -> bool {

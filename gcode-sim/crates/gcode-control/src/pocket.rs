@@ -15,14 +15,14 @@ impl Planner<'_> {
     /// has it. The passes that clear the pocket, by I or J, Q and K, are not those of the manual's figures and are left out.
     pub(super) fn plan_pocket(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &plan.state;
+        if state.modal.cycle.is_some() {
+            return Err(self.code_in_mode("150", ("a canned cycle", "G80")));
+        }
         let is_allowed = state.modal.plane == Plane::Xy
-            && state.modal.cycle.is_none()
             && state.modal.distance == Distance::Absolute
             && !self.registers.lookahead.is_offset();
         if !is_allowed {
-            return Err(self.not_simulated(
-                "G150 in G91, in another plane, in a canned cycle or in cutter compensation",
-            ));
+            return Err(self.not_simulated("G150 in G91, in another plane or in cutter compensation"));
         }
         let missing = |letter| Alarm::MissingWord { code: "G150", letter }.located_at(self.block);
         let program = self.words.count(b'P')?.ok_or_else(|| missing('P'))?;

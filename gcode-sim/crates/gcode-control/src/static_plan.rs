@@ -1,5 +1,6 @@
 //! Plan of a single block without a run, for the alarms that its words raise whatever the program has done before.
-use super::block::IN_THIS_BLOCK;
+use std::mem::discriminant;
+
 use super::executor::Executor;
 use super::plan::BlockPlan;
 use super::state::CycleState;
@@ -7,7 +8,7 @@ use super::words::{BlockWords, DIRECT_DRAWING, WordNumber, count};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Settings;
 use gcode_lang::program::cycles::Cycle;
-use gcode_lang::program::modes::Motion;
+use gcode_lang::program::modes::{CutterSide, Mirror, Motion, Rotation, Scaling};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 use gcode_lang::source::Span;
 
@@ -20,6 +21,21 @@ pub struct ModesInForce {
     pub cycle: Option<&'static Cycle>,
     /// True if the depth of a peck is commanded.
     pub has_pecks: bool,
+    /// Modes that are certainly on.
+    pub certain: CertainModes,
+}
+
+/// Modes that rule out codes, each true if it is on wherever the program came from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CertainModes {
+    /// G68.
+    pub rotation: bool,
+    /// G51.
+    pub scaling: bool,
+    /// G51.1, or G101 of a Haas.
+    pub mirror: bool,
+    /// G41 or G42.
+    pub cutter: bool,
 }
 
 /// A control at power-on that plans blocks and executes none.
@@ -50,15 +66,31 @@ impl StaticPlanner {
         block: Span,
         modes: impl Iterator<Item = ModesInForce>,
     ) -> Option<LocatedAlarm> {
+        let modes: Vec<ModesInForce> = modes.collect();
+        let without = modes.iter().map(|modes| ModesInForce { certain: CertainModes::default(), ..*modes });
+        self.alarm_in_each(words, block, without).or_else(|| {
+            let has_certain = modes.iter().any(|modes| modes.certain != CertainModes::default());
+            has_certain.then(|| self.alarm_in_each(words, block, modes.into_iter())).flatten()
+        })
+    }
+
+    /// Returns the alarm that a block raises in each of some modes, as [`StaticPlanner::certain_alarm`] does.
+    fn alarm_in_each(
+        &mut self,
+        words: &Words,
+        block: Span,
+        modes: impl Iterator<Item = ModesInForce>,
+    ) -> Option<LocatedAlarm> {
         let mut certain = None;
         for modes in modes {
-            for number in [Some(ANY_NUMBER), None] {
-                let alarm = self.alarm(words, block, modes, number)?;
-                if !depends_on_words_alone(&alarm.node) {
-                    return None;
-                }
-                certain = Some(alarm);
+            // If a word's value decides which alarm it is, another mixture of words may raise none.
+            let with_values = self.alarm(words, block, modes, Some(ANY_NUMBER))?;
+            let without_values = self.alarm(words, block, modes, None)?;
+            let kinds = [&with_values, &without_values].map(|alarm| discriminant(&alarm.node));
+            if kinds[0] != kinds[1] || !depends_on_words_alone(&without_values.node) {
+                return None;
             }
+            certain = Some(without_values);
         }
         certain
     }
@@ -73,6 +105,11 @@ impl StaticPlanner {
     ) -> Option<LocatedAlarm> {
         let state = &mut self.executor.registers.state;
         (state.modal.motion, state.modal.cycle) = (modes.motion, modes.cycle);
+        let CertainModes { rotation, scaling, mirror, cutter } = modes.certain;
+        state.modal.rotation = if rotation { Rotation::On } else { Rotation::Off };
+        state.modal.scaling = if scaling { Scaling::On } else { Scaling::Off };
+        state.modal.mirror = if mirror { Mirror::On } else { Mirror::Off };
+        state.modal.cutter = if cutter { CutterSide::Left } else { CutterSide::Off };
         state.cycle = CycleState { q: modes.has_pecks.then_some(ANY_NUMBER), ..CycleState::default() };
         self.executor.flow.block = block;
         self.words.clear();
@@ -124,11 +161,17 @@ impl StaticPlanner {
 
 /// Returns true for an alarm that no value, offset, position or other mode of the control decides.
 fn depends_on_words_alone(alarm: &Alarm) -> bool {
-    let is_unused_word = matches!(alarm, Alarm::NotSimulated { what } if what.ends_with(IN_THIS_BLOCK) || what == DIRECT_DRAWING);
-    is_unused_word
+    let is_direct_drawing = matches!(alarm, Alarm::NotSimulated { what } if what == DIRECT_DRAWING);
+    is_direct_drawing
         || matches!(
             alarm,
-            Alarm::IllegalPoint { .. }
+            Alarm::WordNotSimulated(_)
+                | Alarm::CodeInMode(..)
+                | Alarm::CodeInScaling(_)
+                | Alarm::SkipInCompensation
+                | Alarm::ToolOffsetInCompensation
+                | Alarm::NoCycle(_)
+                | Alarm::IllegalPoint { .. }
                 | Alarm::IllegalMinus { .. }
                 | Alarm::TwoSigns { .. }
                 | Alarm::TooManyDigits(_)

@@ -125,16 +125,11 @@ impl Planner<'_> {
             if row.effect == Effect::OneShot(OneShot::MachineCoordinateSystem) && !self.names_axis() {
                 continue;
             }
-            let returns = matches!(
-                row.effect,
-                Effect::OneShot(
-                    OneShot::MachineCoordinateSystem
-                        | OneShot::CheckReference
-                        | OneShot::Reference
-                        | OneShot::FromReference
-                        | OneShot::SecondReference
-                )
-            );
+            let returns = match row.effect {
+                Effect::OneShot(OneShot::CheckReference | OneShot::FromReference) => true,
+                Effect::OneShot(one) => one.moves_on_machine(),
+                _ => false,
+            };
             if returns && self.data.settings.undocumented.returns_in_transforms {
                 continue;
             }
@@ -165,10 +160,7 @@ impl Planner<'_> {
             } else {
                 continue;
             };
-            let code = spelled(row.code);
-            return Err(
-                self.not_simulated(format!("G{code} while {active} is on (command {cancel} before it)"))
-            );
+            return Err(self.code_in_mode(spelled(row.code), (active, cancel)));
         }
         Ok(())
     }

@@ -32,12 +32,12 @@ pub struct Axes {
 impl Axes {
     const NO_AXIS: u8 = MAX_AXES as u8;
 
-    /// Creates the table from letters out of `XYZABCUVW`.
+    /// Creates the table from letters out of `XYZABCUVWE`; E is linear, as U, V and W.
     ///
     /// `None` if a letter is repeated, names no axis, or if there are more than [`MAX_AXES`].
     pub fn new(letters: &str) -> Option<Self> {
         let bytes = letters.as_bytes();
-        let has_valid_letters = bytes.len() <= MAX_AXES && bytes.iter().all(|b| b"XYZABCUVW".contains(b));
+        let has_valid_letters = bytes.len() <= MAX_AXES && bytes.iter().all(|b| b"XYZABCUVWE".contains(b));
         let has_unique_letters = bytes.iter().enumerate().all(|(i, b)| !bytes[..i].contains(b));
         (has_valid_letters && has_unique_letters).then(|| Self::from_letters(bytes))
     }

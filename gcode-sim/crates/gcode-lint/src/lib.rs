@@ -45,6 +45,7 @@ mod role;
 mod rule;
 pub mod rules;
 mod suppression;
+mod text_behind_end;
 mod unset_reads;
 mod vacancy;
 mod variables;
@@ -134,7 +135,9 @@ fn check_known(
     control: (&Settings, ControlKnowledge),
     library: &mut impl Library,
 ) -> CheckResult {
-    check_sized((memory, known), control, library, PieceSizes::USUAL)
+    let mut result = check_sized((memory, known), control, library, PieceSizes::USUAL);
+    text_behind_end::leave_out(&mut result);
+    result
 }
 
 fn check_sized(

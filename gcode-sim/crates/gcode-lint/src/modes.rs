@@ -1,9 +1,10 @@
 //! Possible modes before each block, carried along all paths.
 //!
 //! A mode is unknown where a setting of the control decides it (at power-on), a caller or a called program.
+use gcode_control::static_plan::CertainModes;
 use gcode_lang::program::code_facts::AxisWords;
 use gcode_lang::program::g_codes::{Effect, GCodeRow};
-use gcode_lang::program::modes::{FeedMode, Rotation, Scaling, StrokeCheck};
+use gcode_lang::program::modes::{FeedMode, Mirror, Rotation, Scaling, StrokeCheck};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 
 use crate::context::has_feed_word;
@@ -68,6 +69,10 @@ fn after_words(context: &CheckContext<'_>, words: &Words, before: &PossibleModes
             after = after.after_effect(row.effect);
         }
     }
+    if context.has_effect(words, |effect| effect == Effect::Mirror(Mirror::On)) && !context.names_axis(words)
+    {
+        after.certain.mirror = before.certain.mirror;
+    }
     let has_pecks = after.is_in_cycle && words.list.iter().any(|word| b"QIJK".contains(&word.letter));
     PossibleModes {
         has_feed: after.has_feed || has_feed_word(words),
@@ -92,7 +97,8 @@ fn after_call(
         return PossibleModes::ANYTHING;
     };
     // The words may be arguments of a code that calls a program.
-    let mut after = after.join(*before);
+    // It may end a mode.
+    let mut after = after.join(*before).with_certain(|modes| *modes = CertainModes::default());
     for op in called.program.ops() {
         match op.kind() {
             OpKind::Words(words) => {

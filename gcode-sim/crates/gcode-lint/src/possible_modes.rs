@@ -1,13 +1,13 @@
 //! The feed, the motion mode and the canned cycle that are possible before a block.
-use gcode_control::static_plan::ModesInForce;
+use gcode_control::static_plan::{CertainModes, ModesInForce};
 use gcode_lang::program::cycles::{Cycle, DRILLING as DRILLING_CYCLE};
 use gcode_lang::program::g_codes::Effect;
-use gcode_lang::program::modes::{Distance, FeedMode, Motion};
+use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Mirror, Motion, Rotation, Scaling};
 
 /// A cycle that needs no word of its own.
 static DRILLING: Cycle = DRILLING_CYCLE;
 
-/// Possible modes before a block: each is true if it holds on some path to the block.
+/// Possible modes before a block: each but `certain` is true if it holds on some path to the block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PossibleModes {
     /// F is commanded.
@@ -32,7 +32,13 @@ pub(crate) struct PossibleModes {
     pub is_absolute: bool,
     /// No earlier block lacks F. The first that does stops the control, and its F serves the blocks after it.
     pub is_unreported: bool,
+    /// Modes that are on along every path to the block.
+    pub certain: CertainModes,
 }
+
+/// No mode is certainly on.
+const NONE_CERTAIN: CertainModes =
+    CertainModes { rotation: false, scaling: false, mirror: false, cutter: false };
 
 impl PossibleModes {
     /// Modes at power-on; a setting of the control decides between G00 and G01.
@@ -48,6 +54,7 @@ impl PossibleModes {
         is_other_feed_mode: true,
         is_absolute: true,
         is_unreported: true,
+        certain: NONE_CERTAIN,
     };
     pub(super) const ANYTHING: Self =
         Self { has_feed: true, is_in_cycle: true, has_pecks: true, is_inverse_time: true, ..Self::POWER_ON };
@@ -69,6 +76,12 @@ impl PossibleModes {
             is_other_feed_mode: self.is_other_feed_mode | other.is_other_feed_mode,
             is_absolute: self.is_absolute | other.is_absolute,
             is_unreported: self.is_unreported | other.is_unreported,
+            certain: CertainModes {
+                rotation: self.certain.rotation & other.certain.rotation,
+                scaling: self.certain.scaling & other.certain.scaling,
+                mirror: self.certain.mirror & other.certain.mirror,
+                cutter: self.certain.cutter & other.certain.cutter,
+            },
         }
     }
 
@@ -83,6 +96,7 @@ impl PossibleModes {
             // A computed G code may be any.
             is_other_feed_mode: true,
             is_absolute: true,
+            certain: NONE_CERTAIN,
             ..self
         }
     }
@@ -112,8 +126,20 @@ impl PossibleModes {
                 ..self
             },
             Effect::Distance(distance) => Self { is_absolute: distance == Distance::Absolute, ..self },
+            Effect::Rotation(rotation) => {
+                self.with_certain(|modes| modes.rotation = rotation == Rotation::On)
+            }
+            Effect::Scaling(scaling) => self.with_certain(|modes| modes.scaling = scaling == Scaling::On),
+            Effect::Mirror(mirror) => self.with_certain(|modes| modes.mirror = mirror == Mirror::On),
+            Effect::Cutter(side) => self.with_certain(|modes| modes.cutter = side != CutterSide::Off),
             _ => self,
         }
+    }
+
+    /// Returns the modes after a change of those that are certain.
+    pub(super) fn with_certain(mut self, change: impl FnOnce(&mut CertainModes)) -> Self {
+        change(&mut self.certain);
+        self
     }
 
     /// Returns the modes in which a block can be read, the one that accepts most first.
@@ -123,7 +149,7 @@ impl PossibleModes {
             (false, true) => Motion::Linear,
             (false, false) => Motion::Clockwise,
         };
-        let modes = ModesInForce { motion, cycle: None, has_pecks: self.has_pecks };
+        let modes = ModesInForce { motion, cycle: None, has_pecks: self.has_pecks, certain: self.certain };
         let in_cycle = ModesInForce { cycle: Some(self.cycle.unwrap_or(&DRILLING)), ..modes };
         let cycle = self.is_in_cycle.then_some(in_cycle);
         cycle.into_iter().chain(self.is_outside_cycle.then_some(modes))

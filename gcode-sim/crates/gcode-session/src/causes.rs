@@ -41,7 +41,7 @@ pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
 }
 
 /// Letters of lengths and angles.
-const MEASURED_LETTERS: &[u8] = b"XYZABCUVWIJKRQ";
+const MEASURED_LETTERS: &[u8] = b"XYZABCUVWEIJKRQ";
 
 /// Returns true if a program of the run has a length or an angle without a decimal point, besides 0.
 pub(super) fn may_lack_points(run: &Run) -> bool {

@@ -48,9 +48,8 @@ impl Slice {
     /// Follows the length offset where G28, G30 or G53 moves its axis and so may cancel it.
     fn follow_cancelled_length(&mut self, block: &Block<'_>, list: &[MarkedWord], modes: &BlockModes) {
         let is_on_machine = modes.one_shot == Some(OneShot::MachineCoordinateSystem);
-        let is_home = matches!(modes.one_shot, Some(OneShot::Reference | OneShot::SecondReference));
         let is_along_tool = list.iter().any(|word| word.letter == b'Z') && modes.length != Length::Off;
-        if !is_along_tool || !is_on_machine && !is_home {
+        if !is_along_tool || !modes.one_shot.is_some_and(OneShot::moves_on_machine) {
             return;
         }
         let undocumented = &block.registers.data.settings.undocumented;

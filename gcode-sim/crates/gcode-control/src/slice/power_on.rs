@@ -46,9 +46,7 @@ impl Slice {
         let is_place = |letter: u8| settings.axes.find(letter).is_some() || b"IJKR".contains(&letter);
         let mut places = list.iter().map(|word| word.letter).filter(|letter| is_place(*letter)).peekable();
         // The end of G28 and G30 depends on no mode.
-        if places.peek().is_none()
-            || matches!(modes.one_shot, Some(OneShot::Reference | OneShot::SecondReference))
-        {
+        if places.peek().is_none() || modes.one_shot.is_some_and(OneShot::moves_to_reference) {
             return;
         }
         let is_on_machine = modes.one_shot == Some(OneShot::MachineCoordinateSystem);

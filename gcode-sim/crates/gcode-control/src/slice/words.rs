@@ -310,9 +310,7 @@ impl Slice {
                 self.machine.length = marks | self.length_marks(block, h);
             }
             _ => {
-                let on_machine =
-                    [OneShot::MachineCoordinateSystem, OneShot::Reference, OneShot::SecondReference];
-                let stays = modes.one_shot.is_some_and(|one| on_machine.contains(&one));
+                let stays = modes.one_shot.is_some_and(OneShot::moves_on_machine);
                 let is_along_tool = |word: &MarkedWord| word.letter == b'Z';
                 let moves_along = list.iter().any(is_along_tool)
                     || modes.is_in_cycle

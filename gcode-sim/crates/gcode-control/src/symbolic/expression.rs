@@ -351,11 +351,12 @@ impl<'a, 'o, T: Terms> Evaluation<'a, 'o, T> {
         }
         match letter {
             _ if rounds == RoundingTarget::Whole => self.rounded(value),
-            b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
+            b'F' => Ok(value),
+            b'E' if self.registers.data.settings.axes.find(b'E').is_none() => Ok(value),
+            b'A'..=b'C' | b'E' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
                 let decimals = self.registers.data.decimals(letter, self.registers.state.modal.unit);
                 self.oracle.rounded_to_increment(value, POWERS[decimals])
             }
-            b'F' | b'E' => Ok(value),
             _ => self.rounded(value),
         }
     }

@@ -59,10 +59,7 @@ pub enum Alarm {
     /// A code that cylindrical interpolation excludes.
     CodeInCylinder(String),
     /// A pattern of holes has no canned cycle.
-    NoCycle {
-        /// Code of the pattern.
-        code: &'static str,
-    },
+    NoCycle(&'static str),
     /// An address does not allow a minus sign.
     IllegalMinus {
         /// Letter of the address.
@@ -158,10 +155,7 @@ pub enum Alarm {
     /// A cutting block in G93 has no F.
     NoInverseTime,
     /// A code in G51 changes the coordinate system or moves to the reference position.
-    CodeInScaling {
-        /// Code without its letter.
-        code: String,
-    },
+    CodeInScaling(String),
     /// The circular pocket of G12 or G13 is smaller than the tool.
     PocketTooSmall {
         /// Code.
@@ -470,6 +464,10 @@ pub enum Alarm {
         /// The code or function.
         what: String,
     },
+    /// The simulator executes no word of this letter in its block.
+    WordNotSimulated(char),
+    /// A code, the mode that rules it out, and the code that ends the mode.
+    CodeInMode(String, &'static str, &'static str),
 }
 
 /// Alarm with its span. Boxed, because almost every step of a run returns a result without an alarm.

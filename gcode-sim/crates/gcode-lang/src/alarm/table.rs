@@ -31,7 +31,7 @@ impl Alarm {
             Self::CodeInPolarInterpolation(code) => (&PS0146, format!("{code} in polar coordinate interpolation"), Some("command G13.1 before it")),
             Self::CylinderFormat(what) => (&PS0175, format!("cylindrical interpolation: {what}"), Some("command G07.1 with one rotary axis and the radius, and with 0 to end it")),
             Self::CodeInCylinder(code) => (&PS0176, format!("{code} in cylindrical interpolation"), Some("end it before with G07.1 and the rotary axis at 0")),
-            Self::NoCycle { code } => (&PS0010, format!("{code} without a canned cycle"), Some("command G81 or another cycle before it, with L0 if the centre has no hole")),
+            Self::NoCycle(code) => (&PS0010, format!("{code} without a canned cycle"), Some("command G81 or another cycle before it, with L0 if the centre has no hole")),
             Self::IllegalMinus { letter } => (&PS0006, format!("address {letter} takes no minus sign"), Some("remove the minus sign")),
             Self::IllegalPoint { letter: Some(letter) } => (&PS0007, format!("address {letter} takes no decimal point"), Some("write the number without a decimal point")),
             Self::IllegalPoint { letter: None } => (&PS0007, "a number has two decimal points".into(), Some("remove one of them")),
@@ -107,7 +107,7 @@ impl Alarm {
             Self::PlaneInRigidTapping => (&PS0206, "the plane changes in rigid tapping".into(), Some("select the plane before M29, or after G80")),
             Self::PlaneInRotation => (&PS0144, "the plane changes in coordinate system rotation (G68)".into(), Some("command G69 first")),
             Self::TNotAllowed => (&PS0245, "T is not allowed in a block with G04, G10 or G50".into(), Some("command T in a block of its own")),
-            Self::CodeInScaling { code } => (&PS0300, format!("G{code} is not allowed in scaling (G51)"), Some("command G50 first")),
+            Self::CodeInScaling(code) => (&PS0300, format!("G{code} is not allowed in scaling (G51)"), Some("command G50 first")),
             Self::NoIntermediatePoint => (&PS0305, "G29 without an intermediate point".into(), Some("command G28 or G30 with the same axis before it")),
             Self::FileNotFound { name, read_error } => (&PS0310, not_found(format!("program <{name}>"), read_error), None),
             Self::PluralM { first, second } => (&PS0335, format!("M{second:02} after M{first:02} in one block: only the last M code counts"), Some("write the other code in the preceding block")),
@@ -153,10 +153,16 @@ impl Alarm {
             Self::SkipMissed => (&SIM0002, "G31 ended without a skip signal".into(), Some("probe farther, or check the position of the part")),
             Self::SkipReceived => (&SIM0004, "G31 with M78 got a skip signal".into(), Some("check the path: the probe touches something before its end")),
             Self::StylusBroken { deflection, overtravel_limit } => (&SIM0003, format!("the stylus is deflected by {deflection:.3} mm, limit {overtravel_limit:.3} mm"), Some("probe with a lower feed, and back off before the next touch")),
-            Self::NotSimulated { what } => (&SIM0001, format!("{what} is not simulated"), Some("avoid it, or check it on a control that has it: this simulator does not execute it")),
+            Self::NotSimulated { what } => (&SIM0001, format!("{what} is not simulated"), Some(NOT_EXECUTED)),
+            Self::WordNotSimulated(letter) => (&SIM0001, format!("{letter} in this block is not simulated"), Some(NOT_EXECUTED)),
+            Self::CodeInMode(code, active, cancel) => (&SIM0001, format!("G{code} while {active} is on (command {cancel} before it) is not simulated"), Some(NOT_EXECUTED)),
         }
     }
 }
+
+/// Remedy for what the simulator does not execute.
+const NOT_EXECUTED: &str =
+    "avoid it, or check it on a control that has it: this simulator does not execute it";
 
 /// Returns the number of a G code with two digits before the point, as manuals write it.
 fn two_digits(code: &str) -> String {

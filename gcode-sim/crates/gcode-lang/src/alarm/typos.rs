@@ -287,10 +287,10 @@ fn radius_without_point(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<Str
 
 /// Detects two times in one dwell, `G04 X1.5 P500`.
 fn dwell_with_two_times(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
-    let Alarm::NotSimulated { what } = alarm else { return None };
+    let Alarm::WordNotSimulated(_) = alarm else { return None };
     let line = alarm_line.whole;
     let is_dwell = line.split(|c: char| !c.is_ascii_alphanumeric()).any(|word| matches!(word, "G4" | "G04"));
-    (is_dwell && what.ends_with("in this block") && line.contains('P'))
+    (is_dwell && line.contains('P'))
         .then(|| "write one time for a dwell: X in seconds or P in milliseconds".to_owned())
 }
 
@@ -417,8 +417,7 @@ mod tests {
         );
         // With calculator input a missing point is not the error.
         assert!(!help(small(4.0), "G02 X10. R4", "R4").contains("without"));
-        let alarm = Alarm::NotSimulated { what: "X in this block".into() };
-        assert!(help(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));
+        assert!(help(Alarm::WordNotSimulated('X'), "G04 X1.5 P500", "X1.5").contains("one time"));
     }
 
     #[test]

@@ -207,6 +207,16 @@ impl OneShot {
     pub fn is_skip(self) -> bool {
         matches!(self, Self::Skip | Self::Measure(_))
     }
+
+    /// Returns true for G28 and G30, which move to a reference position.
+    pub fn moves_to_reference(self) -> bool {
+        matches!(self, Self::Reference | Self::SecondReference)
+    }
+
+    /// Returns true for a code that moves to machine coordinates: G28, G30 and G53.
+    pub fn moves_on_machine(self) -> bool {
+        self == Self::MachineCoordinateSystem || self.moves_to_reference()
+    }
 }
 
 /// Code of a Haas that sets an offset where a skip signal comes.

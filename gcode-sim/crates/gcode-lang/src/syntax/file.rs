@@ -21,7 +21,8 @@ pub(crate) struct ProgramParts<C, B> {
     pub context: C,
     /// Blocks in order.
     pub blocks: Vec<B>,
-    /// True if `%` or another program follows, or has to: the text has a `%` before. False if a text without `%` ends.
+    /// True if `%` or another program follows, or has to: the text has a `%` before. False if a text without `%` ends, and for
+    /// text behind the last `%`.
     pub is_closed: bool,
 }
 
@@ -98,10 +99,16 @@ impl<C: Default, B> Programs<C, B> {
         program
     }
 
+    /// Returns true if the last program is text behind the last `%`: no O word, no `%` behind it, and programs before.
+    fn is_behind_end(&self) -> bool {
+        let Some(((last, _), before)) = self.list.split_last() else { return false };
+        self.is_open && last.name == ProgramName::Unnamed && before.iter().any(|(_, is_leader)| !is_leader)
+    }
+
     /// Returns all programs. A program without readable content is leader text and is dropped unless it is
     /// the only one.
     pub(super) fn finish(mut self) -> Vec<ProgramParts<C, B>> {
-        if self.has_section {
+        if self.has_section && !self.is_behind_end() {
             self.close();
         }
         let is_only_program = self.list.len() == 1;

@@ -172,6 +172,34 @@ mod tests {
     }
 
     #[test]
+    fn modes_that_rule_out_a_code_count() {
+        for (text, line) in [
+            ("O1\nG68 X0 Y0 R10.\nG91 G28 Z0\nG69\nG28 Z0\nM30\n", 3),
+            ("O1\nG68 X0 Y0 R10.\nG0 X5.\nG53 Z0\nG69\nG53 Z0\nM30\n", 4),
+            ("O1\nG51 X0 Y0 P2000\nG52 X1.\nG50\nG52 X0\nM30\n", 3),
+            ("O1\nG51.1 X0\nG28 Z0\nG50.1 X0\nG28 Z0\nM30\n", 3),
+            ("O1\nG41 D1 G1 X1. F9.\nG31 Z-5.\nG40 X0\nG31 Z-5.\nM30\n", 3),
+        ] {
+            assert_eq!(lines(&RULE, text), [line], "{text}");
+        }
+        for text in [
+            "O1\nIF[#500 EQ 1]GOTO 5\nG68 X0 Y0 R10.\nN5 G28 Z0\nM30\n",
+            "O1\nG68 X0 Y0 R10.\nM98 P2\nG28 Z0\nM30\nO2\nG69\nM99\n",
+            "O1\nG68 X0 Y0 R10.\nG53\nG69\nM30\n",
+            "O1\nG68 X0 Y0 R10.\nG#1\nG28 Z0\nM30\n",
+            "O2\nG28 Z0\nM99\n",
+        ] {
+            assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_computed_word_that_may_be_vacant_beside_another_is_accepted() {
+        assert_eq!(lines(&RULE, "O1\n#1=2.\nG91 G03 I-#1 Z.1 L#4 F9.\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\n#1=2.\nG91 G03 Z.1 F#1\nM30\n"), [3]);
+    }
+
+    #[test]
     fn a_g67_alone_needs_a_g66() {
         assert_eq!(lines(&RULE, "O1\nG00 X1.\nG67\nM30\n"), [3]);
         for text in [

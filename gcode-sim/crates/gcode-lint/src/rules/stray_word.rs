@@ -57,6 +57,7 @@ fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Optio
         return (!matches!(word.letter, b'R' | b'C' | b'A')).then_some(Alarm::CornerWords);
     }
     let is_refused = match word.letter {
+        b'E' if axes.find(b'E').is_some() => false,
         // A Haas takes E in rapids and cycles, whose mode another block may set.
         b'E' if context.settings.codes == Dialect::HaasNgc => context
             .has_effect(words, |effect| matches!(effect, Effect::Motion(motion) if motion != Motion::Rapid)),

@@ -97,7 +97,7 @@ struct FileControl {
     #[schemars(extend("enum" = names(&UNITS)))]
     unit: Option<Located<String>>,
     /// Its axis table, axis 1 first: different letters [default: XYZABC].
-    #[schemars(regex(pattern = "^[XYZABCUVW]{1,8}$"))]
+    #[schemars(regex(pattern = "^[XYZABCUVWE]{1,8}$"))]
     axes: Option<Located<String>>,
 }
 
@@ -205,12 +205,35 @@ fn letter(
     })
 }
 
+/// Returns what a control reads at an address that names no axis.
+fn other_meaning(letter: char) -> Option<&'static str> {
+    Some(match letter {
+        'D' => "the number of the cutter radius offset",
+        'F' => "the feed",
+        'G' | 'M' => "a code",
+        'H' => "the number of the tool length offset",
+        'I' | 'J' | 'K' => "a centre of an arc",
+        'L' => "a number of repeats",
+        'N' => "a sequence number",
+        'O' | 'P' => "the number of a program",
+        'Q' => "the depth of a peck",
+        'R' => "a radius or the R level",
+        'S' => "the spindle speed",
+        'T' => "the number of a tool",
+        _ => return None,
+    })
+}
+
 impl FileControl {
     fn axes(&self, reader: &Reader<'_>) -> Result<Axes, FileError> {
         let Some(letters) = &self.axes else { return Ok(Axes::default()) };
         Axes::new(letters.as_ref()).filter(|axes| !axes.is_empty()).ok_or_else(|| {
-            let required = "1 to 8 different letters of X Y Z A B C U V W are required, axis 1 first";
-            reader.error(letters, format!("key 'control.axes' is '{}': {required}", letters.as_ref()))
+            let required = "1 to 8 different letters of X Y Z A B C U V W E are required, axis 1 first";
+            let other = letters.as_ref().chars().find_map(|letter| Some((letter, other_meaning(letter)?)));
+            let reason =
+                other.map(|(letter, meaning)| format!("; {letter} can't be an axis: it is {meaning}"));
+            let reason = reason.unwrap_or_default();
+            reader.error(letters, format!("key 'control.axes' is '{}': {required}{reason}", letters.as_ref()))
         })
     }
 }
@@ -222,6 +245,20 @@ mod tests {
     use super::super::{AxisLink, LinkMotion, Placement};
     use super::*;
     use gcode_lang::units::Deg;
+
+    #[test]
+    fn e_is_an_axis_and_a_letter_with_another_meaning_is_not() {
+        let of = |axes: &str| Machine::parse(&format!("[control]\naxes = \"{axes}\"\n"));
+        assert!(of("XYZE").is_ok());
+        for (axes, reason) in [
+            ("XYZD", "; D can't be an axis: it is the number of the cutter radius offset"),
+            ("XYZH", "; H can't be an axis: it is the number of the tool length offset"),
+            ("XYZX", "axis 1 first"),
+        ] {
+            let message = of(axes).unwrap_err().to_string();
+            assert!(message.ends_with(reason), "{message}");
+        }
+    }
 
     const PAPER: &str = "[[table]]\nletter = \"B\"\nturns = \"y\"\nsign = 1\n";
 
