@@ -98,9 +98,12 @@ impl HoleExtractor<'_> {
         let depth = (hole.entry - to).dot(&hole.out);
         let is_within =
             exceeds(depth - thread.span[0], MAX_FLANK_CUT) && !exceeds(depth - thread.span[1], MAX_FLANK_CUT);
+        if !is_within {
+            return;
+        }
         let radius = diameter / 2.0;
-        let mut aside = 0.0_f64;
-        for chord in path.windows(2).filter(|_| is_within) {
+        let mut aside = f64::NEG_INFINITY;
+        for chord in path.windows(2) {
             for [begin, end] in in_flanks([&chord[0], &chord[1]], hole, thread, radius) {
                 for share in [begin, end] {
                     aside = aside.max(split(&(chord[0] + (chord[1] - chord[0]) * share), hole).0.norm());
@@ -187,7 +190,8 @@ impl HoleExtractor<'_> {
         let point = self.machine.point_of(self.setup.tool).length(diameter).unwrap_or(diameter / 2.0);
         let goes_aside =
             exceeds(aside - before, MAX_FLANK_CUT) && exceeds(depth - thread.span[0], MAX_FLANK_CUT);
-        let goes_down = exceeds((from - to).dot(&hole.out), MAX_FLANK_CUT)
+        let goes_down = !self.metal.is_point_in_pocket(&to)
+            && exceeds((from - to).dot(&hole.out), MAX_FLANK_CUT)
             && exceeds(depth - point - thread.span[0], MAX_FLANK_CUT);
         if !(goes_aside || goes_down)
             || !exceeds(reach - thread.core, MAX_FLANK_CUT)

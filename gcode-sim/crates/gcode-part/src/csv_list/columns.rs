@@ -281,7 +281,7 @@ impl Columns {
     }
 
     /// Returns what the reader takes for granted.
-    pub(super) fn note(&self, has_open_depths: bool, has_comma: bool) -> Option<String> {
+    pub(super) fn note(&self, has_open_depths: bool, has_comma: bool, shallow: &[String]) -> Option<String> {
         let mut facts = Vec::new();
         if self.unit == Unit::Inch {
             facts.push("lengths are in inches".to_owned());
@@ -294,6 +294,13 @@ impl Columns {
         }
         if has_open_depths {
             facts.push("depths that are left out are not compared".to_owned());
+        }
+        if let Some(first) = shallow.first() {
+            let others =
+                if shallow.len() == 1 { String::new() } else { format!(" and {} others", shallow.len() - 1) };
+            facts.push(format!(
+                "the depth of hole {first}{others} is less than that of a feature: the feature counts"
+            ));
         }
         if has_comma {
             facts.push("commas in numbers are decimal commas".to_owned());

@@ -83,8 +83,13 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         open_depths: Vec::new(),
         note: None,
     };
-    let mut cells =
-        Cells { columns: &columns, record: csv::StringRecord::new(), has_comma: false, has_point: false };
+    let mut cells = Cells {
+        columns: &columns,
+        record: csv::StringRecord::new(),
+        has_comma: false,
+        has_point: false,
+        shallow: Vec::new(),
+    };
     // A line is counted from the start of the text, only for an error.
     let mut positions_of_ids: HashMap<String, Option<u64>> = HashMap::new();
     while reader.read_record(&mut cells.record).map_err(|e| wrong(&e))? {
@@ -115,8 +120,8 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         let example = example(&columns.names, separator);
         return Err(error(None, format!("no hole after the header: one line for each; {example}")));
     }
-    let has_comma = cells.has_comma;
-    list.note = columns.note(!list.open_depths.is_empty(), has_comma);
+    let Cells { has_comma, shallow, .. } = cells;
+    list.note = columns.note(!list.open_depths.is_empty(), has_comma, &shallow);
     Ok(list)
 }
 
@@ -133,6 +138,8 @@ struct Cells<'c> {
     record: csv::StringRecord,
     has_comma: bool,
     has_point: bool,
+    /// Holes whose depth is less than that of a feature.
+    shallow: Vec<String>,
 }
 
 impl Cells<'_> {
@@ -206,15 +213,10 @@ impl Cells<'_> {
             ));
         }
         let depth = self.number("depth")?;
-        if let Some((depth, feature)) = depth.filter(|_| !hole.through).and_then(|depth| {
-            let is_deeper = |feature: &&Feature| exceeds(feature.depth.unwrap_or(0.0) - depth, 0.0);
-            hole.features.iter().find(is_deeper).map(|feature| (depth, feature))
-        }) {
-            return Err(format!(
-                "the depth of the hole, {depth}, is less than that of its {}, {}: it counts to the deepest point",
-                feature.kind.name(),
-                feature.depth.unwrap_or(0.0)
-            ));
+        if let Some(depth) = depth.filter(|_| !hole.through)
+            && hole.features.iter().any(|feature| exceeds(feature.bottom() - depth, 0.0))
+        {
+            self.shallow.push(hole.id.clone().unwrap_or_else(|| format!("#{}", index + 1)));
         }
         let is_open = depth.is_none() && hole.features.is_empty();
         if is_open && hole.through {
