@@ -11,6 +11,7 @@ use crate::hull;
 use crate::interval::{Interval, mul_up};
 use crate::model::Model;
 use crate::node::{Binary, Condition, Node, NodeId, Unary};
+use crate::real_values::SINES;
 
 /// Enclosures of nodes over a box, given the conditions of a path.
 ///
@@ -31,9 +32,6 @@ pub struct Enclosures {
     /// Inputs that are another input and a difference: by input, the other and the range of the difference.
     differences: Vec<(usize, usize, Interval)>,
 }
-
-/// Values of any sine.
-const SINES: Interval = Interval::of_ends(-1.0, 1.0);
 
 /// Largest number of inputs with a variable; the others are ranges only.
 const MAX_INPUTS: usize = 10;
