@@ -73,8 +73,9 @@ impl Enclosures {
                 |(atom, power): &(NodeId, u32)| *power == 1 && arena.as_input(atom.index()).is_some();
             monomial.is_empty() || monomial.len() == 1 && monomial.iter().all(is_input)
         };
-        // A polynomial of the first degree has its range.
-        if !error.is_finite() || difference.terms.len() < 2 || difference.terms.keys().all(is_linear) {
+        // A polynomial of one term or of the first degree has its range.
+        let terms = difference.terms.keys().filter(|monomial| !monomial.is_empty()).count();
+        if !error.is_finite() || terms < 2 || difference.terms.keys().all(is_linear) {
             return None;
         }
         let facts = conditions.iter().flat_map(|condition| facts_of(&mut algebra, &reals, *condition));
