@@ -146,9 +146,16 @@ impl<'a> Algebra<'a> {
         around.is_finite().then(|| Interval::point(constant_of(polynomial)).widened(around))
     }
 
-    /// Returns a bound of one rounding of a node's operation.
+    /// Returns a bound of an error of a node's operation that is a part of the result.
     fn rounding(&self, node: NodeId, relative: f64) -> f64 {
         self.of_computed((self.hull)(node).magnitude() * (relative * MARGIN + self.arena.widening()) + LOST)
+    }
+
+    /// Returns a bound of one rounding of a node's operation: half of the distance between the largest results.
+    fn half_unit(&self, node: NodeId) -> f64 {
+        let size = (self.hull)(node).magnitude();
+        let half = (size.next_up() - size) / 2.0;
+        self.of_computed(half + size * self.arena.widening() * MARGIN + LOST)
     }
 
     /// Returns the polynomial of a node.
@@ -220,7 +227,7 @@ impl<'a> Algebra<'a> {
             (Binary::Atan, _) => return self.direction(a, b).or_else(|| Some(Polynomial::atom(node))),
             _ => return Some(Polynomial::atom(node)),
         };
-        result.error = add_up(result.error, self.rounding(node, HALF_ULP));
+        result.error = add_up(result.error, self.half_unit(node));
         (result.terms.len() <= MAX_TERMS).then_some(result)
     }
 
@@ -304,6 +311,19 @@ impl<'a> Algebra<'a> {
                 }
                 let error = (size.iter().sum::<f64>() + 2.0) * unit * MARGIN;
                 terms(&[(&[(first, 1)], 1.0), (&[(second, 1)], sign)], error)
+            }
+            Unary::Exp if self.arena.widening() == 0.0 => {
+                // The sum is rounded, and all three powers.
+                let Node::Binary(Binary::Add, a, b) = self.arena.node(x) else { return atom };
+                let (Some(first), Some(second)) = (find(function, a), find(function, b)) else { return atom };
+                let moved = (self.hull)(x).magnitude() * HALF_ULP;
+                let size = (self.hull)(node).magnitude();
+                let least = [node, first, second].map(|node| (self.hull)(node).lo());
+                if first == second || moved > 1e-3 || least.iter().any(|least| *least < 1e-290) {
+                    return atom;
+                }
+                let both = [first.min(second), first.max(second)].map(|power| (power, 1));
+                terms(&[(&both, 1.0)], size * (3.01 * unit + 1.01 * moved) * 1.01)
             }
             Unary::Sin | Unary::Cos if self.arena.widening() == 0.0 => {
                 let Some(half) = self.half_of(x) else {
@@ -543,7 +563,7 @@ impl<'a> Algebra<'a> {
         };
         let bound = squares.sqrt().next_up().min(by_sum);
         // The computed difference is rounded too.
-        let bound = add_up(bound, self.rounding(node, HALF_ULP));
+        let bound = add_up(bound, self.half_unit(node));
         bound.is_finite().then(|| (Interval::new(-bound, bound), rest))
     }
 }

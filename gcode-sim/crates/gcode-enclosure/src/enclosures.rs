@@ -185,6 +185,14 @@ impl Enclosures {
         };
         let natural = self.with_identity(arena, node, arena.widened(node, natural));
         let natural = self.with_ratio(arena, node, natural);
+        let is_product = matches!(content, Node::Binary(Binary::Mul, left, right) if left != right);
+        let natural = match is_product && arena.widening() == 0.0 {
+            true => arena
+                .factors(node)
+                .range(|factor| self.hull(factor))
+                .map_or(natural, |range| natural.intersect(range)),
+            false => natural,
+        };
         if natural.lo() >= natural.hi() || self.basis.degree() == 0 {
             return Form { hull: natural, model: None };
         }
