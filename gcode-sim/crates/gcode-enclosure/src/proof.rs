@@ -208,6 +208,11 @@ impl<'a> Prover<'a> {
                 (Binary::Div, Node::Binary(Binary::Div, c, d)) if self.quotient_ge([a, b], [c, d], depth) => {
                     true
                 }
+                (Binary::Div, _)
+                    if self.arena.as_constant(b) == Some(2.0) && self.ge_multiple(a, 2, y, depth) =>
+                {
+                    true
+                }
                 (Binary::Div, _) => {
                     y == Arena::ONE && self.gt(b, Arena::ZERO, depth) && self.ge(a, b, depth)
                         || y == Arena::MINUS_ONE && self.abs_ge(b, a, depth)
@@ -267,7 +272,8 @@ impl<'a> Prover<'a> {
                 // From 2·x ≥ c follows x ≥ c/2: the double of x is exact.
                 Binary::Div
                     if self.arena.as_constant(d) == Some(2.0)
-                        && self.arena.find_double(x).is_some_and(|double| self.ge(double, c, depth)) =>
+                        && (self.le_multiple(c, 2, x, depth)
+                            || self.arena.find_double(x).is_some_and(|double| self.ge(double, c, depth))) =>
                 {
                     true
                 }
