@@ -234,20 +234,15 @@ impl Certifier<'_> {
             return None;
         }
         // A has the terms with roots; or all, or all but the number.
-        let with_roots = |monomial: &Monomial| has_root(monomial);
-        let without_number = |monomial: &Monomial| !monomial.is_empty();
-        let parts: [Box<dyn Fn(&Monomial) -> bool>; 3] =
-            [Box::new(with_roots), Box::new(without_number), Box::new(|_| true)];
-        let parts = parts.map(|is_part| {
+        let part = |is_part: &dyn Fn(&Monomial) -> bool| {
             let of_part = |(monomial, value): &(&Monomial, &f64)| {
                 is_part(monomial) && self.algebra.term_range(monomial, **value).lo() >= 0.0
             };
             let terms = polynomial.terms.iter().filter(of_part);
-            Polynomial {
-                terms: terms.map(|(monomial, value)| (monomial.clone(), *value)).collect(),
-                error: 0.0,
-            }
-        });
+            let terms = terms.map(|(monomial, value)| (monomial.clone(), *value));
+            Polynomial { terms: terms.collect(), error: 0.0 }
+        };
+        let parts = [part(&has_root), part(&|monomial| !monomial.is_empty()), part(&|_| true)];
         let mut best: Option<f64> = None;
         for (place, part) in parts.iter().enumerate() {
             let is_known = parts[..place].iter().any(|known| known.terms == part.terms);
