@@ -109,7 +109,7 @@ Part, drawing, minutes and rates come from the job's section [sheet]: see docs/s
 Example:
   gcode-gen prove job.toml --over 'hole.radius=0..1100' --over 'surface.a=500..2000'
 
-Exit code 0: every claim is proved; 1: one is refuted or undecided; 2: the request can't be used. See docs/prove.md.")]
+Exit code 0: every claim is proved; 1: one is refuted or undecided; 2: the request can't be used. See docs/prove-reference.md.")]
     Prove(prove::Arguments),
 
     /// Write the JSON Schema (draft 2020-12) of a result to standard output

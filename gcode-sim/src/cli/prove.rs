@@ -18,6 +18,9 @@ use gcode_control::Control;
 use gcode_prove::{Ask, Setup, Verdict, Watch, prove};
 use gcode_session::Request;
 
+/// Part of the time after which the proof ends: the rest is for what is under way, and the report.
+const WORKING_PART: f64 = 0.96;
+
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// A local or common variable and the limits of its values, e.g. '#1=0.1..9.9' (repeatable)
@@ -25,12 +28,12 @@ pub(super) struct Arguments {
     ranges: Vec<String>,
 
     /// A condition on these values, e.g. '#3 LE #1' (repeatable): values that don't satisfy it are left out
-    #[arg(long = "where", value_name = "CONDITION", display_order = 0)]
+    #[arg(long = "where", value_name = "CONDITION", allow_hyphen_values = true, display_order = 0)]
     conditions: Vec<String>,
 
     /// What is to hold for all values (repeatable): a condition at the end, '#100 LE 12.1'; no-alarm; 'alarm MC3001|MC3002';
     /// 'blocks LE 500'; 'travel 1320=X100.'
-    #[arg(long = "claim", value_name = "CLAIM", display_order = 0)]
+    #[arg(long = "claim", value_name = "CLAIM", allow_hyphen_values = true, display_order = 0)]
     claims: Vec<String>,
 
     /// A variable whose least and largest value at the end are to be enclosed, e.g. '#100' (repeatable)
@@ -176,7 +179,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let controls = Controls { request: &request, found: &found, call: arguments.call.as_deref() };
     let start = Instant::now();
     let clock = || start.elapsed();
-    let watch = Watch::new(&clock, Duration::from_secs_f64(arguments.time));
+    let watch = Watch::new(&clock, Duration::from_secs_f64(arguments.time * WORKING_PART));
     let answer = progress::of_proof(&watch, || prove(&controls, &ask, &watch));
     let answer = answer.map_err(|error| UsageError::new(error.to_string()))?;
     let rerun = Rerun::new(&program.program, &arguments.program.conditions, arguments.call.clone());

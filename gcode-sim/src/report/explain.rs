@@ -101,7 +101,7 @@ pub fn all() -> impl Iterator<Item = Page> {
 
 /// Returns the page of a claim of `test` that isn't proved, a section of the page on proofs.
 fn claim() -> Page {
-    const PROOFS: &str = include_str!("../../../docs/prove.md");
+    const PROOFS: &str = include_str!("../../../docs/prove-reference.md");
     let section = PROOFS.split("\n## ").find(|section| section.starts_with("Claims in a repository"));
     Page { code: "claim", title: "a claim of a case isn't proved", text: section.unwrap_or(PROOFS) }
 }

@@ -37,7 +37,7 @@ const INTEGER_POWERS: [u64; 20] = {
 impl Measure {
     /// Returns true if an address is in inches.
     #[inline(always)]
-    fn is_inch(&self, letter: u8) -> bool {
+    pub(super) fn is_inch(&self, letter: u8) -> bool {
         if self.is_in_inches {
             cold_path();
             return !is_rotary_letter(letter);

@@ -13,20 +13,24 @@ use crate::interval::{Interval, add_up};
 use crate::model::{HALF_ULP, is_power_of_two};
 use crate::node::{Binary, Node, NodeId, Semantics, Unary};
 use crate::polynomial::{Monomial, Polynomial, constant_of, merged};
+use crate::real_values::RealValues;
 
 /// Largest number of monomials.
-const MAX_TERMS: usize = 48;
+pub(crate) const MAX_TERMS: usize = 48;
 /// Largest number of nodes that are looked at.
-const MAX_NODES: usize = 120;
+pub(crate) const MAX_NODES: usize = 120;
 /// Bound of what an operation loses to underflow.
 const LOST: f64 = 1e-300;
 /// Margin for the arithmetic of a bound.
 pub(crate) const MARGIN: f64 = 1.0 + 1e-9;
 
 /// Algebra over the ranges of nodes.
+///
+/// Of computed values, or of real ones: then identities hold exactly, but for those of computed angles.
 pub(crate) struct Algebra<'a> {
     pub(crate) arena: &'a Arena,
     pub(crate) hull: &'a dyn Fn(NodeId) -> Interval,
+    reals: Option<&'a RealValues>,
     known: HashMap<NodeId, Option<Rc<Polynomial>>>,
 }
 
@@ -46,13 +50,51 @@ pub(crate) fn range_of(arena: &Arena, node: NodeId, hull: &dyn Fn(NodeId) -> Int
     let plain = algebra.bound(&polynomial);
     let simplified = algebra.quotients_removed(&polynomial).map(|(bound, _)| bound);
     let squares = algebra.by_squares(node).map(|(bound, _)| bound);
-    let all = [plain, simplified, squares].into_iter().flatten();
+    let all = [plain, simplified, squares, real_range_of(arena, node, hull)].into_iter().flatten();
     all.reduce(Interval::intersect)
+}
+
+/// Returns a range of the computed value of an identity by the real one: what is left of it, and all roundings.
+fn real_range_of(arena: &Arena, node: NodeId, hull: &dyn Fn(NodeId) -> Interval) -> Option<Interval> {
+    if arena.widening() > 0.0 {
+        return None;
+    }
+    let reals = RealValues::of(arena, &[node], hull)?;
+    let range = |node: NodeId| reals.range(arena, node);
+    let mut algebra = Algebra::of_reals(arena, &range, &reals);
+    let polynomial = algebra.node(node)?;
+    let error = reals.error(node);
+    let range = algebra.bound(&polynomial).filter(|_| error.is_finite())?;
+    Some(range.widened(error))
 }
 
 impl<'a> Algebra<'a> {
     fn new(arena: &'a Arena, hull: &'a dyn Fn(NodeId) -> Interval) -> Self {
-        Self { arena, hull, known: HashMap::new() }
+        Self { arena, hull, reals: None, known: HashMap::new() }
+    }
+
+    /// Returns the algebra of real values, whose ranges are given.
+    pub(crate) fn of_reals(
+        arena: &'a Arena,
+        range: &'a dyn Fn(NodeId) -> Interval,
+        reals: &'a RealValues,
+    ) -> Self {
+        Self { arena, hull: range, reals: Some(reals), known: HashMap::new() }
+    }
+
+    /// Returns true for an algebra of real values.
+    pub(crate) fn is_real(&self) -> bool {
+        self.reals.is_some()
+    }
+
+    /// Returns an error of computed values; those of real ones have none.
+    fn of_computed(&self, error: f64) -> f64 {
+        if self.is_real() { 0.0 } else { error }
+    }
+
+    /// Returns true for a node that stands for its computed value among real ones.
+    pub(crate) fn is_opaque(&self, node: NodeId) -> bool {
+        self.reals.is_some_and(|reals| reals.is_computed(node))
     }
 
     /// Returns what is left of an identity, and the size of the coefficients before.
@@ -104,13 +146,20 @@ impl<'a> Algebra<'a> {
         around.is_finite().then(|| Interval::point(constant_of(polynomial)).widened(around))
     }
 
-    /// Returns a bound of one rounding of a node's operation.
+    /// Returns a bound of an error of a node's operation that is a part of the result.
     fn rounding(&self, node: NodeId, relative: f64) -> f64 {
-        (self.hull)(node).magnitude() * (relative * MARGIN + self.arena.widening()) + LOST
+        self.of_computed((self.hull)(node).magnitude() * (relative * MARGIN + self.arena.widening()) + LOST)
+    }
+
+    /// Returns a bound of one rounding of a node's operation: half of the distance between the largest results.
+    fn half_unit(&self, node: NodeId) -> f64 {
+        let size = (self.hull)(node).magnitude();
+        let half = (size.next_up() - size) / 2.0;
+        self.of_computed(half + size * self.arena.widening() * MARGIN + LOST)
     }
 
     /// Returns the polynomial of a node.
-    fn node(&mut self, node: NodeId) -> Option<Rc<Polynomial>> {
+    pub(crate) fn node(&mut self, node: NodeId) -> Option<Rc<Polynomial>> {
         if let Some(known) = self.known.get(&node) {
             return known.clone();
         }
@@ -126,6 +175,7 @@ impl<'a> Algebra<'a> {
     fn compute(&mut self, node: NodeId) -> Option<Polynomial> {
         match self.arena.node(node) {
             Node::Constant(value) => Some(Polynomial::constant(value)),
+            _ if self.is_opaque(node) => Some(Polynomial::atom(node)),
             Node::Input(_) => Some(Polynomial::atom(node)),
             Node::Unary(Unary::Neg, x) => {
                 let x = self.node(x)?;
@@ -177,7 +227,7 @@ impl<'a> Algebra<'a> {
             (Binary::Atan, _) => return self.direction(a, b).or_else(|| Some(Polynomial::atom(node))),
             _ => return Some(Polynomial::atom(node)),
         };
-        result.error = add_up(result.error, self.rounding(node, HALF_ULP));
+        result.error = add_up(result.error, self.half_unit(node));
         (result.terms.len() <= MAX_TERMS).then_some(result)
     }
 
@@ -262,13 +312,26 @@ impl<'a> Algebra<'a> {
                 let error = (size.iter().sum::<f64>() + 2.0) * unit * MARGIN;
                 terms(&[(&[(first, 1)], 1.0), (&[(second, 1)], sign)], error)
             }
+            Unary::Exp if self.arena.widening() == 0.0 => {
+                // The sum is rounded, and all three powers.
+                let Node::Binary(Binary::Add, a, b) = self.arena.node(x) else { return atom };
+                let (Some(first), Some(second)) = (find(function, a), find(function, b)) else { return atom };
+                let moved = (self.hull)(x).magnitude() * HALF_ULP;
+                let size = (self.hull)(node).magnitude();
+                let least = [node, first, second].map(|node| (self.hull)(node).lo());
+                if first == second || moved > 1e-3 || least.iter().any(|least| *least < 1e-290) {
+                    return atom;
+                }
+                let both = [first.min(second), first.max(second)].map(|power| (power, 1));
+                terms(&[(&both, 1.0)], size * (3.01 * unit + 1.01 * moved) * 1.01)
+            }
             Unary::Sin | Unary::Cos if self.arena.widening() == 0.0 => {
                 let Some(half) = self.half_of(x) else {
                     return self.of_angle_sum(function, x).unwrap_or(atom);
                 };
                 let (sine, cosine) = (find(Unary::Sin, half), find(Unary::Cos, half));
                 // That of the double angle, and of a product that is counted twice: both angles convert alike.
-                let error = 6.0 * SINE_ERROR * MARGIN;
+                let error = if self.is_real() { LOST } else { 6.0 * SINE_ERROR * MARGIN };
                 match (function, sine, cosine) {
                     (Unary::Cos, Some(sine), _) => terms(&[(&[], 1.0), (&[(sine, 2)], -2.0)], error),
                     (Unary::Cos, None, Some(cosine)) => terms(&[(&[], -1.0), (&[(cosine, 2)], 2.0)], error),
@@ -285,7 +348,7 @@ impl<'a> Algebra<'a> {
     }
 
     /// Returns a polynomial × a number.
-    fn scaled(&self, polynomial: &Polynomial, factor: f64) -> Polynomial {
+    pub(crate) fn scaled(&self, polynomial: &Polynomial, factor: f64) -> Polynomial {
         let mut scaled =
             Polynomial { error: polynomial.error * factor.abs() * MARGIN, ..Polynomial::default() };
         for (monomial, value) in &polynomial.terms {
@@ -295,14 +358,14 @@ impl<'a> Algebra<'a> {
     }
 
     /// Adds a × b × a monomial; what the coefficient rounds away is part of the error.
-    fn add_term(&self, to: &mut Polynomial, monomial: Monomial, a: f64, b: f64) {
+    pub(crate) fn add_term(&self, to: &mut Polynomial, monomial: Monomial, a: f64, b: f64) {
         let product = a * b;
-        let has_shift = a.abs() == 1.0 || b.abs() == 1.0 || is_power_of_two(a) || is_power_of_two(b);
-        let is_exact = has_shift && product.abs() > 1e-290;
         let known = to.terms.get(&monomial).copied().unwrap_or(0.0);
         let sum = known + product;
-        let of_product = if is_exact { 0.0 } else { product.abs() * HALF_ULP + LOST };
-        let of_sum = if known == 0.0 || sum == 0.0 { 0.0 } else { sum.abs() * HALF_ULP };
+        // What a product and a sum of doubles lose are doubles, unless the product is near the least one.
+        let of_product = libm::fma(a, b, -product).abs() + if product.abs() > 1e-290 { 0.0 } else { LOST };
+        let back = sum - known;
+        let of_sum = (known - (sum - back)).abs() + (product - back).abs();
         let lost = of_product + of_sum;
         if lost > 0.0 {
             to.error = add_up(to.error, lost * self.magnitude(&monomial) * MARGIN);
@@ -314,7 +377,7 @@ impl<'a> Algebra<'a> {
         }
     }
 
-    fn sum(&self, a: &Polynomial, b: &Polynomial) -> Polynomial {
+    pub(crate) fn sum(&self, a: &Polynomial, b: &Polynomial) -> Polynomial {
         let mut sum = a.clone();
         sum.error = add_up(sum.error, b.error);
         for (monomial, value) in &b.terms {
@@ -324,7 +387,7 @@ impl<'a> Algebra<'a> {
     }
 
     /// Returns the product, in which squares of roots, sines and magnitudes are replaced.
-    fn product(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
+    pub(crate) fn product(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
         if a.terms.len() * b.terms.len() > MAX_TERMS * 4 {
             return None;
         }
@@ -367,6 +430,7 @@ impl<'a> Algebra<'a> {
 
     fn has_square(&self, atom: NodeId) -> bool {
         match self.arena.node(atom) {
+            _ if self.is_opaque(atom) => false,
             Node::Unary(Unary::Sqrt | Unary::Abs, _) => true,
             Node::Unary(Unary::Sin | Unary::Cos, _) if self.leg(atom).is_some() => true,
             Node::Unary(Unary::Sin, x) => self.arena.find_unary(Unary::Cos, x).is_some(),
@@ -382,7 +446,8 @@ impl<'a> Algebra<'a> {
                 let mut square = (*self.node(x)?).clone();
                 // (√x·(1 + e))² − x = x·(2·e + e²).
                 let relative = 2.0 * (HALF_ULP + widening) * (1.0 + 1e-3);
-                square.error = add_up(square.error, (self.hull)(x).magnitude() * relative * MARGIN + LOST);
+                let rounding = (self.hull)(x).magnitude() * relative * MARGIN + LOST;
+                square.error = add_up(square.error, self.of_computed(rounding));
                 Some(square)
             }
             Node::Unary(Unary::Abs, x) => {
@@ -402,7 +467,7 @@ impl<'a> Algebra<'a> {
                 let cosine = self.node(self.arena.find_unary(Unary::Cos, x)?)?;
                 let minus = self.product(&cosine, &cosine).map(|square| self.scaled(&square, -1.0))?;
                 let mut square = self.sum(&Polynomial::constant(1.0), &minus);
-                square.error = add_up(square.error, 2.1 * (SINE_ERROR + widening));
+                square.error = add_up(square.error, self.of_computed(2.1 * (SINE_ERROR + widening)));
                 Some(square)
             }
             _ => None,
@@ -411,11 +476,24 @@ impl<'a> Algebra<'a> {
 
     /// Returns a range of a value whose quotients are multiplied by their divisors, and the polynomial without them.
     fn quotients_removed(&mut self, polynomial: &Polynomial) -> Option<(Interval, Polynomial)> {
+        let (rest, weight) = self.without_quotients(polynomial)?;
+        let least = weight.mignitude();
+        if least <= LOST {
+            return None;
+        }
+        let bound = (self.norm(&rest) + rest.error) * MARGIN / least * MARGIN;
+        let bound = add_up(bound, LOST);
+        bound.is_finite().then(|| (Interval::new(-bound, bound), rest))
+    }
+
+    /// Returns a polynomial × the divisors of its quotients, and the range of their product.
+    pub(crate) fn without_quotients(&mut self, polynomial: &Polynomial) -> Option<(Polynomial, Interval)> {
         let mut rest = polynomial.clone();
-        // The value × the product of the divisors is what is left.
-        let mut least = 1.0;
+        let mut weight = Interval::point(1.0);
         for _ in 0..6 {
-            let is_quotient = |atom: &NodeId| matches!(self.arena.node(*atom), Node::Binary(Binary::Div, ..));
+            let is_quotient = |atom: &NodeId| {
+                matches!(self.arena.node(*atom), Node::Binary(Binary::Div, ..)) && !self.is_opaque(*atom)
+            };
             let quotients = rest.terms.keys().flatten().map(|(atom, _)| *atom).filter(is_quotient);
             let Some(quotient) = quotients.max() else { break };
             let Node::Binary(Binary::Div, a, b) = self.arena.node(quotient) else { break };
@@ -429,7 +507,8 @@ impl<'a> Algebra<'a> {
             let (mut dividend, divisor) = ((*self.node(a)?).clone(), self.node(b)?);
             // The quotient × its divisor is the dividend, but for a rounding.
             let rounding = (self.hull)(a).magnitude() * (HALF_ULP + self.arena.widening()) * MARGIN;
-            dividend.error = add_up(dividend.error, rounding + (self.hull)(b).magnitude() * LOST + LOST);
+            let rounding = self.of_computed(rounding + (self.hull)(b).magnitude() * LOST + LOST);
+            dividend.error = add_up(dividend.error, rounding);
             let mut next = Polynomial::default();
             let of_divisor = (self.hull)(b);
             for (monomial, value) in rest.terms.clone() {
@@ -447,17 +526,17 @@ impl<'a> Algebra<'a> {
             let mut of_error = rest.error;
             for _ in 0..most {
                 of_error *= of_divisor.magnitude() * MARGIN;
-                least *= of_divisor.mignitude() * (1.0 - 1e-12);
+            }
+            let magnitudes = Interval::new(of_divisor.mignitude(), of_divisor.magnitude());
+            for factor in std::iter::repeat_n(of_divisor, most as usize % 2)
+                .chain(std::iter::repeat_n(magnitudes, (most / 2 * 2) as usize))
+            {
+                weight = weight.times(factor);
             }
             next.error = add_up(next.error, of_error);
             rest = self.reduced(next)?;
         }
-        if least <= LOST {
-            return None;
-        }
-        let bound = (self.norm(&rest) + rest.error) * MARGIN / least * MARGIN;
-        let bound = add_up(bound, LOST);
-        bound.is_finite().then(|| (Interval::new(-bound, bound), rest))
+        Some((rest, weight))
     }
 
     /// Returns a range of a − b for a and b of 0 or more by the difference of their squares: |a − b| = |a² − b²|/(a + b), and
@@ -484,7 +563,7 @@ impl<'a> Algebra<'a> {
         };
         let bound = squares.sqrt().next_up().min(by_sum);
         // The computed difference is rounded too.
-        let bound = add_up(bound, self.rounding(node, HALF_ULP));
+        let bound = add_up(bound, self.half_unit(node));
         bound.is_finite().then(|| (Interval::new(-bound, bound), rest))
     }
 }

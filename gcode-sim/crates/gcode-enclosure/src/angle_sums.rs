@@ -31,7 +31,10 @@ impl Algebra<'_> {
         }
         // The conversion of each angle, the rounding of the sum, and five functions of which each is 1 at most.
         let radians = (1.5 * of_sum + of_parts) * f64::EPSILON * 0.017_454;
-        let mut sum = Polynomial { error: (radians + 6.0 * SINE_ERROR) * MARGIN, ..Polynomial::default() };
+        // Real functions of both parts have no error, but a number's are computed.
+        let is_exact = self.is_real() && [a, b].iter().all(|part| self.arena.as_constant(*part).is_none());
+        let of_functions = if is_exact { 0.0 } else { 6.0 * SINE_ERROR };
+        let mut sum = Polynomial { error: (radians + of_functions) * MARGIN, ..Polynomial::default() };
         for ((left, x), (right, y), sign) in products {
             // A coefficient that is the product of two numbers is rounded.
             let coefficient = x * y * sign;

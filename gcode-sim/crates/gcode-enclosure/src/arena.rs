@@ -156,6 +156,10 @@ impl Arena {
                 value.map(|value| self.constant(value))
             }
             (Unary::Neg, Node::Unary(Unary::Neg, inner)) => Some(inner),
+            // A rounding doesn't depend on the sign.
+            (Unary::Neg, Node::Binary(Binary::Sub, a, b)) if self.widening() == 0.0 => {
+                Some(self.binary(Binary::Sub, b, a))
+            }
             (Unary::Abs, Node::Unary(Unary::Neg, inner)) => Some(self.unary(Unary::Abs, inner)),
             (Unary::Abs, Node::Unary(Unary::Abs | Unary::Sqrt, _)) => Some(x),
             (Unary::Fix | Unary::Fup | Unary::Round, _) if self.is_whole(x) => Some(x),
@@ -180,6 +184,7 @@ impl Arena {
         match operator {
             Binary::Add if a == Self::ZERO => b,
             Binary::Add | Binary::Sub if b == Self::ZERO => a,
+            Binary::Add if self.are_opposite(a, b) => Self::ZERO,
             Binary::Sub if a == b => Self::ZERO,
             Binary::Sub if a == Self::ZERO => self.unary(Unary::Neg, b),
             Binary::Mul if a == Self::ZERO || b == Self::ZERO => Self::ZERO,
@@ -197,6 +202,16 @@ impl Arena {
                 self.insert(Node::Binary(Binary::Compare(relation.swapped()), b, a))
             }
             _ => self.insert(Node::Binary(operator, a, b)),
+        }
+    }
+
+    /// Returns true for a − b and b − a, which are rounded alike.
+    fn are_opposite(&self, x: NodeId, y: NodeId) -> bool {
+        match (self.node(x), self.node(y)) {
+            (Node::Binary(Binary::Sub, a, b), Node::Binary(Binary::Sub, c, d)) => {
+                (a, b) == (d, c) && self.widening() == 0.0
+            }
+            _ => false,
         }
     }
 
@@ -266,6 +281,12 @@ impl Arena {
         let product =
             || constant(0.5).and_then(|half| self.find_binary(Binary::Mul, x.min(half), x.max(half)));
         quotient.or_else(product)
+    }
+
+    /// Returns the node of the double of a node, if the arena has it.
+    pub(crate) fn find_double(&self, x: NodeId) -> Option<NodeId> {
+        let two = self.find_constant(2.0)?;
+        self.find_binary(Binary::Mul, x.min(two), x.max(two)).or_else(|| self.find_binary(Binary::Add, x, x))
     }
 
     /// Returns z of [z + ABS[z]]/2, which is the larger of z and 0 without a rounding.

@@ -85,6 +85,7 @@ impl Enclosures {
             .or_else(|| self.decide_quotient(arena, relation.swapped(), right, left))
             .or_else(|| self.decide_product(arena, relation, left, right))
             .or_else(|| self.decide_product(arena, relation.swapped(), right, left))
+            .or_else(|| self.decide_by_certificate(arena, relation, left, right))
     }
 
     /// Decides a condition like [`Enclosures::decide`]; where a magnitude's argument has both signs, for each of them.

@@ -11,6 +11,7 @@ use crate::hull;
 use crate::interval::{Interval, mul_up};
 use crate::model::Model;
 use crate::node::{Binary, Condition, Node, NodeId, Unary};
+use crate::real_values::SINES;
 
 /// Enclosures of nodes over a box, given the conditions of a path.
 ///
@@ -31,9 +32,6 @@ pub struct Enclosures {
     /// Inputs that are another input and a difference: by input, the other and the range of the difference.
     differences: Vec<(usize, usize, Interval)>,
 }
-
-/// Values of any sine.
-const SINES: Interval = Interval::of_ends(-1.0, 1.0);
 
 /// Largest number of inputs with a variable; the others are ranges only.
 const MAX_INPUTS: usize = 10;
@@ -187,6 +185,14 @@ impl Enclosures {
         };
         let natural = self.with_identity(arena, node, arena.widened(node, natural));
         let natural = self.with_ratio(arena, node, natural);
+        let is_product = matches!(content, Node::Binary(Binary::Mul, left, right) if left != right);
+        let natural = match is_product && arena.widening() == 0.0 {
+            true => arena
+                .factors(node)
+                .range(|factor| self.hull(factor))
+                .map_or(natural, |range| natural.intersect(range)),
+            false => natural,
+        };
         if natural.lo() >= natural.hi() || self.basis.degree() == 0 {
             return Form { hull: natural, model: None };
         }

@@ -2,6 +2,7 @@
 //!
 //! In `#24*#24/[#2*#2]` with `#24=#2*SQRT[…]/#1` the factor #2 cancels and the root becomes its argument. Of a polynomial of
 //! a root's approximation nothing cancels; the factors are exact but for a rounding each.
+use crate::interval::Interval;
 use crate::node::{Binary, Node, NodeId, Unary};
 
 /// A node as constant × Π factor^(halves/2), within a number of roundings.
@@ -21,6 +22,9 @@ pub(crate) struct Factors {
 
 /// Largest number of roundings: every operation has two, so that there are no more than a dozen factors.
 const MOST: u32 = 24;
+
+/// Largest number of factors whose ranges are multiplied.
+const MAX_RANGED: usize = 4;
 
 impl Factors {
     /// Returns the factors of a node from those of its operands.
@@ -55,6 +59,43 @@ impl Factors {
             _ => None,
         };
         found.unwrap_or(whole)
+    }
+
+    /// Returns a range of the computed value by those of the factors, if one of them has an even power; a square isn't below 0.
+    ///
+    /// Factors are at most 1e10, and at least 1e-10 in a divisor, so that what underflows stays below 1e-60.
+    pub(crate) fn range(&self, hull: impl Fn(NodeId) -> Interval) -> Option<Interval> {
+        let has_square = self.powers.iter().any(|(_, halves)| *halves > 0 && halves % 4 == 0);
+        if !has_square || self.powers.len() > MAX_RANGED {
+            return None;
+        }
+        let is_moderate = |(factor, is_divisor): &(NodeId, bool)| {
+            let hull = hull(*factor);
+            hull.magnitude() <= 1e10 && (!is_divisor || hull.mignitude() >= 1e-10)
+        };
+        if !self.used.iter().all(is_moderate) {
+            return None;
+        }
+        let mut range = Interval::point(self.constant);
+        for &(factor, halves) in &self.powers {
+            if halves < 0 || halves % 2 != 0 {
+                return None;
+            }
+            let of_factor = hull(factor);
+            let magnitudes = Interval::new(of_factor.mignitude(), of_factor.magnitude());
+            for _ in 0..halves / 4 {
+                range = range.times(magnitudes).times(magnitudes);
+            }
+            if halves % 4 != 0 {
+                range = range.times(of_factor);
+            }
+        }
+        // No rounding changes a sign.
+        let relative = f64::from(self.roundings) * f64::EPSILON;
+        let low = range.lo() - range.lo().abs() * relative - 1e-60;
+        let high = range.hi() + range.hi().abs() * relative + 1e-60;
+        let low = if range.lo() >= 0.0 { low.max(0.0) } else { low };
+        Some(Interval::new(low, if range.hi() <= 0.0 { high.min(0.0) } else { high }))
     }
 
     /// Returns the product with another number to the power `sign`, 1 or −1.

@@ -96,6 +96,19 @@ impl Interval {
         }
     }
 
+    /// Returns an interval around the real products of numbers of both.
+    pub(crate) fn times(self, other: Self) -> Self {
+        if self.is_empty() || other.is_empty() {
+            return Self::EMPTY;
+        }
+        let ends = [(self.lo, other.lo), (self.lo, other.hi), (self.hi, other.lo), (self.hi, other.hi)];
+        let products = ends.map(|(a, b)| if a == 0.0 || b == 0.0 { None } else { Some(a * b) });
+        let below = products.map(|product| product.map_or(0.0, f64::next_down));
+        let above = products.map(|product| product.map_or(0.0, f64::next_up));
+        let lo = below.into_iter().fold(f64::INFINITY, f64::min);
+        Self::new(lo, above.into_iter().fold(f64::NEG_INFINITY, f64::max))
+    }
+
     /// Returns the interval wider by `by` on both sides.
     pub(crate) fn widened(self, by: f64) -> Self {
         if self.is_empty() { self } else { Self::new(sub_down(self.lo, by), add_up(self.hi, by)) }
@@ -106,6 +119,12 @@ impl Interval {
 #[inline]
 pub(crate) fn add_up(a: f64, b: f64) -> f64 {
     (a + b).next_up()
+}
+
+/// Returns a lower bound of a sum.
+#[inline]
+pub(crate) fn add_down(a: f64, b: f64) -> f64 {
+    (a + b).next_down()
 }
 
 /// Returns an upper bound of a difference.

@@ -8,7 +8,7 @@ impl Algebra<'_> {
     /// LN[EXP[x]].
     pub(crate) fn inverse(&self, function: Unary, of: NodeId) -> Option<(NodeId, f64)> {
         let Node::Unary(inner, x) = self.arena.node(of) else { return None };
-        if self.arena.widening() > 0.0 {
+        if self.arena.widening() > 0.0 || self.is_real() {
             return None;
         }
         let (unit, size) = (FUNCTION_ERROR * MARGIN, (self.hull)(x).magnitude());
@@ -34,6 +34,6 @@ impl Algebra<'_> {
             (Unary::Cos, Node::Unary(Unary::Asin, x)) | (Unary::Sin, Node::Unary(Unary::Acos, x)) => Some(x),
             _ => None,
         }
-        .filter(|_| self.arena.widening() == 0.0)
+        .filter(|_| self.arena.widening() == 0.0 && !self.is_real())
     }
 }

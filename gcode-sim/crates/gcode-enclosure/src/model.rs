@@ -17,6 +17,8 @@ pub(crate) struct Model {
 pub(crate) const HALF_ULP: f64 = f64::EPSILON / 2.0;
 /// Bound of the relative error of a sum of magnitudes, of fewer than 10^6 terms.
 const SUM_MARGIN: f64 = 1.0 + 1e-9;
+/// Largest number of terms of a factor, unless the other one has few.
+const MAX_TERMS: usize = 160;
 /// Bound of what products lose to underflow in one operation of models.
 const LOST: f64 = 1e-300;
 
@@ -151,6 +153,9 @@ impl Model {
 
     /// Returns the real product.
     pub(crate) fn mul(&self, other: &Self, basis: &mut Basis) -> Self {
+        if self.terms.len() * other.terms.len() > MAX_TERMS * MAX_TERMS {
+            return self.shortened().mul(&other.shortened(), basis);
+        }
         let (short, long) = if self.terms.len() <= other.terms.len() { (self, other) } else { (other, self) };
         let product = basis.multiply(&short.terms, &long.terms);
         let cut = product.odd + (product.positive + product.negative) / 2.0;
@@ -161,6 +166,18 @@ impl Model {
         let rests = norm * long.rest + other_norm * short.rest + short.rest * long.rest;
         let rest = add_up((cut + rounded + rests) * SUM_MARGIN, LOST);
         Self { terms: product.terms, rest }
+    }
+
+    /// Returns the model with the terms that count most; the others are part of the rest.
+    fn shortened(&self) -> Self {
+        let mut terms = self.terms.clone();
+        terms.sort_by(|(_, a), (_, b)| b.abs().total_cmp(&a.abs()));
+        let others = terms.split_off(MAX_TERMS.min(terms.len()));
+        terms.sort_by_key(|(monomial, _)| *monomial);
+        let mut model = Self { terms, rest: self.rest };
+        // Every monomial lies in [−1, 1].
+        model.widen(others.iter().map(|(_, value)| value.abs()).sum::<f64>() * SUM_MARGIN);
+        model
     }
 
     /// Returns the value of a polynomial of one variable with these coefficients, that of the constant first.

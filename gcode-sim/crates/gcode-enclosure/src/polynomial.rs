@@ -36,6 +36,11 @@ impl Polynomial {
         self.terms.iter().all(|(monomial, value)| monomial.is_empty() || value.abs() <= size * NEGLIGIBLE)
     }
 
+    /// Returns true for a polynomial of roundings of coefficients alone.
+    pub(crate) fn is_negligible(&self, size: f64) -> bool {
+        self.terms.values().all(|value| value.abs() <= size * NEGLIGIBLE)
+    }
+
     pub(crate) fn largest(&self) -> f64 {
         self.terms.values().fold(0.0, |most, value| f64::max(most, value.abs()))
     }

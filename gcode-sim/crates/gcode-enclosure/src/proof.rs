@@ -208,6 +208,11 @@ impl<'a> Prover<'a> {
                 (Binary::Div, Node::Binary(Binary::Div, c, d)) if self.quotient_ge([a, b], [c, d], depth) => {
                     true
                 }
+                (Binary::Div, _)
+                    if self.arena.as_constant(b) == Some(2.0) && self.ge_multiple(a, 2, y, depth) =>
+                {
+                    true
+                }
                 (Binary::Div, _) => {
                     y == Arena::ONE && self.gt(b, Arena::ZERO, depth) && self.ge(a, b, depth)
                         || y == Arena::MINUS_ONE && self.abs_ge(b, a, depth)
@@ -259,7 +264,18 @@ impl<'a> Prover<'a> {
                     let shrinks = |c: NodeId, d: NodeId| {
                         self.range(d).magnitude() <= 1.0 && is_above_zero() && self.abs_ge(x, c, depth)
                     };
-                    self.have_opposite_signs(c, d, depth) && is_above_zero() || shrinks(c, d) || shrinks(d, c)
+                    self.have_opposite_signs(c, d, depth) && is_above_zero()
+                        || shrinks(c, d)
+                        || shrinks(d, c)
+                        || x == Arena::ONE && self.abs_ge(x, c, depth) && (c == d || self.abs_ge(x, d, depth))
+                }
+                // From 2·x ≥ c follows x ≥ c/2: the double of x is exact.
+                Binary::Div
+                    if self.arena.as_constant(d) == Some(2.0)
+                        && (self.le_multiple(c, 2, x, depth)
+                            || self.arena.find_double(x).is_some_and(|double| self.ge(double, c, depth))) =>
+                {
+                    true
                 }
                 Binary::Div => {
                     x == Arena::ONE

@@ -207,6 +207,8 @@ impl Region {
                 }
                 BoundState::Node(node) => {
                     let range = enclosures.enclose_tightly(arena, *node);
+                    // The conditions of the way narrow the difference from 0.
+                    let range = range.intersect(enclosures.difference_range(arena, *node, Arena::ZERO));
                     finding.bounds[index] = finding.bounds[index].hull(range);
                     finding.bound_nodes[index] = Some(*node);
                 }

@@ -25,6 +25,9 @@ const GAP: f64 = 0.004;
 /// Number of points that are tried first.
 const POINTS: u32 = 3000;
 
+/// Largest number of rounds over all inputs that improve a value.
+const MAX_CLIMBS: usize = 200;
+
 /// Box with its bound, negated on the lower side.
 struct Bounded {
     domain: Domain,
@@ -88,14 +91,24 @@ pub(crate) fn bound<L: Library>(
     let points = Points::default();
     let (values, unfollowed, is_included) = (None, None, false);
     let mut search = BoundSearch { tree, points, index, side, watch, values, unfollowed, is_included };
+    let mut best: Option<(f64, &Domain, Vec<f64>)> = None;
     for point in 1..=POINTS {
         if watch.is_over() {
             break;
         }
         let domain = point as usize % starts.len().max(1);
         if let Some(domain) = starts.get(domain) {
-            search.value_at(&spread_point(domain, point));
+            let point = spread_point(domain, point);
+            let value = search.value_at(&point).map(|value| search.signed(value));
+            if let Some(value) = value
+                && best.as_ref().is_none_or(|(best, ..)| value > *best)
+            {
+                best = Some((value, domain, point));
+            }
         }
+    }
+    if let Some((value, domain, point)) = best {
+        search.climb(value, domain, point);
     }
     search.run(starts)
 }
@@ -111,6 +124,34 @@ impl<L: Library> BoundSearch<'_, L> {
         let (low, high) = self.values.unwrap_or((value, value));
         self.values = Some((low.min(value), high.max(value)));
         Some(value)
+    }
+
+    /// Improves the value at a point, one input at a time: to the ends of its range, then by steps that become smaller.
+    fn climb(&mut self, mut best: f64, domain: &Domain, mut point: Vec<f64>) {
+        let mut step = 1.0;
+        for _ in 0..MAX_CLIMBS {
+            let before = best;
+            for (input, range) in domain.ranges().iter().enumerate().filter(|(_, range)| range.width() > 0.0)
+            {
+                let places = [-1.0, 1.0].map(|sign| {
+                    let place = point[input] + sign * step * (range.hi() - range.lo());
+                    if place.is_nan() { range.midpoint() } else { place.clamp(range.lo(), range.hi()) }
+                });
+                for place in places {
+                    let known = std::mem::replace(&mut point[input], place);
+                    match self.value_at(&point).map(|value| self.signed(value)) {
+                        Some(value) if value > best => best = value,
+                        _ => point[input] = known,
+                    }
+                }
+            }
+            if best == before {
+                step /= 2.0;
+            }
+            if step < 1e-6 || self.watch.is_over() {
+                break;
+            }
+        }
     }
 
     /// Returns a number with the sign of the side: larger is worse.
@@ -206,12 +247,10 @@ impl<L: Library> BoundSearch<'_, L> {
 
     /// Divides a box by what the variable depends on most.
     fn parts(&self, domain: &Domain, finding: &Finding) -> Vec<Domain> {
-        let own = finding.bound_nodes[self.index];
         let zero = gcode_enclosure::Arena::ZERO;
-        // A box with one way is divided for the value alone.
-        let condition = own.filter(|_| finding.undecided.is_empty());
-        let condition = condition.map(|node| Condition::new(Relation::Ge, node, zero));
-        let undecided = finding.undecided.iter().copied().chain(condition).collect();
+        // The value decides more often than where a way divides.
+        let own = finding.bound_nodes[self.index].map(|node| Condition::new(Relation::Ge, node, zero));
+        let undecided = own.into_iter().chain(finding.undecided.iter().copied()).collect();
         divide(self.tree.nodes.arena(), domain, &Finding { undecided, ..Finding::default() })
     }
 }

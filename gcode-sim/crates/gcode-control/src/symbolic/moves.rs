@@ -15,7 +15,7 @@ use super::words::BlockTerms;
 use gcode_lang::alarm::{Alarm, DigitLimit};
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
-use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Motion, Polar};
+use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Motion, Polar, Unit};
 use gcode_lang::program::{Library, Words};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Function, Relation};
@@ -198,6 +198,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 )
                 | Effect::Plane(_)
                 | Effect::Distance(_)
+                | Effect::Unit(_)
                 | Effect::FeedMode(_)
                 | Effect::Cutter(CutterSide::Off)
                 | Effect::Cycle(_)
@@ -239,7 +240,12 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             (names_axis && state.controls_tip(), "tool centre point control"),
             (names_axis && !state.transform.is_identity(), "mirrored, scaled or rotated coordinates"),
             (names_axis && state.end_before_transform.is_some(), "a move after a change of coordinates"),
-            (names_axis && self.registers.is_inch(), "a length in inches"),
+            (
+                names_axis
+                    && state.modal.unit == Unit::Inch
+                    && (state.modal.cycle.is_some() || state.moves_on_arc()),
+                "a cycle or an arc in inches",
+            ),
             (
                 names_axis && (state.virtual_plane.is_some() || state.part_error.is_some()),
                 "a virtual plane or a setting error",
@@ -249,7 +255,6 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 (has_terms || !names_axis) && state.length_offset != self.registers.state.length_offset,
                 "a new tool length",
             ),
-            (names_axis && state.modal.unit != self.registers.state.modal.unit, "a change of the unit"),
         ];
         match refused.iter().find(|(is_there, _)| *is_there) {
             Some((_, what)) => Err(Halt::unfollowed(*what)),
@@ -379,7 +384,12 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         if self.oracle.ask(Test::Compare(Relation::Gt, magnitude, Term::Number(MAX_INCREMENTS)))? {
             return self.alarm(Alarm::TooManyDigits(DigitLimit::Increments), letter);
         }
-        Ok(self.node(TermOperation::Divide, whole, Term::Number(scale)))
+        let length = self.node(TermOperation::Divide, whole, Term::Number(scale));
+        if !self.registers.data.measure(self.plan.state.modal.unit).is_inch(letter) {
+            return Ok(length);
+        }
+        let length = self.node(TermOperation::Multiply, length, Term::Number(25.4));
+        Ok(self.without_residue(length))
     }
 
     /// Returns the node of an operation, or its number if the operands are known.

@@ -19,23 +19,35 @@ impl<T: Terms> Oracle<'_, T> {
 impl<T: Terms> Evaluation<'_, '_, T> {
     /// Returns the term of #5001, #5021 or #5041 and those that follow; `None` if it isn't followed.
     pub(super) fn position(&mut self, number: u32) -> Option<Term> {
-        let axis = |first: u32| (number - first) as AxisIndex;
-        match number {
+        let axis = number.checked_sub(5001)? as AxisIndex % 20;
+        let position = match number {
             5001..=5020 if self.shows_programmed_position() => {
                 let programmed = &self.registers.state.programmed_position;
-                programmed.0.get(axis(5001)).copied().and_then(Term::of)
+                programmed.0.get(axis).copied().and_then(Term::of)
             }
-            5021..=5040 => self.tool_centre(axis(5021)),
-            5041..=5060 => self.work_coordinate(axis(5041)),
+            5021..=5040 => self.tool_centre(axis),
+            5041..=5060 => self.work_coordinate(axis),
             _ => None,
+        };
+        position.map(|position| self.in_program_unit(axis, position))
+    }
+
+    /// Returns a position in mm or degrees in the active unit.
+    fn in_program_unit(&mut self, axis: AxisIndex, position: Term) -> Term {
+        let axes = &self.registers.data.settings.axes;
+        if !self.registers.is_inch() || axis >= axes.len() || axes.is_rotary(axis) {
+            return position;
+        }
+        match position {
+            Term::Number(value) => Term::Number(value / 25.4),
+            Term::Node(_) => self.oracle.terms.node(TermOperation::Divide, [position, Term::Number(25.4)]),
         }
     }
 
     /// Returns true if #5001… show the programmed position as it is stored.
     fn shows_programmed_position(&self) -> bool {
         let registers = self.registers;
-        !registers.is_inch()
-            && !registers.data.settings.undocumented.shows_transformed
+        !registers.data.settings.undocumented.shows_transformed
             && registers.state.end_before_transform.is_none()
     }
 
@@ -44,8 +56,7 @@ impl<T: Terms> Evaluation<'_, '_, T> {
         let registers = self.registers;
         let is_plain = registers.state.virtual_plane.is_none()
             && registers.lookahead.machine_offset()[axis] == 0.0
-            && !registers.data.settings.rolls_over[axis]
-            && !registers.is_inch();
+            && !registers.data.settings.rolls_over[axis];
         Term::of(registers.state.machine_position[axis]).filter(|_| is_plain)
     }
 

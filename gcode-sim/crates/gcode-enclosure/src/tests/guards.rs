@@ -318,3 +318,39 @@ fn the_sides_of_a_triangle_are_guarded_by_sums_and_by_a_magnitude() {
         assert_eq!(path.alarms(root).is_empty(), has_sum && has_magnitude);
     }
 }
+
+#[test]
+fn a_mean_lies_between_two_numbers_in_order() {
+    let mut arena = Arena::default();
+    let (a, b) = (arena.input(0), arena.input(1));
+    let sum = arena.binary(Binary::Add, a, b);
+    let two = arena.constant(2.0);
+    let mean = arena.binary(Binary::Div, sum, two);
+    let ranges = vec![Interval::new(-100.0, 100.0); 2];
+    let mut path = Enclosures::new(Domain::new(ranges.clone()));
+    assert!(path.assume(&arena, Condition::new(Relation::Le, a, b)));
+    assert_eq!(path.decide(&arena, Condition::new(Relation::Ge, mean, a)), Some(true));
+    assert_eq!(path.decide(&arena, Condition::new(Relation::Le, mean, b)), Some(true));
+    assert_eq!(path.decide(&arena, Condition::new(Relation::Le, mean, a)), None);
+    // Without the order nothing is known.
+    let mut path = Enclosures::new(Domain::new(ranges));
+    assert_eq!(path.decide(&arena, Condition::new(Relation::Ge, mean, a)), None);
+}
+
+#[test]
+fn half_of_a_chord_and_the_square_of_a_ratio_keep_their_guard() {
+    let mut arena = Arena::default();
+    let (a, c) = (arena.input(0), arena.input(1));
+    let two = arena.constant(2.0);
+    let (double, half) = (arena.binary(Binary::Mul, two, a), arena.binary(Binary::Div, c, two));
+    let ratio = arena.binary(Binary::Div, half, a);
+    let square = arena.binary(Binary::Mul, ratio, ratio);
+    let rest = arena.binary(Binary::Sub, Arena::ONE, square);
+    let ranges = vec![Interval::new(0.001, 50.0), Interval::new(0.0, 200.0)];
+    let mut path = Enclosures::new(Domain::new(ranges.clone()));
+    assert!(path.assume(&arena, Condition::new(Relation::Le, c, double)));
+    assert_eq!(path.decide(&arena, Condition::new(Relation::Le, ratio, Arena::ONE)), Some(true));
+    assert_eq!(path.decide(&arena, Condition::new(Relation::Lt, rest, Arena::ZERO)), Some(false));
+    let mut path = Enclosures::new(Domain::new(ranges));
+    assert_eq!(path.decide(&arena, Condition::new(Relation::Lt, rest, Arena::ZERO)), None);
+}

@@ -1,4 +1,5 @@
 //! Tests of the crate as a whole: soundness at random, published kernels.
+mod certificates;
 mod exact;
 mod guards;
 mod identities;

@@ -33,7 +33,7 @@ pub(super) fn substitute(
 
 /// Returns true if no operation of a condition can raise an alarm; those up to the computed nodes have been executed.
 ///
-/// A way that never computes a root says nothing of it, and not that its argument has one.
+/// A path that never computes a root says nothing of it, and not that its argument has one.
 pub(super) fn has_values(
     arena: &Arena,
     enclosures: &mut Enclosures,

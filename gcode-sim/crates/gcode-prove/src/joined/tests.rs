@@ -31,7 +31,7 @@ const BISECTION: &str = "#3=0\n#4=2\n#5=0\nWHILE[#5 LT 12]DO1\n#6=[#3+#4]/2\nIF[
                          N1 #3=#6\nN2 #5=#5+1\nEND1\n";
 
 #[test]
-fn joined_ways_keep_the_bracket_of_a_root() {
+fn joined_paths_keep_the_bracket_of_a_root() {
     // The last width is 2/2^12 = 0.000 488 281 25, and the sum of both ends is below 4.
     let claims = [
         "#3*#3 LE #1",
@@ -58,7 +58,7 @@ fn a_bracket_that_is_left_at_an_end_of_the_range_is_not_proved() {
 }
 
 #[test]
-fn an_alarm_on_one_joined_way_is_not_lost() {
+fn an_alarm_on_one_joined_path_is_not_lost() {
     let program = "#3=0\n#4=#1\nWHILE[#3 LT 14]DO1\nIF[#4 GE 0.5]GOTO1\n#4=2*#4\nGOTO2\nN1 #4=2-2*#4\nN2 #3=#3+1\nEND1\n\
                    #5=SQRT[#4]\n#6=SQRT[0.999-#4]\n";
     assert_eq!(proved(program, "#1=0..1", &["no-alarm", "alarm PS0119"]), [false, true]);
@@ -73,7 +73,7 @@ fn what_one_branch_alone_sets_is_not_joined() {
 }
 
 #[test]
-fn a_root_that_one_way_never_computes_says_nothing_of_its_argument() {
+fn a_root_that_one_path_never_computes_says_nothing_of_its_argument() {
     // From −5 on, each turn adds 0.25: after 12 turns #4 is −5 + 11·0.25 = −2.25.
     let program = "#3=0\n#5=#1\nWHILE[#3 LT 12]DO1\n#4=#5\nIF[#4 LT 0]GOTO1\nIF[SQRT[#4] GT 1.5]GOTO9\n\
                    N1 IF[#5 GE 1]GOTO2\n#5=#5+0.25\nGOTO3\nN2 #5=#5-0.75\nN3 #3=#3+1\nEND1\nN9\n";

@@ -1,4 +1,4 @@
-//! One way through a program, and the terms of the one that is followed.
+//! One path through a program, and the terms of the one that is followed.
 use std::collections::HashMap;
 
 use gcode_control::symbolic::{Snapshot, Term, TermOperation, Terms, Test};
@@ -6,22 +6,22 @@ use gcode_enclosure::Enclosures;
 
 use crate::nodes::{Nodes, TestKey, is_finite, key};
 
-/// Run up to a block, with what is assumed of the values on its way.
-pub(super) struct Way {
+/// Run up to a block, with what is assumed of the values on its path.
+pub(super) struct PathState {
     pub(super) snapshot: Snapshot,
     pub(super) enclosures: Enclosures,
     /// Answers to the questions of the next block.
     pub(super) answers: HashMap<TestKey, bool>,
 }
 
-/// Terms of the way that is followed.
-pub(super) struct WayTerms {
+/// Terms of the path that is followed.
+pub(super) struct PathTerms {
     pub(super) nodes: Nodes,
     pub(super) enclosures: Enclosures,
     pub(super) answers: HashMap<TestKey, bool>,
 }
 
-impl Terms for WayTerms {
+impl Terms for PathTerms {
     fn node(&mut self, operation: TermOperation, operands: [Term; 2]) -> Term {
         self.nodes.node(operation, operands)
     }
