@@ -59,6 +59,8 @@ pub(super) struct CuttingLine {
     pub is_tapping: bool,
     /// Deepest motion out of the hole, after the reversal, at another feed a revolution than that of the last feed that cuts.
     uneven_retract: Option<TapRetract>,
+    /// True if a tool that only widens or threads a hole is fed into solid metal.
+    pub enters_solid: bool,
     /// Largest change of the spindle while the tool was in the hole.
     pub spindle: SpindleInHole,
     /// Deepest point of the finished strokes.
@@ -138,6 +140,7 @@ impl CuttingLine {
             pecks: PeckExtent::default(),
             is_tapping: false,
             uneven_retract: None,
+            enters_solid: false,
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),

@@ -11,9 +11,9 @@ use super::unknown_axes::{unknown_position_finding, without_assumed};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{
     BACK_BORED, CYCLE_IN_AIR, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
-    RAPID_INTO_PART, START_UNKNOWN, TOOL_NOT_CHANGED,
+    RAPID_INTO_PART, START_UNKNOWN, TOOL_KIND, TOOL_NOT_CHANGED,
 };
-use crate::machine::{HeadKind, TOUCH_DEPTH, ToolKind};
+use crate::machine::{HeadKind, TOUCH_DEPTH, ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, LengthCompensation, Position};
 use gcode_lang::units::Deg;
@@ -111,6 +111,7 @@ impl HoleExtractor<'_> {
         if self.is_milled(&line) {
             if !line.is_across_tool() {
                 self.report_conditions(&line);
+                self.report_solid(&line);
                 self.note_unsized_mill(line.cutting_state.tool);
             }
             return;
@@ -207,6 +208,16 @@ impl HoleExtractor<'_> {
         if self.machine.diameter_of(tool).is_none() && !self.unsized_mills.contains(&tool) {
             self.unsized_mills.push(tool);
         }
+    }
+
+    /// Reports a tap, a reamer or a boring bar that is fed into the solid metal of a pocket.
+    fn report_solid(&mut self, line: &CuttingLine) {
+        let tool = line.cutting_state.tool;
+        let Some(kind) = self.machine.kind_of(tool).filter(|_| line.enters_solid) else { return };
+        self.findings.add(&TOOL_KIND, line.backtrace(), 0, |finding| {
+            let message = format!("{} is a {} and is fed into solid metal", tool_name(tool), kind.name());
+            Diagnostic::new(finding, message).help("drill the hole before it, or correct the position")
+        });
     }
 
     /// Returns true if what a line removes is judged as milling: in a known body a feed across the tool, and one in a pocket.

@@ -126,6 +126,10 @@ impl HoleExtractor<'_> {
         if is_in_air || may_turn_idle && cuts_nothing() {
             return;
         }
+        let needs_hole = |kind| matches!(kind, ToolKind::Tap | ToolKind::Reamer | ToolKind::BoringBar);
+        if !line.enters_solid && self.machine.kind_of(self.setup.tool).is_some_and(needs_hole) {
+            line.enters_solid = self.cuts_known_metal(from, &tip) == Some(true);
+        }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
         let is_entry = (is_steep() || self.is_entry_told(&state)) && cuts_nothing();
         let origin = self.offset_origin.as_ref();
