@@ -2,6 +2,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::hand::Hand;
 use super::limits::exceeds;
 use super::thread_size;
 use gcode_lang::units::Deg;
@@ -33,23 +34,6 @@ pub enum DepthTo {
     Point,
     /// The end of the full diameter.
     Full,
-}
-
-/// Hand of a thread.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Hand {
-    /// Right-hand: cut clockwise.
-    #[default]
-    Right,
-    /// Left-hand: cut counterclockwise.
-    Left,
-}
-
-impl Hand {
-    fn is_right(&self) -> bool {
-        *self == Self::Right
-    }
 }
 
 /// A feature of a hole; lengths in mm.

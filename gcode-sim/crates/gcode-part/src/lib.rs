@@ -43,6 +43,7 @@ mod entry_planes;
 mod feature;
 mod flutes;
 pub mod gauge;
+mod hand;
 mod hole;
 mod honeycomb;
 mod indicator;
@@ -71,8 +72,9 @@ pub use csv_list::STOPPED;
 pub use entry_planes::{
     Collar, EntryPlanes, MAX_BREAK_THROUGH, MAX_EDGE_BREAK, Metal, PARALLEL_COSINE, POINT_LENGTH, Step,
 };
-pub use feature::{DepthTo, Feature, FeatureKind, Hand};
+pub use feature::{DepthTo, Feature, FeatureKind};
 pub use flutes::Flutes;
+pub use hand::Hand;
 pub use hole::{Hole, HoleList, Origin, Unit};
 pub use indicator::tilted_ellipsoid;
 pub use limits::{NOISE, exceeds};

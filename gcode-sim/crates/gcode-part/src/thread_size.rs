@@ -1,5 +1,5 @@
 //! Designations of threads as drawings have them: `M10`, `M10x1 LH`, `1/4-20 UNC-2B`, `#10-24`, `G1/4`.
-use super::feature::Hand;
+use super::hand::Hand;
 
 /// Nominal diameters and pitches of the coarse series, mm (ISO 261, table 1, first and second choice).
 const COARSE: [(f64, f64); 30] = [
@@ -224,7 +224,7 @@ fn to_places(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::feature::Hand;
+    use super::super::hand::Hand;
     use super::{ThreadSize, parse};
 
     /// Expected values from the tables of the standards, 1 in = 25.4 mm.

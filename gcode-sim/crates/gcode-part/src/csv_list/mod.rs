@@ -9,7 +9,8 @@ use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separa
 
 use std::collections::HashMap;
 
-use super::feature::{DepthTo, Feature, FeatureKind, Hand};
+use super::feature::{DepthTo, Feature, FeatureKind};
+use super::hand::Hand;
 use super::hole::{Hole, HoleList, Unit};
 use super::read::{check, complete};
 use crate::reader::FileError;

@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::PatternJob;
-use crate::feature::Hand;
+use crate::hand::Hand;
 use crate::job::{FileError, Reader};
 use crate::reader::bounds::{Depth, DrillNumber, FeedRate, Length, SpindleSpeed};
 use crate::reader::{FileKey, Optional, Word, WordList};
