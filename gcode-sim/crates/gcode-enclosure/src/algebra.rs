@@ -4,7 +4,7 @@
 //! up to their roundings: the square of a root is its argument, SIN² is 1 − COS², a quotient times its divisor is its
 //! dividend. Two formulas of one quantity differ by what is left of the polynomial, mostly 0, and by the roundings. Where a
 //! root's argument goes to 0 that says more than the root's own error: no root is taken of a rounding.
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::arena::Arena;
@@ -20,7 +20,7 @@ pub(crate) const MAX_TERMS: usize = 48;
 /// Largest number of nodes that are looked at.
 pub(crate) const MAX_NODES: usize = 120;
 /// Bound of what an operation loses to underflow.
-const LOST: f64 = 1e-300;
+pub(crate) const LOST: f64 = 1e-300;
 /// Margin for the arithmetic of a bound.
 pub(crate) const MARGIN: f64 = 1.0 + 1e-9;
 
@@ -88,7 +88,7 @@ impl<'a> Algebra<'a> {
     }
 
     /// Returns an error of computed values; those of real ones have none.
-    fn of_computed(&self, error: f64) -> f64 {
+    pub(crate) fn of_computed(&self, error: f64) -> f64 {
         if self.is_real() { 0.0 } else { error }
     }
 
@@ -136,7 +136,7 @@ impl<'a> Algebra<'a> {
         (others, add_up(others, constant_of(polynomial).abs()))
     }
 
-    fn norm(&self, polynomial: &Polynomial) -> f64 {
+    pub(crate) fn norm(&self, polynomial: &Polynomial) -> f64 {
         self.norms(polynomial).1
     }
 
@@ -152,7 +152,7 @@ impl<'a> Algebra<'a> {
     }
 
     /// Returns a bound of one rounding of a node's operation: half of the distance between the largest results.
-    fn half_unit(&self, node: NodeId) -> f64 {
+    pub(crate) fn half_unit(&self, node: NodeId) -> f64 {
         let size = (self.hull)(node).magnitude();
         let half = (size.next_up() - size) / 2.0;
         self.of_computed(half + size * self.arena.widening() * MARGIN + LOST)
@@ -403,7 +403,7 @@ impl<'a> Algebra<'a> {
     }
 
     /// Replaces squares by what identities say.
-    fn reduced(&mut self, mut polynomial: Polynomial) -> Option<Polynomial> {
+    pub(crate) fn reduced(&mut self, mut polynomial: Polynomial) -> Option<Polynomial> {
         for _ in 0..200 {
             let found = polynomial.terms.iter().find_map(|(monomial, value)| {
                 let atom = monomial.iter().find(|(atom, power)| *power >= 2 && self.has_square(*atom))?;
@@ -472,98 +472,5 @@ impl<'a> Algebra<'a> {
             }
             _ => None,
         }
-    }
-
-    /// Returns a range of a value whose quotients are multiplied by their divisors, and the polynomial without them.
-    fn quotients_removed(&mut self, polynomial: &Polynomial) -> Option<(Interval, Polynomial)> {
-        let (rest, weight) = self.without_quotients(polynomial)?;
-        let least = weight.mignitude();
-        if least <= LOST {
-            return None;
-        }
-        let bound = (self.norm(&rest) + rest.error) * MARGIN / least * MARGIN;
-        let bound = add_up(bound, LOST);
-        bound.is_finite().then(|| (Interval::new(-bound, bound), rest))
-    }
-
-    /// Returns a polynomial × the divisors of its quotients, and the range of their product.
-    pub(crate) fn without_quotients(&mut self, polynomial: &Polynomial) -> Option<(Polynomial, Interval)> {
-        let mut rest = polynomial.clone();
-        let mut weight = Interval::point(1.0);
-        for _ in 0..6 {
-            let is_quotient = |atom: &NodeId| {
-                matches!(self.arena.node(*atom), Node::Binary(Binary::Div, ..)) && !self.is_opaque(*atom)
-            };
-            let quotients = rest.terms.keys().flatten().map(|(atom, _)| *atom).filter(is_quotient);
-            let Some(quotient) = quotients.max() else { break };
-            let Node::Binary(Binary::Div, a, b) = self.arena.node(quotient) else { break };
-            let power_of = |monomial: &Monomial| {
-                monomial.iter().find(|(atom, _)| *atom == quotient).map_or(0, |(_, power)| *power)
-            };
-            let most = rest.terms.keys().map(power_of).max().unwrap_or(0);
-            if most > 4 {
-                return None;
-            }
-            let (mut dividend, divisor) = ((*self.node(a)?).clone(), self.node(b)?);
-            // The quotient × its divisor is the dividend, but for a rounding.
-            let rounding = (self.hull)(a).magnitude() * (HALF_ULP + self.arena.widening()) * MARGIN;
-            let rounding = self.of_computed(rounding + (self.hull)(b).magnitude() * LOST + LOST);
-            dividend.error = add_up(dividend.error, rounding);
-            let mut next = Polynomial::default();
-            let of_divisor = (self.hull)(b);
-            for (monomial, value) in rest.terms.clone() {
-                let power = power_of(&monomial);
-                let others = monomial.into_iter().filter(|(atom, _)| *atom != quotient).collect();
-                let mut part = Polynomial { terms: BTreeMap::from([(others, value)]), error: 0.0 };
-                for _ in 0..power {
-                    part = self.product(&part, &dividend)?;
-                }
-                for _ in power..most {
-                    part = self.product(&part, &divisor)?;
-                }
-                next = self.sum(&next, &part);
-            }
-            let mut of_error = rest.error;
-            for _ in 0..most {
-                of_error *= of_divisor.magnitude() * MARGIN;
-            }
-            let magnitudes = Interval::new(of_divisor.mignitude(), of_divisor.magnitude());
-            for factor in std::iter::repeat_n(of_divisor, most as usize % 2)
-                .chain(std::iter::repeat_n(magnitudes, (most / 2 * 2) as usize))
-            {
-                weight = weight.times(factor);
-            }
-            next.error = add_up(next.error, of_error);
-            rest = self.reduced(next)?;
-        }
-        Some((rest, weight))
-    }
-
-    /// Returns a range of a − b for a and b of 0 or more by the difference of their squares: |a − b| = |a² − b²|/(a + b), and
-    /// at most √|a² − b²|. Returns what is left of the squares too, if that is a constant.
-    fn by_squares(&mut self, node: NodeId) -> Option<(Interval, Polynomial)> {
-        let Node::Binary(Binary::Sub, a, b) = self.arena.node(node) else { return None };
-        let (of_a, of_b) = ((self.hull)(a), (self.hull)(b));
-        if of_a.lo() < 0.0 || of_b.lo() < 0.0 {
-            return None;
-        }
-        let (x, y) = (self.node(a)?, self.node(b)?);
-        let (left, right) = (self.product(&x, &x)?, self.product(&y, &y)?);
-        let size = left.largest().max(right.largest());
-        let minus = self.scaled(&right, -1.0);
-        let squares = self.sum(&left, &minus);
-        let (range, rest) = self.quotients_removed(&squares)?;
-        if !rest.is_constant(size) {
-            return None;
-        }
-        let squares = range.magnitude();
-        let by_sum = match of_a.lo() + of_b.lo() {
-            sum if sum > 0.0 => squares / sum * MARGIN,
-            _ => f64::INFINITY,
-        };
-        let bound = squares.sqrt().next_up().min(by_sum);
-        // The computed difference is rounded too.
-        let bound = add_up(bound, self.half_unit(node));
-        bound.is_finite().then(|| (Interval::new(-bound, bound), rest))
     }
 }

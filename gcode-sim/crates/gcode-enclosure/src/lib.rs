@@ -34,7 +34,7 @@
 //!
 //! # Method
 //!
-//! Five layers hold at once, and each may narrow what the others say.
+//! Six layers hold at once, and each may narrow what the others say.
 //!
 //! - **Ranges** (`hull`). An operation that rounds correctly, + − × ÷ SQRT FIX FUP ROUND, is monotone in doubles: the range
 //!   of its computed values lies between its values at the ends, without a margin (IEEE 754; IEEE 1788, Standard for
@@ -51,6 +51,8 @@
 //! - **Algebra** (`algebra`). Computed values satisfy identities up to a rounding each: a root's square is its argument,
 //!   SIN² + COS² is 1, a quotient times its divisor is its dividend. Of two formulas of one quantity all monomials cancel;
 //!   the roundings are left.
+//! - **Certificates** (`certificate`). Real values satisfy the identities exactly (`real_values`). Sums of squares, squared
+//!   sides and products of the path's conditions show their sign; how far the computed values are off is added.
 //! - **Structure** (`proof`). From a ≥ r ≥ 0 follows a·a ≥ r·r in doubles, a difference of doubles has the sign of the real
 //!   one, a root isn't shorter than a leg (Boldo, Stupid is as stupid does: taking the square root of the square of a
 //!   floating-point number). Conditions of the path chain, shrink ranges, and are subtracted from polynomials in multiples.
@@ -93,6 +95,7 @@ mod node;
 mod polynomial;
 mod polynomial_range;
 mod proof;
+mod quotients;
 mod ratio;
 mod real_values;
 mod square_sums;

@@ -36,6 +36,13 @@ impl Prover<'_> {
         }
     }
 
+    /// Proves x ≥ c/d for d of 2: from 2·x ≥ c, as the double of x is exact.
+    pub(crate) fn ge_half(&self, x: NodeId, c: NodeId, d: NodeId, depth: u32) -> bool {
+        self.arena.as_constant(d) == Some(2.0)
+            && (self.le_multiple(c, 2, x, depth)
+                || self.arena.find_double(x).is_some_and(|double| self.ge(double, c, depth)))
+    }
+
     /// Returns the number and the node of a product by 2 or 3.
     pub(crate) fn multiple(&self, x: NodeId) -> Option<(u32, NodeId)> {
         let Node::Binary(Binary::Mul, a, b) = self.arena.node(x) else { return None };

@@ -269,14 +269,7 @@ impl<'a> Prover<'a> {
                         || shrinks(d, c)
                         || x == Arena::ONE && self.abs_ge(x, c, depth) && (c == d || self.abs_ge(x, d, depth))
                 }
-                // From 2·x ≥ c follows x ≥ c/2: the double of x is exact.
-                Binary::Div
-                    if self.arena.as_constant(d) == Some(2.0)
-                        && (self.le_multiple(c, 2, x, depth)
-                            || self.arena.find_double(x).is_some_and(|double| self.ge(double, c, depth))) =>
-                {
-                    true
-                }
+                Binary::Div if self.ge_half(x, c, d, depth) => true,
                 Binary::Div => {
                     x == Arena::ONE
                         && (self.gt(d, Arena::ZERO, depth) && self.ge(d, c, depth)

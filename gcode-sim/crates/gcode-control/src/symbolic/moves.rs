@@ -224,6 +224,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         }
         let has_limits = self.registers.data.settings.stroke_limits.is_some();
         let state = &self.plan.state;
+        let is_curve = state.modal.cycle.is_some() || state.moves_on_arc();
         let is_thread = state.modal.cycle.is_none() && state.modal.motion == Motion::Thread;
         let refused = [
             (is_thread && names_axis, "a thread"),
@@ -240,12 +241,7 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             (names_axis && state.controls_tip(), "tool centre point control"),
             (names_axis && !state.transform.is_identity(), "mirrored, scaled or rotated coordinates"),
             (names_axis && state.end_before_transform.is_some(), "a move after a change of coordinates"),
-            (
-                names_axis
-                    && state.modal.unit == Unit::Inch
-                    && (state.modal.cycle.is_some() || state.moves_on_arc()),
-                "a cycle or an arc in inches",
-            ),
+            (names_axis && is_curve && state.modal.unit == Unit::Inch, "a cycle or an arc in inches"),
             (
                 names_axis && (state.virtual_plane.is_some() || state.part_error.is_some()),
                 "a virtual plane or a setting error",
