@@ -186,13 +186,16 @@ impl HoleExtractor<'_> {
         let spoke = from - hole.entry;
         let before = (spoke - hole.out * spoke.dot(&hole.out)).norm();
         let depth = (hole.entry - to).dot(&hole.out).min(thread.span[1]);
-        let reach = aside + diameter / 2.0;
         let point = self.machine.point_of(self.setup.tool).length(diameter).unwrap_or(diameter / 2.0);
+        // A point is as wide as its height there, where the thread begins.
+        let height = (depth - thread.span[0]).max(0.0);
+        let width = if height < point { diameter * height / point } else { diameter };
         let goes_aside =
             exceeds(aside - before, MAX_FLANK_CUT) && exceeds(depth - thread.span[0], MAX_FLANK_CUT);
         let goes_down = !self.metal.is_point_in_pocket(&to)
             && exceeds((from - to).dot(&hole.out), MAX_FLANK_CUT)
-            && exceeds(depth - point - thread.span[0], MAX_FLANK_CUT);
+            && exceeds(height, MAX_FLANK_CUT);
+        let reach = aside + if goes_aside { diameter } else { width } / 2.0;
         if !(goes_aside || goes_down)
             || !exceeds(reach - thread.core, MAX_FLANK_CUT)
             || exceeds(reach - thread.major, MAX_FLANK_CUT)

@@ -43,6 +43,8 @@ pub(super) struct Judgement<'c> {
     pub near: Vec<Cut<'c>>,
     /// Cuts of a through hole from its far side.
     pub far: Vec<Cut<'c>>,
+    /// Stated pockets of the stock.
+    pub pockets: &'c [Surface],
     pub findings: Vec<Diagnostic>,
     pub gaps: Vec<ShapeGap>,
 }
@@ -59,10 +61,11 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
 pub(in crate::verify) fn judge_all(
     comparison: &Comparison<'_>,
     surface: Option<Surface>,
+    pockets: &[Surface],
     machine: &Machine,
 ) -> Vec<FeatureFindings> {
     let judge = |pair: &HolePair| {
-        let Judgement { findings, gaps, .. } = judge(comparison, pair, surface, machine)?;
+        let Judgement { findings, gaps, .. } = judge(comparison, pair, (surface, pockets), machine)?;
         let is_whole = findings.is_empty() && gaps.is_empty();
         (!is_whole).then_some(FeatureFindings { nominal: pair.nominal, findings, gaps })
     };
@@ -73,7 +76,7 @@ pub(in crate::verify) fn judge_all(
 fn judge<'c>(
     comparison: &'c Comparison<'_>,
     pair: &HolePair,
-    surface: Option<Surface>,
+    (surface, pockets): (Option<Surface>, &'c [Surface]),
     machine: &Machine,
 ) -> Option<Judgement<'c>> {
     let (nominal, drilled) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
@@ -90,7 +93,7 @@ fn judge<'c>(
     }
     let id = comparison.id(pair.nominal);
     let (findings, gaps) = (Vec::new(), Vec::new());
-    let mut judged = Judgement { comparison, nominal, id, near, far, findings, gaps };
+    let mut judged = Judgement { comparison, nominal, id, near, far, pockets, findings, gaps };
     if nominal.features.is_empty() {
         judged.judge_one_diameter(drilled, surface);
     } else {

@@ -29,8 +29,16 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
     let nominal = judged.nominal.from_far_side();
     let Judgement { comparison, id, .. } = *judged;
     let (near, far) = (judged.far.clone(), judged.near.clone());
-    let mut from_far_side =
-        Judgement { comparison, nominal: &nominal, id, near, far, findings: Vec::new(), gaps: Vec::new() };
+    let mut from_far_side = Judgement {
+        comparison,
+        nominal: &nominal,
+        id,
+        near,
+        far,
+        pockets: judged.pockets,
+        findings: Vec::new(),
+        gaps: Vec::new(),
+    };
     judge_side(&mut from_far_side);
     let Judgement { findings, gaps, .. } = from_far_side;
     judged.findings.extend(findings);

@@ -13,6 +13,9 @@ use gcode_part::{Feature, POINT_LENGTH};
 /// Number of points on the wall of a hole.
 const RIM_POINTS: u32 = 16;
 
+/// Distance beyond the far side at which a hole ends in a pocket or in metal, mm.
+const BELOW_FAR_SIDE: f64 = 0.01;
+
 /// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
 
@@ -67,6 +70,15 @@ pub(super) fn rim_thickness(surface: &Surface, hole: &Hole, radius: f64) -> f64 
     let offsets = ring(&out, &Vector3::zeros(), radius, RIM_POINTS);
     let far = offsets.iter().filter_map(|offset| surface.exit(&(middle + offset), &into));
     far.map(|far| (far - entry).dot(&into)).fold(thickness(surface, hole), f64::max)
+}
+
+/// Returns true if a hole ends in stated pockets with its whole rim: there its depth is the thickness of the part.
+fn ends_in_pocket(pockets: &[Surface], hole: &Hole, radius: f64) -> bool {
+    let out = Unit::new_normalize(Vector3::from(hole.axis));
+    let below = Point3::from(hole.entry) - out.into_inner() * (hole.depth + BELOW_FAR_SIDE);
+    let rim = ring(&out, &Vector3::zeros(), radius, RIM_POINTS);
+    let is_in_one = |point: Point3<f64>| pockets.iter().any(|pocket| pocket.value(&point) < 0.0);
+    !pockets.is_empty() && is_in_one(below) && rim.iter().all(|offset| is_in_one(below + offset))
 }
 
 /// Returns how far the full diameter of a cut passes the far side of a hole of this thickness, mm. A tool whose end is unknown
@@ -141,7 +153,8 @@ impl Judgement<'_> {
         // A coaxial hole from the far side is the rest of this one, and above one that follows it the part is open.
         let depth = depth.min(self.comparison.counter_depth(self.nominal, diameter));
         let is_followed = self.comparison.depth_of_followers(self.nominal).is_some();
-        let depth = if is_followed { depth.min(self.nominal.depth) } else { depth };
+        let is_open = is_followed || ends_in_pocket(self.pockets, self.nominal, diameter / 2.0);
+        let depth = if is_open { depth.min(self.nominal.depth) } else { depth };
         if exceeds(depth, cut) {
             let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
             let message =
