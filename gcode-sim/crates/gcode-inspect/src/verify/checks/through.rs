@@ -16,6 +16,13 @@ const RIM_POINTS: u32 = 16;
 /// Distance beyond the far side at which a hole ends in a pocket or in metal, mm.
 const BELOW_FAR_SIDE: f64 = 0.01;
 
+/// Distance at which metal is looked for below a hole, mm, and the largest number of such steps.
+const METAL_STEP: f64 = 0.05;
+const MAX_METAL_STEPS: f64 = 20_000.0;
+
+/// Number of halvings of such a step.
+const HALVINGS: u32 = 30;
+
 /// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
 
@@ -81,6 +88,24 @@ fn ends_in_pocket(pockets: &[Surface], hole: &Hole, radius: f64) -> bool {
     !pockets.is_empty() && is_in_one(below) && rim.iter().all(|offset| is_in_one(below + offset))
 }
 
+/// Returns the first depth of solid metal below a depth of a hole, on its axis and above a tip.
+fn metal_below((surface, pockets): (&Surface, &[Surface]), hole: &Hole, depth: f64, tip: f64) -> Option<f64> {
+    let at = |depth: f64| Point3::from(hole.entry) - Vector3::from(hole.axis) * depth;
+    let is_metal = |depth: f64| {
+        let point = at(depth);
+        surface.value(&point) < 0.0 && pockets.iter().all(|pocket| 0.0 <= pocket.value(&point))
+    };
+    let steps = ((tip - depth) / METAL_STEP).ceil().min(MAX_METAL_STEPS);
+    let depths = |step: u32| depth + (tip - depth) * f64::from(step) / steps;
+    let first = (1..=steps as u32).find(|step| is_metal(depths(*step)))?;
+    let (mut free, mut metal) = (depths(first - 1), depths(first));
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(free, metal);
+        if is_metal(middle) { metal = middle } else { free = middle }
+    }
+    Some(metal)
+}
+
 /// Returns how far the full diameter of a cut passes the far side of a hole of this thickness, mm. A tool whose end is unknown
 /// counts as a drill of 118°.
 pub(super) fn break_through(cut: &Cut<'_>, nominal: &Hole, thickness: f64) -> f64 {
@@ -95,6 +120,7 @@ impl Judgement<'_> {
         if !nominal.through {
             return;
         }
+        self.judge_behind_pocket(surface);
         let thickness = surface.map_or(0.0, |surface| thickness(&surface, nominal)).max(nominal.depth);
         let thickness =
             self.comparison.depth_of_followers(nominal).map_or(thickness, |far| far.max(thickness));
@@ -114,6 +140,29 @@ impl Judgement<'_> {
             .help("check the programmed depth, the tool length and its offset")
             .with_backtrace(cut.pass.backtrace.clone());
         self.findings.push(finding);
+    }
+
+    /// Reports a cut that goes on through the pocket in which a hole ends, into the metal behind it.
+    fn judge_behind_pocket(&mut self, surface: Option<Surface>) {
+        let (nominal, slack) = (self.nominal, self.comparison.tolerances.depth);
+        let radius = nominal.widest_diameter().unwrap_or(0.0) / 2.0;
+        let Some(surface) = surface.filter(|_| ends_in_pocket(self.pockets, nominal, radius)) else { return };
+        if self.comparison.depth_of_followers(nominal).is_some() {
+            return;
+        }
+        let body = (&surface, self.pockets);
+        let metal = |cut: &Cut<'_>| {
+            metal_below(body, nominal, nominal.depth, cut.tip).filter(|at| exceeds(cut.tip - at, slack))
+        };
+        let Some((cut, at)) = self.near.iter().find_map(|cut| Some((cut, metal(cut)?))) else { return };
+        let message = format!(
+            "hole {}: {} goes {:.3} mm into the metal behind the pocket in which the hole ends",
+            self.id,
+            cut.name(),
+            cut.tip - at
+        );
+        let finding = Diagnostic::new(&HOLE_DEPTH, message).with_backtrace(cut.pass.backtrace.clone());
+        self.findings.push(finding.help("end the stroke in the pocket"));
     }
 
     /// Reports a through hole, or a feature of one, that does not break out.
