@@ -128,7 +128,7 @@ impl HoleExtractor<'_> {
         }
         let needs_hole = |kind| matches!(kind, ToolKind::Tap | ToolKind::Reamer | ToolKind::BoringBar);
         if !line.enters_solid && self.machine.kind_of(self.setup.tool).is_some_and(needs_hole) {
-            line.enters_solid = self.cuts_known_metal(from, &tip) == Some(true);
+            line.enters_solid = self.metal.cuts(from, &tip) == Some(true);
         }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
         let is_entry = (is_steep() || self.is_entry_told(&state)) && cuts_nothing();

@@ -91,6 +91,11 @@ fn judge<'c>(
         let side = if drilled.axis.dot(&out) < 0.0 { &mut far } else { &mut near };
         side.extend(Cut::all(nominal, drilled, machine));
     }
+    let through = next_hole::strokes_through(comparison, pair, machine);
+    if !through.is_empty() {
+        near.extend(through);
+        near.sort_by_key(|cut| cut.pass.cut.order);
+    }
     let id = comparison.id(pair.nominal);
     let (findings, gaps) = (Vec::new(), Vec::new());
     let mut judged = Judgement { comparison, nominal, id, near, far, pockets, findings, gaps };

@@ -1,4 +1,4 @@
-//! Cuts of a through hole that go on into the next hole on its axis, as in the ears of a clevis.
+//! Through holes on one axis, as in the ears of a clevis: strokes through several of them, and into the next one.
 use super::features::Judgement;
 use super::*;
 use crate::findings::FEATURE_EXTRA;
@@ -6,6 +6,31 @@ use crate::holes::DrilledHole;
 use crate::machine::Machine;
 use crate::verify::hole_cuts::Cut;
 use crate::verify::outline::Outline;
+
+/// Returns the cuts of the holes that follow a through hole and begin above it: one stroke drills both ears of a clevis, and
+/// another tool finishes the first.
+pub(super) fn strokes_through<'c>(
+    comparison: &'c Comparison<'_>,
+    pair: &HolePair,
+    machine: &Machine,
+) -> Vec<Cut<'c>> {
+    let hole = &comparison.nominal[pair.nominal];
+    if !hole.through {
+        return Vec::new();
+    }
+    let mut cuts = Vec::new();
+    for (index, ..) in comparison.followers(hole) {
+        let other =
+            comparison.pairs.iter().find(|other| other.nominal == index && other.actual != pair.actual);
+        let Some(drilled) = other.map(|other| &comparison.actual[other.actual]) else { continue };
+        if 0.0 < drilled.axis.dot(&Vector3::from(hole.axis)) {
+            // A tap may turn in the wider hole.
+            let begins_above = |cut: &Cut<'_>| !cut.is_thread() && !exceeds(cut.start, 0.0);
+            cuts.extend(Cut::all(hole, drilled, machine).into_iter().filter(begins_above));
+        }
+    }
+    cuts
+}
 
 impl Judgement<'_> {
     /// Reports the cuts of a through hole that are wider than a hole that follows it, and reach into that.
