@@ -70,10 +70,11 @@ impl Planner<'_> {
         if state.modal.cycle.is_some() && !is_cycle_active {
             self.begin_cycle(state)?;
         }
-        // G54 P is G54.1 P.
+        // G54 P is G54.1 P; in a block that drills P is that of the cycle.
+        let drills = || self.words.has(b'R') || self.names_axis();
         let selects_additional_work = self.words.has(b'P')
             && axis_use.is_none()
-            && state.modal.cycle.is_none()
+            && (state.modal.cycle.is_none() || !drills())
             && self.words.has_non_motion_code(|effect| effect == Effect::Work(1));
         self.push_turned_length(plan, length_before);
         if starts_dynamic {

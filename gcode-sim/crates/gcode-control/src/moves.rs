@@ -77,8 +77,8 @@ impl Planner<'_> {
             if self.words.has(b'R') || self.names_axis() {
                 return self.plan_cycle(plan, cycle, None);
             }
-            // Only blocks that drill store P and Q.
-            if self.words.has_any(b"PQ") {
+            // Only blocks that drill store P and Q; a P may be the number of a work coordinate system.
+            if self.words.has_unread(b"PQ") {
                 self.words.mark_read(Letters::of(b"PQ"));
                 plan.notes.push(Note::CycleDataLost);
             }

@@ -143,6 +143,11 @@ impl BlockWords {
         self.has(letter).then(|| self.values[usize::from(letter - b'A')])
     }
 
+    /// Returns true if the block has one of some letters whose value nothing has read.
+    pub(super) fn has_unread(&self, some: &[u8]) -> bool {
+        self.has_letters(Letters::of(some).bits() & !self.used_letters.get())
+    }
+
     /// Marks words without effect as read.
     pub(super) fn mark_read(&self, letters: Letters) {
         self.used_letters.set(self.used_letters.get() | letters.bits());
