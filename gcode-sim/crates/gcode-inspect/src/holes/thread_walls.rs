@@ -9,7 +9,7 @@ use crate::machine::{PointShape, ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event};
 use gcode_lang::units::Deg;
-use gcode_part::{NOISE, NominalAxis, NominalThread, exceeds};
+use gcode_part::{NOISE, NominalAxis, NominalThread, PointTree, exceeds};
 
 /// Largest depth of a cut in the flanks of a thread, mm.
 const MAX_FLANK_CUT: f64 = 0.05;
@@ -36,6 +36,9 @@ const MAX_LEAD_SHARE: f64 = 0.2;
 /// Largest distance of a mill's helix from the axis of the thread that it cuts, mm.
 const MAX_OFF_AXIS: f64 = 0.5;
 
+/// Largest distance of the bottom of a helix from the entry of its thread, mm.
+const MAX_THREAD_LENGTH: f64 = 1000.0;
+
 /// Number of level feeds into threads that are kept.
 const MAX_FLANK_CUTS: usize = 10_000;
 
@@ -49,26 +52,35 @@ pub(super) struct FlankCut {
     message: String,
 }
 
-impl FlankCut {
-    /// Returns true if the tool goes along the thread in one of the holes.
-    fn is_lead_in(&self, holes: &[DrilledHole]) -> bool {
-        let mut passes = holes.iter().flat_map(DrilledHole::passes);
-        passes.any(|pass| {
-            let spoke = self.entry - pass.cut.bottom;
-            let is_here = pass.axis.cross(&spoke).norm() <= MAX_OFF_AXIS;
-            let helix = pass.cut.milled.and_then(|circle| circle.helix);
-            let follows = helix.is_some_and(|helix| {
-                (helix.lead.abs() - self.pitch).abs() <= MAX_LEAD_SHARE * self.pitch || self.pitch == 0.0
-            });
-            pass.tool == self.tool && is_here && follows
-        })
+/// Returns for each cut whether its tool goes along the thread in one of the holes.
+fn lead_ins(cuts: &[FlankCut], holes: &[DrilledHole]) -> Vec<bool> {
+    let entries = PointTree::new(cuts.iter().map(|cut| cut.entry));
+    let mut are_lead_ins = vec![false; cuts.len()];
+    for pass in holes.iter().flat_map(DrilledHole::passes) {
+        let Some(helix) = pass.cut.milled.and_then(|circle| circle.helix) else { continue };
+        let bottom = pass.cut.bottom;
+        let top = bottom + pass.axis.into_inner() * MAX_THREAD_LENGTH;
+        let margin = Vector3::repeat(MAX_OFF_AXIS);
+        entries.in_box(&(bottom.inf(&top) - margin), &(bottom.sup(&top) + margin), &mut |index| {
+            let cut = &cuts[index];
+            let is_here = pass.axis.cross(&(cut.entry - bottom)).norm() <= MAX_OFF_AXIS;
+            let follows =
+                cut.pitch == 0.0 || (helix.lead.abs() - cut.pitch).abs() <= MAX_LEAD_SHARE * cut.pitch;
+            are_lead_ins[index] |= pass.tool == cut.tool && is_here && follows;
+        });
     }
+    are_lead_ins
 }
 
 impl HoleExtractor<'_> {
     /// Reports the level feeds into threads by mills that go along none.
     pub(super) fn report_flank_cuts(&mut self, holes: &[DrilledHole]) {
-        for cut in std::mem::take(&mut self.flank_cuts).into_iter().filter(|cut| !cut.is_lead_in(holes)) {
+        let cuts = std::mem::take(&mut self.flank_cuts);
+        if cuts.is_empty() {
+            return;
+        }
+        let are_lead_ins = lead_ins(&cuts, holes);
+        for (cut, _) in cuts.into_iter().zip(are_lead_ins).filter(|(_, is_lead_in)| !is_lead_in) {
             self.findings.add(&FEED_BESIDE_HOLE, &cut.backtrace, 3, |finding| {
                 Diagnostic::new(finding, cut.message)
                     .help("keep the mill's edge within the hole before the thread; only a feed along the helix enters it")
