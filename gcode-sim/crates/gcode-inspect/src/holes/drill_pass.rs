@@ -45,8 +45,6 @@ pub struct TapRetract {
     pub from: Point3<f64>,
     /// Feed, and the speed of the spindle; `None` for a rapid.
     pub feed: Option<(MmPerMin, Rpm)>,
-    /// True if the spindle turns against its direction on the way in.
-    pub is_reversed: bool,
     /// Direction of the spindle.
     pub direction: SpindleDirection,
 }
@@ -96,6 +94,16 @@ impl Helix {
 }
 
 impl PassCut {
+    /// Returns the helix along which a mill goes round; `None` of any other pass.
+    pub(crate) fn helix(&self) -> Option<Helix> {
+        self.milled?.helix
+    }
+
+    /// Returns the helix of a mill that makes no hole but a thread.
+    pub(crate) fn thread(&self) -> Option<Helix> {
+        self.helix().filter(|helix| helix.is_thread)
+    }
+
     /// Returns a pass of which only the extent is known.
     pub fn new(start: Point3<f64>, bottom: Point3<f64>) -> Self {
         let (speed, direction) = (Rpm(0.0), SpindleDirection::Off);

@@ -63,7 +63,7 @@ fn feature(
 ) -> Option<Option<Feature>> {
     let tool = machine.find_tool(pass.tool?)?;
     let diameter = pass.diameter?;
-    if let Some(helix) = pass.cut.milled.and_then(|circle| circle.helix).filter(|helix| helix.is_thread) {
+    if let Some(helix) = pass.cut.thread() {
         return Some(Some(milled_thread(&helix, diameter, depth)));
     }
     let kind = match tool.kind? {

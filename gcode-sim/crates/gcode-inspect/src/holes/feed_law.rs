@@ -150,13 +150,18 @@ impl HoleExtractor<'_> {
         if is_judged && worst.is_none() {
             worst = self.shank_contact(path);
         }
-        if self.is_feed_unsearched.take() {
-            self.unsearched_feeds.count(|| event.backtrace());
-        }
+        self.count_unsearched_feed(event);
         if let Some(gouge) = worst {
             self.gouge_count += 1;
             self.milling.record_cut(self.setup.tool);
             self.report_gouge(&event.backtrace(), gouge);
+        }
+    }
+
+    /// Counts a feed if a search for what it cuts has been given up.
+    fn count_unsearched_feed(&mut self, event: &Event<'_>) {
+        if self.is_feed_unsearched.take() {
+            self.unsearched_feeds.count(|| event.backtrace());
         }
     }
 
@@ -168,10 +173,7 @@ impl HoleExtractor<'_> {
             {
                 self.report_gouge(&event.backtrace(), gouge);
             }
-            if self.is_feed_unsearched.take() {
-                self.unsearched_feeds.count(|| event.backtrace());
-            }
-            return;
+            return self.count_unsearched_feed(event);
         };
         if !self.has_left_start || self.metal.holes.is_none() {
             return;

@@ -239,10 +239,7 @@ fn push_holes<'p>(
     let micrometres =
         |pass: &DrillPass| pass.cut.milled.map(|circle| (circle.radius * 1000.0).round() as u64);
     // A pass along a thread may cut its upper part.
-    let is_thread = |pass: &DrillPass| {
-        let helix = pass.cut.milled.and_then(|circle| circle.helix);
-        helix.is_some_and(|helix| helix.is_thread)
-    };
+    let is_thread = |pass: &DrillPass| pass.cut.thread().is_some();
     let mut lowest_by_tool: BTreeMap<(Option<u32>, Option<u64>), f64> = BTreeMap::new();
     let is_single = passes.len() == 1;
     let (mut cutting, mut repeated) = (Vec::new(), Vec::new());

@@ -184,7 +184,7 @@ impl CuttingLine {
         let is_deepest =
             self.uneven_retract.is_none_or(|known| self.depth_of(&known.from) < self.depth_of(from));
         if !(is_even && is_reversed) && is_deepest {
-            self.uneven_retract = Some(TapRetract { from: *from, feed, is_reversed, direction });
+            self.uneven_retract = Some(TapRetract { from: *from, feed, direction });
         }
         // A stroke that goes on is none of those before.
         if let Some(tapped) = self.tapped.as_mut().filter(|_| self.stroke.is_none()) {

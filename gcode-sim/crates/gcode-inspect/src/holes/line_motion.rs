@@ -126,8 +126,7 @@ impl HoleExtractor<'_> {
         if is_in_air || may_turn_idle && cuts_nothing() {
             return;
         }
-        let needs_hole = |kind| matches!(kind, ToolKind::Tap | ToolKind::Reamer | ToolKind::BoringBar);
-        if !line.enters_solid && self.machine.kind_of(self.setup.tool).is_some_and(needs_hole) {
+        if !line.enters_solid && self.machine.kind_of(self.setup.tool).is_some_and(ToolKind::needs_hole) {
             line.enters_solid = self.metal.cuts(from, &tip) == Some(true);
         }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };

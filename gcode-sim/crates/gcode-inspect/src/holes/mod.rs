@@ -135,8 +135,9 @@ pub struct HoleExtractor<'m> {
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
     process_limits: ProcessLimits,
-    /// Rapids are checked; they decide no hole.
+    /// Dialect of the control: which M codes it executes itself.
     dialect: Dialect,
+    /// Rapids are checked; they decide no hole.
     checks_rapids: bool,
     /// Frame of the part at `axis_position`.
     frame: Frame,
@@ -162,6 +163,7 @@ pub struct HoleExtractor<'m> {
     milling: Milling,
     /// Blocks that mill stated pockets.
     milled_blocks: MilledBlocks,
+    /// Level feeds into threads, until the holes show which lead in.
     flank_cuts: Vec<FlankCut>,
     length_mismatches: Vec<LengthMismatch>,
     /// Tools that have had a length offset.

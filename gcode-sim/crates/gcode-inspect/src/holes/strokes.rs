@@ -172,11 +172,9 @@ impl Strokes {
         self.passes.iter().any(|(_, pass)| {
             let to = ring.centre - pass.cut.bottom;
             let level = to.dot(&ring.out);
-            let is_thread =
-                pass.cut.milled.and_then(|circle| circle.helix).is_some_and(|helix| helix.is_thread);
             let is_wall = pass.diameter(machine).is_some_and(|hole| inner < hole / 2.0 && hole / 2.0 < outer);
             is_wall
-                && !is_thread
+                && pass.cut.thread().is_none()
                 && PARALLEL_COSINE <= pass.axis.dot(&ring.out)
                 && (to - ring.out.into_inner() * level).norm() <= MAX_LINE_OFFSET
                 && -LEVEL_TOLERANCE <= level

@@ -57,7 +57,7 @@ fn lead_ins(cuts: &[FlankCut], holes: &[DrilledHole]) -> Vec<bool> {
     let entries = PointTree::new(cuts.iter().map(|cut| cut.entry));
     let mut are_lead_ins = vec![false; cuts.len()];
     for pass in holes.iter().flat_map(DrilledHole::passes) {
-        let Some(helix) = pass.cut.milled.and_then(|circle| circle.helix) else { continue };
+        let Some(helix) = pass.cut.helix() else { continue };
         let bottom = pass.cut.bottom;
         let top = bottom + pass.axis.into_inner() * MAX_THREAD_LENGTH;
         let margin = Vector3::repeat(MAX_OFF_AXIS);
@@ -202,13 +202,12 @@ impl HoleExtractor<'_> {
         // A point is as wide as its height there, where the thread begins.
         let height = (depth - thread.span[0]).max(0.0);
         let width = if height < point { diameter * height / point } else { diameter };
-        let goes_aside =
-            exceeds(aside - before, MAX_FLANK_CUT) && exceeds(depth - thread.span[0], MAX_FLANK_CUT);
-        let goes_down = !self.metal.is_point_in_pocket(&to)
-            && exceeds((from - to).dot(&hole.out), MAX_FLANK_CUT)
-            && exceeds(height, MAX_FLANK_CUT);
+        let goes_aside = exceeds(aside - before, MAX_FLANK_CUT);
+        let goes_down =
+            !self.metal.is_point_in_pocket(&to) && exceeds((from - to).dot(&hole.out), MAX_FLANK_CUT);
         let reach = aside + if goes_aside { diameter } else { width } / 2.0;
         if !(goes_aside || goes_down)
+            || !exceeds(height, MAX_FLANK_CUT)
             || !exceeds(reach - thread.core, MAX_FLANK_CUT)
             || exceeds(reach - thread.major, MAX_FLANK_CUT)
         {

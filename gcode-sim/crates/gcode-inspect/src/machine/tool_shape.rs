@@ -62,6 +62,11 @@ impl ToolKind {
         matches!(self, Self::Drill | Self::Reamer | Self::BoringBar | Self::Tap)
     }
 
+    /// Returns true for a tool that only widens or threads a hole.
+    pub(crate) fn needs_hole(self) -> bool {
+        matches!(self, Self::Reamer | Self::BoringBar | Self::Tap)
+    }
+
     /// Returns true if a tool of this kind can make the feature.
     pub(crate) fn can_make(self, feature: FeatureKind) -> bool {
         match self {

@@ -10,15 +10,29 @@ use gcode_part::Hole;
 /// Cosine of the largest angle between the axes of two holes that meet.
 pub(super) const MIN_OPPOSITE_COSINE: f64 = 0.999_999;
 
-/// Returns a hole as it is seen along the axis of another: one that the list has from the opposite side begins at its far side.
-pub(super) fn seen_along(upper: &Hole, lower: &Hole) -> Hole {
-    let is_opposite = Vector3::from(upper.axis).dot(&Vector3::from(lower.axis)) < 0.0;
-    if is_opposite && lower.through { lower.from_far_side() } else { lower.clone() }
+/// Nominal hole that follows a through hole on its axis.
+pub(super) struct Follower {
+    /// Index of the nominal hole.
+    pub index: usize,
+    /// The hole as it is seen from the upper one: if the list has it from the opposite side, it begins at its far side.
+    pub hole: Hole,
+    /// Depth of its far end from the entry of the upper one, mm.
+    pub far: f64,
+}
+
+impl Follower {
+    /// Returns the hole with its index if it follows another one.
+    pub(super) fn of(upper: &Hole, (index, lower): (usize, &Hole), tolerances: Tolerances) -> Option<Self> {
+        let is_opposite = Vector3::from(upper.axis).dot(&Vector3::from(lower.axis)) < 0.0;
+        let hole = if is_opposite && lower.through { lower.from_far_side() } else { lower.clone() };
+        let far = follows(upper, &hole, tolerances)?;
+        Some(Self { index, hole, far })
+    }
 }
 
 /// Returns the depth of a hole that follows another one on its axis and in its direction, from the entry of the upper one; `None` if
 /// it does not.
-pub(super) fn follows(upper: &Hole, lower: &Hole, tolerances: Tolerances) -> Option<f64> {
+fn follows(upper: &Hole, lower: &Hole, tolerances: Tolerances) -> Option<f64> {
     let out = Vector3::from(upper.axis);
     let offset = Point3::from(lower.entry) - Point3::from(upper.entry);
     let begins = -offset.dot(&out);

@@ -197,7 +197,7 @@ impl<'a> Cut<'a> {
 
 /// Returns the helix of a pass along a thread: one that makes no hole, or one as wide as a thread of the hole.
 fn milled_thread(nominal: &Hole, pass: &ToolPass<'_>) -> Option<Helix> {
-    let helix = pass.cut.milled?.helix?;
+    let helix = pass.cut.helix()?;
     let is_as_wide = |feature: &Feature| {
         let off = pass.diameter.map(|own| (own - feature.diameter).abs());
         feature.kind == FeatureKind::Tap && off.is_none_or(|off| !exceeds(off, DIAMETER_TOLERANCE))

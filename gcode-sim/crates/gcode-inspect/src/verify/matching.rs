@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
-use super::followers::{MIN_OPPOSITE_COSINE, follows, seen_along, shared_passages};
+use super::followers::{Follower, MIN_OPPOSITE_COSINE, shared_passages};
 use super::position::Deviation;
 use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
@@ -72,27 +72,24 @@ pub struct Comparison<'a> {
 }
 
 impl Comparison<'_> {
-    /// Returns the nominal holes that follow a hole on its axis, as seen from there, each with its depth from the entry of this one.
-    pub(super) fn followers(&self, hole: &Hole) -> Vec<(usize, Hole, f64)> {
+    /// Returns the nominal holes that follow a through hole on its axis; none of another hole.
+    pub(super) fn followers(&self, hole: &Hole) -> Vec<Follower> {
+        let mut followers = Vec::new();
+        if !hole.through {
+            return followers;
+        }
         let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
         let far = entry - out * MAX_PART_LENGTH;
         let margin = Vector3::repeat(self.tolerances.position);
         let entries = || PointTree::new(self.nominal.iter().map(|hole| Point3::from(hole.entry)));
-        let mut followers = Vec::new();
         let (low, high) = (entry.inf(&far) - margin, entry.sup(&far) + margin);
         self.entries.get_or_init(entries).in_box(&low, &high, &mut |index| {
-            let next = seen_along(hole, &self.nominal[index]);
-            let depth = follows(hole, &next, self.tolerances);
-            followers.extend(depth.map(|depth| (index, next, depth)));
+            let other = &self.nominal[index];
+            if !std::ptr::eq(other, hole) {
+                followers.extend(Follower::of(hole, (index, other), self.tolerances));
+            }
         });
         followers
-    }
-
-    /// Returns the depth of the lowest hole that follows a through hole on its axis, from the entry of this one; `None` without one.
-    /// The part is open between both, as between the ears of a clevis.
-    pub(super) fn depth_of_followers(&self, hole: &Hole) -> Option<f64> {
-        let depths = self.followers(hole).into_iter().map(|(_, _, depth)| depth);
-        depths.reduce(f64::max).filter(|_| hole.through)
     }
 }
 

@@ -2,6 +2,7 @@
 use super::*;
 use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH};
 use crate::machine::{PointShape, ToolKind};
+use crate::verify::followers::Follower;
 use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
 use gcode_part::{Feature, FeatureKind, MAX_EDGE_BREAK, POINT_LENGTH};
@@ -43,6 +44,8 @@ pub(super) struct Judgement<'c> {
     pub near: Vec<Cut<'c>>,
     /// Cuts of a through hole from its far side.
     pub far: Vec<Cut<'c>>,
+    /// Nominal holes that follow a through hole on its axis.
+    pub followers: Vec<Follower>,
     /// Stated pockets of the stock.
     pub pockets: &'c [Surface],
     pub findings: Vec<Diagnostic>,
@@ -91,14 +94,15 @@ fn judge<'c>(
         let side = if drilled.axis.dot(&out) < 0.0 { &mut far } else { &mut near };
         side.extend(Cut::all(nominal, drilled, machine));
     }
-    let through = next_hole::strokes_through(comparison, pair, machine);
+    let followers = comparison.followers(nominal);
+    let through = next_hole::strokes_through(comparison, pair, &followers, machine);
     if !through.is_empty() {
         near.extend(through);
         near.sort_by_key(|cut| cut.pass.cut.order);
     }
     let id = comparison.id(pair.nominal);
     let (findings, gaps) = (Vec::new(), Vec::new());
-    let mut judged = Judgement { comparison, nominal, id, near, far, pockets, findings, gaps };
+    let mut judged = Judgement { comparison, nominal, id, near, far, followers, pockets, findings, gaps };
     if nominal.features.is_empty() {
         judged.judge_one_diameter(drilled, surface);
     } else {

@@ -39,7 +39,9 @@ pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cu
     let how = match retract.feed {
         None => "in rapid".to_owned(),
         Some(_) if retract.direction == SpindleDirection::Off => "with the spindle stopped".to_owned(),
-        Some(_) if !retract.is_reversed => "with the spindle turning inwards".to_owned(),
+        Some(_) if retract.direction == cut.pass.cut.direction => {
+            "with the spindle turning inwards".to_owned()
+        }
         Some((feed, speed)) => format!("at {}", feed_words(feed.0, speed.0)),
     };
     let message = format!(

@@ -35,6 +35,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         id,
         near,
         far,
+        followers: Vec::new(),
         pockets: judged.pockets,
         findings: Vec::new(),
         gaps: Vec::new(),

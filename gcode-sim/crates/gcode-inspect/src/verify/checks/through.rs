@@ -16,13 +16,6 @@ const RIM_POINTS: u32 = 16;
 /// Distance beyond the far side at which a hole ends in a pocket or in metal, mm.
 const BELOW_FAR_SIDE: f64 = 0.01;
 
-/// Distance at which metal is looked for below a hole, mm, and the largest number of such steps.
-const METAL_STEP: f64 = 0.05;
-const MAX_METAL_STEPS: f64 = 20_000.0;
-
-/// Number of halvings of such a step.
-const HALVINGS: u32 = 30;
-
 /// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
 
@@ -83,27 +76,23 @@ pub(super) fn rim_thickness(surface: &Surface, hole: &Hole, radius: f64) -> f64 
 fn ends_in_pocket(pockets: &[Surface], hole: &Hole, radius: f64) -> bool {
     let out = Unit::new_normalize(Vector3::from(hole.axis));
     let below = Point3::from(hole.entry) - out.into_inner() * (hole.depth + BELOW_FAR_SIDE);
-    let rim = ring(&out, &Vector3::zeros(), radius, RIM_POINTS);
     let is_in_one = |point: Point3<f64>| pockets.iter().any(|pocket| pocket.value(&point) < 0.0);
-    !pockets.is_empty() && is_in_one(below) && rim.iter().all(|offset| is_in_one(below + offset))
+    is_in_one(below)
+        && ring(&out, &Vector3::zeros(), radius, RIM_POINTS).iter().all(|offset| is_in_one(below + offset))
 }
 
-/// Returns the first depth of solid metal below a depth of a hole, on its axis and above a tip.
-fn metal_below((surface, pockets): (&Surface, &[Surface]), hole: &Hole, depth: f64, tip: f64) -> Option<f64> {
-    let at = |depth: f64| Point3::from(hole.entry) - Vector3::from(hole.axis) * depth;
-    let is_metal = |depth: f64| {
-        let point = at(depth);
-        surface.value(&point) < 0.0 && pockets.iter().all(|pocket| 0.0 <= pocket.value(&point))
-    };
-    let steps = ((tip - depth) / METAL_STEP).ceil().min(MAX_METAL_STEPS);
-    let depths = |step: u32| depth + (tip - depth) * f64::from(step) / steps;
-    let first = (1..=steps as u32).find(|step| is_metal(depths(*step)))?;
-    let (mut free, mut metal) = (depths(first - 1), depths(first));
-    for _ in 0..HALVINGS {
-        let middle = f64::midpoint(free, metal);
-        if is_metal(middle) { metal = middle } else { free = middle }
+/// Returns the depth at which solid metal begins below a hole that ends in a pocket, on its axis and above a tip.
+fn metal_below((surface, pockets): (&Surface, &[Surface]), hole: &Hole, tip: f64) -> Option<f64> {
+    let (entry, into) = (Point3::from(hole.entry), -Unit::new_normalize(Vector3::from(hole.axis)));
+    let mut depth = hole.depth;
+    while depth + BELOW_FAR_SIDE < tip {
+        let below = entry + into.into_inner() * (depth + BELOW_FAR_SIDE);
+        let Some(pocket) = pockets.iter().find(|pocket| pocket.value(&below) < 0.0) else {
+            return (surface.value(&below) < 0.0).then_some(depth);
+        };
+        depth = (pocket.exit(&below, &into)? - entry).dot(&into);
     }
-    Some(metal)
+    None
 }
 
 /// Returns how far the full diameter of a cut passes the far side of a hole of this thickness, mm. A tool whose end is unknown
@@ -122,8 +111,8 @@ impl Judgement<'_> {
         }
         self.judge_behind_pocket(surface);
         let thickness = surface.map_or(0.0, |surface| thickness(&surface, nominal)).max(nominal.depth);
-        let thickness =
-            self.comparison.depth_of_followers(nominal).map_or(thickness, |far| far.max(thickness));
+        // The part is open between the holes of one axis, as between the ears of a clevis.
+        let thickness = self.followers.iter().map(|next| next.far).fold(thickness, f64::max);
         let beyond = |cut: &&Cut<'_>| break_through(cut, nominal, thickness);
         let all = self.near.iter().chain(&self.far);
         let Some(cut) = all.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else { return };
@@ -146,14 +135,12 @@ impl Judgement<'_> {
     fn judge_behind_pocket(&mut self, surface: Option<Surface>) {
         let (nominal, slack) = (self.nominal, self.comparison.tolerances.depth);
         let radius = nominal.widest_diameter().unwrap_or(0.0) / 2.0;
-        let Some(surface) = surface.filter(|_| ends_in_pocket(self.pockets, nominal, radius)) else { return };
-        if self.comparison.depth_of_followers(nominal).is_some() {
-            return;
-        }
+        let is_last = self.followers.is_empty();
+        let ends_there = || is_last && ends_in_pocket(self.pockets, nominal, radius);
+        let Some(surface) = surface.filter(|_| ends_there()) else { return };
         let body = (&surface, self.pockets);
-        let metal = |cut: &Cut<'_>| {
-            metal_below(body, nominal, nominal.depth, cut.tip).filter(|at| exceeds(cut.tip - at, slack))
-        };
+        let metal =
+            |cut: &Cut<'_>| metal_below(body, nominal, cut.tip).filter(|at| exceeds(cut.tip - at, slack));
         let Some((cut, at)) = self.near.iter().find_map(|cut| Some((cut, metal(cut)?))) else { return };
         let message = format!(
             "hole {}: {} goes {:.3} mm into the metal behind the pocket in which the hole ends",
@@ -201,8 +188,8 @@ impl Judgement<'_> {
         }
         // A coaxial hole from the far side is the rest of this one, and above one that follows it the part is open.
         let depth = depth.min(self.comparison.counter_depth(self.nominal, diameter));
-        let is_followed = self.comparison.depth_of_followers(self.nominal).is_some();
-        let is_open = is_followed || ends_in_pocket(self.pockets, self.nominal, diameter / 2.0);
+        let is_open =
+            !self.followers.is_empty() || ends_in_pocket(self.pockets, self.nominal, diameter / 2.0);
         let depth = if is_open { depth.min(self.nominal.depth) } else { depth };
         if exceeds(depth, cut) {
             let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));

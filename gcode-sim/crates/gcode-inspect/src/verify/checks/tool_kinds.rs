@@ -13,9 +13,9 @@ const MAX_REAMING: [f64; 2] = [0.5, 1.0];
 /// Largest share of its diameter that a boring bar takes off: the bar itself goes into the hole before it.
 const MAX_BORING_SHARE: f64 = 1.0 / 3.0;
 
-/// Returns true for a tool that only widens or threads a hole.
-pub(super) fn needs_hole(kind: Option<ToolKind>) -> bool {
-    matches!(kind, Some(ToolKind::Reamer | ToolKind::BoringBar | ToolKind::Tap))
+/// Returns true for a tool of a kind that only widens or threads a hole.
+fn needs_hole(kind: Option<ToolKind>) -> bool {
+    kind.is_some_and(ToolKind::needs_hole)
 }
 
 /// Returns true if a hole of one diameter and one pass is drilled, or milled by a flat end.
