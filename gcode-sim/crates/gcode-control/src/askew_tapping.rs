@@ -10,10 +10,7 @@ impl Planner<'_> {
     /// G174 and G184: the spindle turns in step with the feed from the tool's position to the end point, and the other way back.
     /// Then it turns as before.
     pub(super) fn plan_askew_tapping(&self, is_left_handed: bool, plan: &mut BlockPlan) -> ExecResult<()> {
-        if plan.state.modal.cycle.is_some() {
-            let code = if is_left_handed { "174" } else { "184" };
-            return Err(self.code_in_mode(code, ("a canned cycle", "G80")));
-        }
+        self.check_outside_cycle(if is_left_handed { "174" } else { "184" }, &plan.state.modal)?;
         if self.words.has(b'R') {
             return Err(self.not_simulated("G174 and G184 with R"));
         }

@@ -50,11 +50,17 @@ impl Planner<'_> {
         Alarm::CodeInMode(code.into(), active, cancel).located_at(self.block)
     }
 
+    /// Raises the alarm of a G code that the simulator doesn't execute in a canned cycle.
+    pub(super) fn check_outside_cycle(&self, code: &str, modal: &Modal) -> ExecResult<()> {
+        match modal.cycle {
+            Some(_) => Err(self.code_in_mode(code, ("a canned cycle", "G80"))),
+            None => Ok(()),
+        }
+    }
+
     /// Raises the alarm of a G code that the simulator executes neither in a canned cycle nor in cutter compensation.
     pub(super) fn check_outside_cycle_and_offset(&self, code: &str, modal: &Modal) -> ExecResult<()> {
-        if modal.cycle.is_some() {
-            return Err(self.code_in_mode(code, ("a canned cycle", "G80")));
-        }
+        self.check_outside_cycle(code, modal)?;
         if modal.cutter != CutterSide::Off {
             return Err(self.code_in_mode(code, ("cutter compensation", "G40")));
         }

@@ -15,9 +15,7 @@ impl Planner<'_> {
     /// has it. The passes that clear the pocket, by I or J, Q and K, are not those of the manual's figures and are left out.
     pub(super) fn plan_pocket(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &plan.state;
-        if state.modal.cycle.is_some() {
-            return Err(self.code_in_mode("150", ("a canned cycle", "G80")));
-        }
+        self.check_outside_cycle("150", &state.modal)?;
         let is_allowed = state.modal.plane == Plane::Xy
             && state.modal.distance == Distance::Absolute
             && !self.registers.lookahead.is_offset();

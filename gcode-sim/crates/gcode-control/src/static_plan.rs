@@ -26,7 +26,7 @@ pub struct ModesInForce {
 }
 
 /// Modes that rule out codes, each true if it is on wherever the program came from.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CertainModes {
     /// G68.
     pub rotation: bool,
@@ -36,6 +36,11 @@ pub struct CertainModes {
     pub mirror: bool,
     /// G41 or G42.
     pub cutter: bool,
+}
+
+impl CertainModes {
+    /// None is certainly on.
+    pub const NONE: Self = Self { rotation: false, scaling: false, mirror: false, cutter: false };
 }
 
 /// A control at power-on that plans blocks and executes none.
@@ -67,9 +72,9 @@ impl StaticPlanner {
         modes: impl Iterator<Item = ModesInForce>,
     ) -> Option<LocatedAlarm> {
         let modes: Vec<ModesInForce> = modes.collect();
-        let without = modes.iter().map(|modes| ModesInForce { certain: CertainModes::default(), ..*modes });
+        let without = modes.iter().map(|modes| ModesInForce { certain: CertainModes::NONE, ..*modes });
         self.alarm_in_each(words, block, without).or_else(|| {
-            let has_certain = modes.iter().any(|modes| modes.certain != CertainModes::default());
+            let has_certain = modes.iter().any(|modes| modes.certain != CertainModes::NONE);
             has_certain.then(|| self.alarm_in_each(words, block, modes.into_iter())).flatten()
         })
     }

@@ -98,7 +98,7 @@ fn after_call(
     };
     // The words may be arguments of a code that calls a program.
     // It may end a mode.
-    let mut after = after.join(*before).with_certain(|modes| *modes = CertainModes::default());
+    let mut after = after.join(*before).with_certain(|modes| *modes = CertainModes::NONE);
     for op in called.program.ops() {
         match op.kind() {
             OpKind::Words(words) => {

@@ -36,10 +36,6 @@ pub(crate) struct PossibleModes {
     pub certain: CertainModes,
 }
 
-/// No mode is certainly on.
-const NONE_CERTAIN: CertainModes =
-    CertainModes { rotation: false, scaling: false, mirror: false, cutter: false };
-
 impl PossibleModes {
     /// Modes at power-on; a setting of the control decides between G00 and G01.
     pub(super) const POWER_ON: Self = Self {
@@ -54,7 +50,7 @@ impl PossibleModes {
         is_other_feed_mode: true,
         is_absolute: true,
         is_unreported: true,
-        certain: NONE_CERTAIN,
+        certain: CertainModes::NONE,
     };
     pub(super) const ANYTHING: Self =
         Self { has_feed: true, is_in_cycle: true, has_pecks: true, is_inverse_time: true, ..Self::POWER_ON };
@@ -96,7 +92,7 @@ impl PossibleModes {
             // A computed G code may be any.
             is_other_feed_mode: true,
             is_absolute: true,
-            certain: NONE_CERTAIN,
+            certain: CertainModes::NONE,
             ..self
         }
     }
