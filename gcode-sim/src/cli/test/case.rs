@@ -22,6 +22,9 @@ use gcode_session::{Criteria, Run};
 /// Name of the file with the accepted result; behind the program's label and a point if the folder has several cases.
 pub(super) const ACCEPTED: &str = "accepted.json";
 
+/// Names of a case's reference, of which the first that is there counts.
+pub(super) const REFERENCES: [&str; 3] = ["reference.json", "reference.csv", "job.toml"];
+
 /// A folder with a program, or one of its main programs.
 #[derive(Default)]
 pub(super) struct Case {
@@ -168,7 +171,7 @@ impl Case {
                 unused.display()
             )));
         }
-        let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(own);
+        let reference = REFERENCES.into_iter().find_map(own);
         let reference = reference.or_else(|| project.reference());
         let read = |path: &Path| options::read_nominal(path, &request, &mut folders);
         let nominal = reference.as_deref().map(read).transpose()?;

@@ -4,11 +4,12 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::case::{ACCEPTED, Case};
+use super::case::{ACCEPTED, Case, REFERENCES};
+use super::claims::CLAIMS;
 use super::main_program::{self, MainProgram};
 use super::other_endings::programs_of_other_endings;
 use crate::cli::{UsageError, input, output};
-use gcode_session::files::{PROGRAM_ENDINGS, begins_program};
+use gcode_session::files::{MACHINE_FILE, PROGRAM_ENDINGS, begins_program};
 
 /// Folder of a case's called programs; a folder below it is a case only if it has an accepted result.
 const LIBRARY: &str = "lib";
@@ -146,7 +147,6 @@ fn accepted_label(path: &Path) -> Option<String> {
 /// Returns the reference that a case of this program has in its folder: `reference.csv`, or with the name of the main program if the folder has
 /// several. `path` chooses a program of the file.
 pub(in crate::cli) fn reference_beside(program: &Path, path: Option<&str>) -> Option<PathBuf> {
-    const NAMES: [&str; 3] = ["reference.json", "reference.csv", "job.toml"];
     let folder = input::folder_of(program);
     let programs: Vec<PathBuf> =
         input::folder(folder).ok()?.into_iter().filter(|path| !path.is_dir() && is_program(path)).collect();
@@ -157,15 +157,14 @@ pub(in crate::cli) fn reference_beside(program: &Path, path: Option<&str>) -> Op
     };
     let own = mains.iter().find(is_own)?;
     let prefix = if mains.len() == 1 { String::new() } else { own.label() + "." };
-    NAMES.iter().map(|name| folder.join(format!("{prefix}{name}"))).find(|path| path.is_file())
+    REFERENCES.iter().map(|name| folder.join(format!("{prefix}{name}"))).find(|path| path.is_file())
 }
 
 /// Returns true for a file that the program of a case uses.
 fn belongs_to_case(path: &Path) -> bool {
-    const FILES: [&str; 6] =
-        ["machine.toml", "control.toml", "claims.toml", "job.toml", "reference.csv", "reference.json"];
+    let files = [MACHINE_FILE, "control.toml", CLAIMS].into_iter().chain(REFERENCES);
     path.file_name().and_then(|name| name.to_str()).is_some_and(|name| {
-        FILES.iter().any(|file| name == *file || name.ends_with(&format!(".{file}")))
+        files.clone().any(|file| name == file || name.ends_with(&format!(".{file}")))
             || accepted_label(path).is_some()
     })
 }
