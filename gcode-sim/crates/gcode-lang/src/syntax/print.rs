@@ -2,12 +2,12 @@
 //!
 //! Reading the text gives the same tree.
 use super::ast::{
-    BinaryOp, Block, CallForm, Comment, CommentMark, Condition, Decimal, Expr, ExprKind, Item,
+    BinaryOp, Block, CallForm, Comment, CommentMark, Condition, Decimal, DoLine, Expr, ExprKind, Item,
     OperatorSpelling, PrintKind, PrintPart, Program, ProgramName, Relation, Statement, Word, WordValue,
 };
 use super::file_items::byte_order_marks;
 
-/// Prints a program, its O word first and a line feed after each block.
+/// Prints a program, its O word first and a line feed after each block but one before a statement behind DO.
 pub fn print(program: &Program) -> Vec<u8> {
     let mut out = Vec::new();
     match &program.name {
@@ -21,9 +21,11 @@ pub fn print(program: &Program) -> Vec<u8> {
     if program.name != ProgramName::Unnamed && !titled {
         out.push(b'\n');
     }
-    for block in &program.blocks {
+    let mut blocks = program.blocks.iter().peekable();
+    while let Some(block) = blocks.next() {
         print_block(block, &mut out);
-        out.push(b'\n');
+        let goes_on = blocks.peek().is_some_and(|next| next.do_line == DoLine::Behind);
+        out.push(if goes_on { b' ' } else { b'\n' });
     }
     if program.blocks.is_empty() && program.name == ProgramName::Unnamed {
         out.clear();

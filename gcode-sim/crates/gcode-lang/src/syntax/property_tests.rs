@@ -316,6 +316,14 @@ proptest! {
 }
 
 #[test]
+fn statements_behind_do_are_printed_in_its_line() {
+    let text = b"WHILE[#1 GT 0]DO1 #1=#1-1 END1\nG04\n";
+    let printed = print(&parse(SourceId(0), text)[0]);
+    assert_eq!(String::from_utf8_lossy(&printed).lines().count(), 2, "{}", String::from_utf8_lossy(&printed));
+    assert_eq!(without_spans(&parse(SourceId(0), text)), without_spans(&parse(SourceId(0), &printed)));
+}
+
+#[test]
 fn a_byte_order_mark_behind_a_leader_is_printed_as_unreadable() {
     let text = "\0\0\u{feff}?%\r\n]]\n";
     let printed = print(&parse(SourceId(0), text.as_bytes())[0]);
