@@ -15,5 +15,5 @@ pub(crate) fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
         values.iter().for_each(|(axis, value)| at[*axis] = *value);
         machine.forward(&at, &Setup::default()).tip.coords.into()
     };
-    machine.offsets.iter().map(|offset| (offset.system.name(), zero(&offset.values))).collect()
+    machine.offsets.iter().map(|offset| (offset.system.name(machine.dialect), zero(&offset.values))).collect()
 }

@@ -18,6 +18,9 @@ use gcode_lang::program::m_codes::MCodeEffect;
 use gcode_lang::program::modes::{CutterSide, Distance, DynamicOffset, Motion, Polar, Rotation, Scaling};
 use gcode_lang::units::Rpm;
 
+/// M99, the end of a subprogram or macro.
+const RETURN: u32 = 99;
+
 /// Variable of output 0 of a Haas, and the number of the last output.
 const FIRST_OUTPUT: u32 = 12_000;
 const LAST_OUTPUT: u32 = 255;
@@ -396,10 +399,16 @@ impl Planner<'_> {
                     plan.notes.push(Note::InterruptNotSimulated);
                 }
                 MCodeEffect::InterruptOff => {}
-                MCodeEffect::Call
-                | MCodeEffect::NotSimulated
-                | MCodeEffect::SkipAlarm(_)
-                | MCodeEffect::SkipReference => {
+                // M99 whose number is a variable: lowering separates only a call whose code is written.
+                MCodeEffect::Call if code == RETURN => {
+                    let number = self.words.count(b'P')?;
+                    plan.flow = BlockFlow::Return { number, target: None };
+                }
+                MCodeEffect::Call => {
+                    let what = format!("M{code:02} from a variable (write M{code:02})");
+                    return Err(Alarm::NotSimulated { what }.located_at(span));
+                }
+                MCodeEffect::NotSimulated | MCodeEffect::SkipAlarm(_) | MCodeEffect::SkipReference => {
                     return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.located_at(span));
                 }
             }

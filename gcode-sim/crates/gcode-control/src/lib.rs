@@ -126,7 +126,7 @@ pub use self::inspection::{Evaluation, StackedProgram};
 pub use self::next_block::{BlockCommands, UnsimulatedCodes, modal_code};
 pub use self::notes::Note;
 pub use self::outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress, UnsetWorkOffset};
-pub use self::residual_state::{ResidualKind, ResidualValue, additional_system_name, mode_name};
+pub use self::residual_state::{ResidualKind, ResidualValue, mode_name};
 pub use self::state::{Modal, ModalWords, State};
 pub use self::statements::printable;
 pub use self::variables::{Locals, Value, Vars};

@@ -38,6 +38,7 @@ impl Planner<'_> {
         {
             plan.notes.push(Note::LengthOffsetZero(row.code));
         }
+        plan.state.is_length_cancelled = false;
         let (offset, wear) = self.locate(self.data.length_offset(&plan.state))?;
         let changed = offset != plan.state.length_offset;
         let has_other_source = wear != plan.state.length_wear

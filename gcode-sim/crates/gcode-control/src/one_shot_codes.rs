@@ -8,6 +8,7 @@ use super::planner::Planner;
 use super::state::State;
 use super::words::WordNumber;
 use gcode_lang::alarm::Alarm;
+use gcode_lang::control::Dialect;
 use gcode_lang::motion::{EventKind, LengthCompensation, Position, UnknownAxes};
 use gcode_lang::program::code_facts::{Letters, WithoutAxes};
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
@@ -291,7 +292,7 @@ impl Planner<'_> {
         if self.moves_along_length(plan) {
             plan.restores_length |= settings.assumes_restored_length();
             if settings.restores_length == Some(false) {
-                cancel_length(plan);
+                self.cancel_length(plan);
             }
         }
         self.data.recompute_position(&mut plan.state);
@@ -338,7 +339,7 @@ impl Planner<'_> {
         self.push_rapid(plan, &home);
         // The length offset is cancelled where its axis reaches the reference position.
         if self.data.settings.restores_length != Some(true) && self.moves_along_length(plan) {
-            cancel_length(plan);
+            self.cancel_length(plan);
         }
         self.data.recompute_position(&mut plan.state);
         Ok(())
@@ -348,7 +349,8 @@ impl Planner<'_> {
     /// G30 commands in tool length offset mode").
     fn moves_along_length(&self, plan: &BlockPlan) -> bool {
         let z = self.data.settings.axes.find(b'Z');
-        z.is_some() && self.words.has(b'Z') && plan.state.modal.length != Length::Off
+        let is_on = plan.state.length_compensation() != LengthCompensation::Off;
+        z.is_some() && self.words.has(b'Z') && is_on
     }
 
     /// G28 of a Haas without an axis: all axes go straight home, and the length offset is cancelled.
@@ -360,7 +362,7 @@ impl Planner<'_> {
         }
         self.place_at_machine_coordinates(plan, (0..count).fold(0, |axes, axis| axes | 1 << axis));
         self.push_rapid(plan, &home);
-        cancel_length(plan);
+        self.cancel_length(plan);
         self.data.recompute_position(&mut plan.state);
         plan.commands_axes = true;
     }
@@ -413,14 +415,20 @@ impl Planner<'_> {
         plan.state.unknown = plan.state.unknown.with_axes_of(axes, unknown);
         self.push_unknown_axes(plan);
     }
-}
 
-/// Cancels the tool length offset and G43 or G44.
-fn cancel_length(plan: &mut BlockPlan) {
-    if plan.state.modal.length != Length::Off {
-        let (offset, wear) = (Position::default(), Position::default());
-        plan.push_event(EventKind::ToolLength { offset, wear, compensation: LengthCompensation::Off });
+    /// Cancels the tool length offset as G28, G30 and G53 do: #4008 keeps G43 or G44, and the next H brings the offset
+    /// back (operator's manual, "G53, G28, and G30 commands in tool length offset mode"). A Haas has G49 from there on;
+    /// tool centre point control ends.
+    fn cancel_length(&self, plan: &mut BlockPlan) {
+        if plan.state.length_compensation() != LengthCompensation::Off {
+            let (offset, wear) = (Position::default(), Position::default());
+            plan.push_event(EventKind::ToolLength { offset, wear, compensation: LengthCompensation::Off });
+        }
+        (plan.state.length_offset, plan.state.length_wear) = (Position::default(), 0.0);
+        if self.data.settings.codes == Dialect::HaasNgc || plan.state.controls_tip() {
+            plan.state.modal.length = Length::Off;
+        } else {
+            plan.state.is_length_cancelled = plan.state.modal.length != Length::Off;
+        }
     }
-    (plan.state.length_offset, plan.state.length_wear) = (Position::default(), 0.0);
-    plan.state.modal.length = Length::Off;
 }

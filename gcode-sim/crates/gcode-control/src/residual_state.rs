@@ -40,12 +40,6 @@ pub fn mode_name(group: u32) -> String {
     format!("the mode of group {group:02}")
 }
 
-/// Returns the name of an additional work coordinate system by its P: `G54.1 P9`, on a Haas `G154 P9`.
-pub fn additional_system_name(dialect: Dialect, number: usize) -> String {
-    let code = if dialect == Dialect::HaasNgc { "G154" } else { "G54.1" };
-    format!("{code} P{number}")
-}
-
 impl State {
     /// Returns the state at the start of a program behind another that has ended in the state `left`.
     fn behind(&self, left: &Self, keeps_modes: bool) -> Self {
@@ -111,8 +105,8 @@ impl Control {
             0 => "the external work offset".to_owned(),
             _ if index < STANDARD_SYSTEMS => format!("G{}", 53 + index),
             _ => {
-                let number = index - system_index(WorkSystem::Additional(0));
-                additional_system_name(data.settings.dialect, number)
+                let number = (index - system_index(WorkSystem::Additional(0))) as u16;
+                WorkSystem::Additional(number).name(data.settings.dialect)
             }
         };
         let systems =

@@ -30,6 +30,9 @@ pub struct State {
     pub(super) g92_shift: Position,
     /// Active tool length offset of each axis.
     pub(super) length_offset: Position,
+    /// G28, G30 or G53 has cancelled the length offset, and G43 or G44 is still the modal code: the next H, G43 or
+    /// G44 brings the offset back.
+    pub(super) is_length_cancelled: bool,
     /// Part of it that is wear, along the tool; negative with G44.
     pub(super) length_wear: f64,
     /// Intermediate point of G28 for G29, from the work zero, tool length included.
@@ -95,6 +98,7 @@ impl State {
     /// Returns the source of the tool length offset.
     pub(super) fn length_compensation(&self) -> LengthCompensation {
         match self.modal.length {
+            _ if self.is_length_cancelled => LengthCompensation::Off,
             Length::Off => LengthCompensation::Off,
             Length::Plus | Length::TipByAngles | Length::TipByVector | Length::TipOfHaas => {
                 LengthCompensation::Plus(self.modal_words.h)

@@ -1,6 +1,6 @@
 //! Entries of one block: its sequence number, jumps, calls, loops and variables.
 use gcode_lang::control::Dialect;
-use gcode_lang::program::{CallCode, CallTarget, LoweredWord, OpKind, WordOperand, Words, lower_tree};
+use gcode_lang::program::{CallCode, CallTarget, LoweredWord, WordOperand, Words, lower_tree};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Block, Decimal, Expr, ExprKind, Item, Statement, Unreadable, Word, WordValue};
 use gcode_lint::{CalledProgramName, ValueUse, block_expressions, call_site, constant, variable};
@@ -153,14 +153,8 @@ fn record_words(builder: &mut ChunkBuilder<'_>, block: &Block) {
         // Words before unreadable text still say what is called.
         let is_readable = |item: &&Item| !matches!(item, Item::Unreadable(_));
         let items = block.items.iter().filter(is_readable).cloned().collect();
-        match lower_tree(&Block { items, ..block.clone() }).kind() {
-            OpKind::Words(words) => record_call(builder, words, block),
-            OpKind::If { then, .. } => {
-                if let OpKind::Words(words) = &**then {
-                    record_call(builder, words, block);
-                }
-            }
-            _ => {}
+        if let Some(words) = lower_tree(&Block { items, ..block.clone() }).kind().words() {
+            record_call(builder, words, block);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Calls of a program: G65, G66, M98 and the codes that call programs, with the locals their arguments set.
 use gcode_lang::control::{CalledProgram, CodeCallKind, Settings};
 use gcode_lang::program::{
-    ArgumentLocals, CallCode, CallTarget, LoweredWord, Memory, OpIndex, OpKind, Program, ProgramId,
-    WordOperand, Words,
+    ArgumentLocals, CallCode, CallTarget, LoweredWord, Memory, OpIndex, Program, ProgramId, WordOperand,
+    Words,
 };
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Folder, ProgramName};
@@ -72,7 +72,7 @@ pub fn called_programs(program: &Program, settings: &Settings) -> Vec<CalledProg
 pub(super) fn call_sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
     let mut found = Vec::new();
     for (block, op) in program.ops().iter().enumerate() {
-        if let OpKind::Words(words) = op.kind() {
+        if let Some(words) = op.kind().words() {
             let site = call_site(block, words, settings);
             found.extend(site.map(|site| CallSite { folder: program.folder.clone(), ..site }));
         }

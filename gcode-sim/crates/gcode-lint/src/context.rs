@@ -335,10 +335,8 @@ impl<'a> ProgramUnit<'a> {
 
     /// Returns whether a block returns, and whether one ends the run.
     pub(crate) fn returns_or_ends(&self) -> (bool, bool) {
-        let words = |(block, op): (usize, &'a Op)| match op.kind() {
-            OpKind::Words(words) => Some((words.call().map(|call| call.kind), block)),
-            _ => None,
-        };
+        let words =
+            |(block, op): (usize, &'a Op)| Some((op.kind().words()?.call().map(|call| call.kind), block));
         let mut blocks = self.program.ops().iter().enumerate().filter_map(words);
         let returns = blocks.clone().any(|(call, _)| call == Some(CallCode::Return));
         let ends = blocks.any(|(call, block)| call.is_none() && self.flow.block_successors[block].is_exit);
@@ -395,11 +393,9 @@ impl<'a> ProgramUnit<'a> {
         self.program.ops().iter().enumerate().filter(|(block, _)| self.is_reached[*block])
     }
 
+    /// Iterates over the words of the blocks that are reached, those behind a condition too.
     pub(crate) fn reached_words(&self) -> impl Iterator<Item = (OpIndex, &'a Words)> {
-        self.reached_ops().filter_map(|(block, op)| match op.kind() {
-            OpKind::Words(words) => Some((block, words)),
-            _ => None,
-        })
+        self.reached_ops().filter_map(|(block, op)| Some((block, op.kind().words()?)))
     }
 
     pub(crate) fn finding(

@@ -2,7 +2,7 @@
 use std::collections::BTreeSet;
 
 use gcode_lang::control::Settings;
-use gcode_lang::program::{Memory, OpKind, Program, ProgramId};
+use gcode_lang::program::{LoweredWord, Memory, Program, ProgramId};
 
 use super::calls::called_programs;
 use super::literal;
@@ -27,13 +27,9 @@ pub fn main_programs(memory: &Memory, called: &BTreeSet<ProgramId>) -> Vec<Progr
 
 /// Returns true if the program contains M02 or M30.
 fn ends_run(program: &Program) -> bool {
-    program.ops().iter().any(|op| match op.kind() {
-        OpKind::Words(words) => words
-            .list
-            .iter()
-            .any(|word| word.letter == b'M' && matches!(literal::word_count(word), Some(2 | 30))),
-        _ => false,
-    })
+    let is_end =
+        |word: &LoweredWord| word.letter == b'M' && matches!(literal::word_count(word), Some(2 | 30));
+    program.ops().iter().filter_map(|op| op.kind().words()).any(|words| words.list.iter().any(is_end))
 }
 
 #[cfg(test)]

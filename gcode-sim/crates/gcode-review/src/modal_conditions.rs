@@ -4,10 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::kinds;
-use gcode_control::{BlockCommands, State, additional_system_name, modal_code};
+use gcode_control::{BlockCommands, State, modal_code};
 use gcode_lang::control::Dialect;
 use gcode_lang::diag::FindingKind;
-use gcode_lang::program::modes::WorkSystem;
 
 /// One kind of modal condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -64,9 +63,7 @@ impl ModalAspect {
         let code = modal.code(self.row().0).unwrap_or_default();
         let group = modal_code(code);
         match (self, modal.work, modal.cycle) {
-            (Self::System, WorkSystem::Additional(number), _) => {
-                additional_system_name(dialect, usize::from(number))
-            }
+            (Self::System, ..) => modal.work.name(dialect),
             (Self::Length, ..) if code != 490 => format!("{group} H{}", state.modal_words.h),
             (Self::Cutter, ..) if code != 400 => format!("{group} D{}", state.modal_words.d),
             (Self::Level | Self::Cycle, _, None) => String::new(),

@@ -1,11 +1,10 @@
 //! Likely causes of a verdict: unset work offsets, and what a check of the program's text finds; and of an endless loop: a
 //! counter that its assignment does not change.
 use super::{Request, Run, Simulation};
-use gcode_control::{Control, Outcome, UnsetWorkOffset, Value, additional_system_name};
+use gcode_control::{Control, Outcome, UnsetWorkOffset, Value};
 use gcode_inspect::findings::{MAIN_PROGRAM, WORK_OFFSET};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, AnyVerdict, Verdict};
-use gcode_lang::control::Dialect;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::modes::WorkSystem;
@@ -121,16 +120,8 @@ pub(super) fn unset_work_offsets<'r>(
     unset.map(move |unset| offset_finding(unset, machine, made).with_backtrace(unset.selected.clone()))
 }
 
-/// Returns the name of a work offset on a control: `G55`, `G54.1 P3`, `G154 P3`.
-pub(super) fn work_offset_name(system: WorkSystem, dialect: Dialect) -> String {
-    match system {
-        WorkSystem::Standard(_) => system.name(),
-        WorkSystem::Additional(number) => additional_system_name(dialect, usize::from(number)),
-    }
-}
-
 fn offset_finding(unset: &UnsetWorkOffset, machine: &Machine, made: &str) -> Diagnostic {
-    let name = |system| work_offset_name(system, machine.dialect);
+    let name = |system: WorkSystem| system.name(machine.dialect);
     let known: Vec<_> = machine.offsets.iter().map(|offset| name(offset.system)).collect();
     let given = match known.as_slice() {
         [] => format!("no work offset; all count as zero here, and the {made} are computed as with G54"),

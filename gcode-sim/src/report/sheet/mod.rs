@@ -210,7 +210,7 @@ impl ProgramSheet<'_> {
                 Some(values) => cell(values.join(" ")),
                 None => blank(),
             };
-            vec![cell(system.name()), value, blank()]
+            vec![cell(system.name(machine.dialect)), value, blank()]
         });
         html! {
             h2 { "Work zeros" }

@@ -26,7 +26,7 @@ use super::control::{Control, Observer};
 use super::data::{Register, SystemAxes, system_index};
 use super::flow::ProgramFlow;
 use super::registers::Registers;
-use gcode_lang::control::Settings;
+use gcode_lang::control::{Dialect, Settings};
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::g_codes::name;
 use gcode_lang::program::modes::{ModalGroup, WorkSystem};
@@ -62,16 +62,16 @@ pub enum OutsideValue {
 }
 
 impl OutsideValue {
-    /// Returns the value's name as programs write it: `#510`, `/2`, `G55`, `G55 B`, `H3`, `M21`.
-    pub fn name(self) -> String {
+    /// Returns the value's name as programs of a dialect write it: `#510`, `/2`, `G55`, `G55 B`, `H3`, `M21`.
+    pub fn name(self, dialect: Dialect) -> String {
         match self {
             Self::Variable(number) => format!("#{number}"),
             Self::Parameter(Some(number)) => format!("PRM[{number}]"),
             Self::Parameter(None) => "PRM".to_owned(),
             Self::BlockSkip(1) => "/".to_owned(),
             Self::BlockSkip(switch) => format!("/{switch}"),
-            Self::WorkOffset(system, None) => system.name(),
-            Self::WorkOffset(system, Some(letter)) => format!("{} {letter}", system.name()),
+            Self::WorkOffset(system, None) => system.name(dialect),
+            Self::WorkOffset(system, Some(letter)) => format!("{} {letter}", system.name(dialect)),
             Self::ExternalOffset => "EXT".to_owned(),
             Self::ToolLength(number) => format!("H{number}"),
             Self::CutterRadius(number) => format!("D{number}"),

@@ -166,6 +166,17 @@ pub enum OpKind {
     Alarm(LocatedAlarm),
 }
 
+impl OpKind {
+    /// Returns the words of a block, those behind `IF[…]` too; `None` for a block without words.
+    pub fn words(&self) -> Option<&Words> {
+        match self {
+            Self::Words(words) => Some(words),
+            Self::If { then, .. } => then.words(),
+            Self::Empty | Self::Statement(_) | Self::AssignDirect(_) | Self::Alarm(_) => None,
+        }
+    }
+}
+
 /// Macro statement. The discriminant has a byte of its own, as in [`OpKind`].
 #[derive(Debug)]
 #[repr(u8)]

@@ -1,5 +1,7 @@
 //! States of the modal groups: one type per group, each state with its G code × 10 as #4001… reads it.
 
+use crate::control::Dialect;
+
 macro_rules! groups {
     ($($name:ident = $number:literal, $what:literal;)+) => {
         /// Modal group of G codes.
@@ -175,10 +177,11 @@ impl WorkSystem {
         }
     }
 
-    /// Returns the code: `G55`, `G54.1 P3`.
-    pub fn name(self) -> String {
+    /// Returns the code in a dialect: `G55`, `G54.1 P3`, on a Haas `G154 P3`.
+    pub fn name(self, dialect: Dialect) -> String {
         match self {
             Self::Standard(_) => format!("G{}", self.code() / 10),
+            Self::Additional(number) if dialect == Dialect::HaasNgc => format!("G154 P{number}"),
             Self::Additional(number) => format!("G54.1 P{number}"),
         }
     }

@@ -109,12 +109,11 @@ fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> 
             if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
-            if word.letter == b'F' && codes.value(word.letter, number, settings, is_inch) >= MIN_INTENDED_FEED
-            {
+            if word.letter == b'F' && codes.value(word, number, settings, is_inch) >= MIN_INTENDED_FEED {
                 continue;
             }
             let written = spelled(word.letter, number);
-            let message = format!("{written} is {}", codes.meaning(word.letter, number, settings, is_inch));
+            let message = format!("{written} is {}", codes.meaning(word, number, settings, is_inch));
             let finding = unit.finding(&RULE.kind, block, message).with_span(word.span);
             found.push(finding.with_severity(severity).help(format!("write {written}.")));
         }
@@ -125,7 +124,7 @@ fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> 
 /// Returns true if a block of the program, of a piece also one before it, commands inch.
 pub(crate) fn is_in_inch(unit: &ProgramUnit<'_>) -> bool {
     let is_begun_in_inch = unit.piece.as_ref().is_some_and(|piece| piece.start.is_inch);
-    let words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
+    let words = unit.program.ops().iter().filter_map(|op| op.kind().words());
     is_begun_in_inch
         || words
             .flat_map(|words| words.g_codes().filter_map(|found| found.row_for_any()))
@@ -134,7 +133,7 @@ pub(crate) fn is_in_inch(unit: &ProgramUnit<'_>) -> bool {
 
 /// Iterates over the literals that are lengths, angles or seconds.
 fn numbers<'a>(unit: &'a ProgramUnit<'_>, settings: &'a Settings) -> impl Iterator<Item = Decimal> + 'a {
-    let words = unit.program.ops().iter().filter_map(|op| block_words(op.kind()));
+    let words = unit.program.ops().iter().filter_map(|op| op.kind().words());
     words.flat_map(|words| {
         let literal = |word: &LoweredWord| match word.value {
             WordOperand::Literal(number) => Some(number),
@@ -142,13 +141,6 @@ fn numbers<'a>(unit: &'a ProgramUnit<'_>, settings: &'a Settings) -> impl Iterat
         };
         BlockCodes::of(words).measured_words(settings).filter_map(literal).collect::<Vec<_>>()
     })
-}
-
-fn block_words(kind: &OpKind) -> Option<&Words> {
-    match kind {
-        OpKind::Words(words) => Some(words),
-        _ => None,
-    }
 }
 
 /// Words of a block, with what its G codes make of them.
@@ -228,28 +220,30 @@ impl<'w> BlockCodes<'w> {
     }
 
     /// Returns the value of a number with its unit, `0.003 mm`.
-    fn meaning(&self, letter: u8, number: Decimal, settings: &Settings, inch: bool) -> String {
+    fn meaning(&self, word: &LoweredWord, number: Decimal, settings: &Settings, inch: bool) -> String {
         let unit = match () {
             () if self.words.call().is_some() => "for the macro",
             () if self.measured == Measured::Seconds => "seconds",
-            () if self.is_angle(letter) => "degrees",
-            () if letter == b'F' && inch => "inch/min",
-            () if letter == b'F' => "mm/min",
+            () if self.is_angle(word) => "degrees",
+            () if word.letter == b'F' && inch => "inch/min",
+            () if word.letter == b'F' => "mm/min",
             () if inch => "inch",
             () => "mm",
         };
-        format!("{} {unit}", self.value(letter, number, settings, inch))
+        format!("{} {unit}", self.value(word, number, settings, inch))
     }
 
     /// Returns the value of a number in its unit.
-    fn value(&self, letter: u8, number: Decimal, settings: &Settings, inch: bool) -> f64 {
+    fn value(&self, word: &LoweredWord, number: Decimal, settings: &Settings, inch: bool) -> f64 {
         let is_dwell = self.measured == Measured::Seconds;
-        let finer = if inch && !self.is_angle(letter) && !is_dwell { 10.0 } else { 1.0 };
+        let finer = if inch && !self.is_angle(word) && !is_dwell { 10.0 } else { 1.0 };
         number.value() / (settings.increment.per_unit() * finer)
     }
 
-    fn is_angle(&self, letter: u8) -> bool {
-        match letter {
+    /// Returns true for a word in degrees; C behind a comma is the length of a chamfer.
+    fn is_angle(&self, word: &LoweredWord) -> bool {
+        match word.letter {
+            b'C' if word.comma => false,
             b'A' | b'B' | b'C' => true,
             letter => self.rows.iter().any(|row| row.facts.words.angles.has(letter)),
         }

@@ -18,6 +18,7 @@ mod no_such_variable;
 mod open_comment;
 mod refused_words;
 mod relation_symbol;
+mod repeated_address;
 mod round_brackets;
 mod rounded_pi;
 mod several_m_codes;
@@ -62,6 +63,7 @@ pub static ALL: &[&Rule] = &[
     &missing_program::RULE,
     &missing_argument::RULE,
     &several_m_codes::RULE,
+    &repeated_address::RULE,
     &no_such_variable::RULE,
     &constant_alarm::RULE,
     &missing_offset::RULE,

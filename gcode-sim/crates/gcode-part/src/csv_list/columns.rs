@@ -60,15 +60,17 @@ const COLUMNS: [(&str, &[&str]); 11] = [
     ("depth", &["tiefe", "深度", "孔深"]),
     ("diameter", &["dia", "d", "ø", "φ", "durchmesser", "直径", "孔径"]),
     ("features", &[]),
-    ("through", &[]),
+    ("through", &["thru", "thru hole", "through hole", "durchgehend", "durchgangsbohrung", "通孔"]),
 ];
 
 /// Other names of the columns of features, which `thread depth` begins with too.
-const FEATURE_NAMES: [(&str, FeatureKind); 5] = [
+const FEATURE_NAMES: [(&str, FeatureKind); 7] = [
     ("thread", FeatureKind::Tap),
     ("cbore", FeatureKind::Counterbore),
     ("c'bore", FeatureKind::Counterbore),
     ("csink", FeatureKind::Countersink),
+    ("c'sink", FeatureKind::Countersink),
+    ("csk", FeatureKind::Countersink),
     ("tap drill", FeatureKind::Drill),
 ];
 

@@ -39,6 +39,17 @@ fn separators_decimal_commas_case_units_and_a_line_with_the_separator_are_read()
     assert_eq!(list.note.as_deref(), Some("commas in numbers are decimal commas; unused: remark"));
 }
 
+/// The words of drawings: a column `thru`, `c'sink` and `csk` for a countersink.
+#[test]
+fn columns_have_the_words_of_drawings() {
+    let plain = read("x,y,depth,countersink,countersink angle,through\n1,2,20,10,90,yes\n");
+    for header in ["X,Y,DEPTH,C'SINK,C'SINK ANGLE,THRU", "x,y,depth,csk,csk angle,thru hole"] {
+        let list = read(&format!("{header}\n1,2,20,10,90,YES\n"));
+        assert_eq!(list.holes, plain.holes, "{header}");
+    }
+    assert!(plain.holes.holes[0].through);
+}
+
 /// 1.5 inch is 38.1 mm, 0.25 inch 6.35; an axis and an angle have no length, and M10x1.5 is metric everywhere.
 #[test]
 fn a_header_with_inch_makes_all_lengths_inches() {

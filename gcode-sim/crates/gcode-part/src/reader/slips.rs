@@ -7,10 +7,14 @@ use toml::Table;
 type Repair = (&'static str, fn(&str) -> Option<String>);
 
 /// Repairs of a value.
-const OF_VALUE: [Repair; 9] = [
+const OF_VALUE: [Repair; 13] = [
     ("text has straight quotes on both sides", straight_quotes),
+    ("a line ends without a comma", |value| value.strip_suffix(',').map(|rest| rest.trim().to_owned())),
     ("a number has a point, not a comma", decimal_point),
+    ("a number does not begin with 0", without_leading_zeros),
     ("a number has a digit on both sides of its point", digits_at_point),
+    ("a number has no letter or sign before it", without_mark),
+    ("a fraction is written as a decimal", decimal_fraction),
     ("a line ends without ';'", without_semicolon),
     ("a comment begins with #", with_comment),
     ("a number has no unit", without_unit),
@@ -55,6 +59,9 @@ fn of_line(line: &str, section: String) -> Option<String> {
     }
     if line.starts_with('[') {
         let (head, _) = line.split_once('#').unwrap_or((line, ""));
+        if let Some(quoted) = quoted_header(head.trim()) {
+            return Some(format!("{}: a name with a space has quotes; write {quoted}", head.trim()));
+        }
         let brackets = if line.starts_with("[[") { "]]" } else { "]" };
         let closed = format!("{}{brackets}", head.trim().trim_end_matches(']'));
         return is_toml(&closed)
@@ -81,6 +88,11 @@ fn of_line(line: &str, section: String) -> Option<String> {
         let right = right(&repair(code)?)?;
         Some(format!("key '{section}{key}' is {code}: {fault}; write {right}"))
     });
+    let repaired = repaired.or_else(|| {
+        let (first, second) = two_keys(code)?;
+        let first = right(first)?;
+        Some(format!("key '{section}{key}' is {code}: each key has a line of its own; write {first} and below it {second}"))
+    });
     repaired.or_else(|| {
         let number = spoilt_number(code)?;
         let which = if number == code { "it" } else { number };
@@ -106,6 +118,22 @@ fn is_meant_as_number(text: &str) -> bool {
         && text.chars().all(is_of_number)
 }
 
+/// Returns the header of a work offset with its name in quotes: `[offsets."G54.1 P1"]`.
+fn quoted_header(head: &str) -> Option<String> {
+    let inside = head.strip_prefix('[')?.strip_suffix(']')?;
+    let (table, name) = inside.split_once('.').filter(|(_, name)| name.contains(' '))?;
+    Some(format!("[{}.\"{}\"]", table.trim(), name.trim())).filter(|right| is_toml(right))
+}
+
+/// Returns the lines that two keys on one line are meant to be: `X = 1.0` and `Y = 2.0`.
+fn two_keys(value: &str) -> Option<(&str, String)> {
+    let (first, rest) = value.split_once(char::is_whitespace)?;
+    let (key, second) = rest.split_once('=')?;
+    let is_name =
+        |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    is_name(key.trim()).then(|| (first.trim_end_matches(','), format!("{} = {}", key.trim(), second.trim())))
+}
+
 fn is_toml(line: &str) -> bool {
     line.parse::<Table>().is_ok()
 }
@@ -119,6 +147,29 @@ fn straight_quotes(value: &str) -> Option<String> {
 fn decimal_point(value: &str) -> Option<String> {
     let right = value.replacen(',', ".", 1);
     (right != value && right.parse::<f64>().is_ok()).then(|| whole(&right))
+}
+
+/// Returns a whole number without the zeros before it, `01`.
+fn without_leading_zeros(value: &str) -> Option<String> {
+    let digits = value.trim_start_matches('0');
+    let is_whole = !value.is_empty() && value.chars().all(|c| c.is_ascii_digit());
+    is_whole.then(|| if digits.is_empty() { "0".to_owned() } else { digits.to_owned() })
+}
+
+/// Returns a number without the sign of a diameter, or the letter of a tool or offset before it: Ø6.8, T1.
+fn without_mark(value: &str) -> Option<String> {
+    let number = value.strip_prefix(['Ø', 'ø', 'Φ', 'φ', '⌀', '∅', 'T', 'H', 'D', 'R'])?.trim();
+    let number = decimal_point(number).unwrap_or_else(|| whole(number));
+    let begins = |c: char| c.is_ascii_digit() || c == '-';
+    (number.starts_with(begins) && number.parse::<f64>().is_ok()).then_some(number)
+}
+
+/// Returns a fraction as a decimal: 1/4 is 0.25.
+fn decimal_fraction(value: &str) -> Option<String> {
+    let (above, below) = value.split_once('/')?;
+    let whole_number = |text: &str| text.trim().parse::<u16>().ok();
+    let (above, below) = (whole_number(above)?, whole_number(below).filter(|below| *below > 0)?);
+    Some(format!("{:?}", f64::from(above) / f64::from(below)))
 }
 
 fn digits_at_point(value: &str) -> Option<String> {
@@ -206,6 +257,29 @@ mod tests {
             (
                 "length = -5.",
                 "key 'drill.length' is -5.: a number has a digit on both sides of its point; write length = -5.0",
+            ),
+            ("Z = -400.0,", "key 'drill.Z' is -400.0,: a line ends without a comma; write Z = -400.0"),
+            ("number = 01", "key 'drill.number' is 01: a number does not begin with 0; write number = 1"),
+            (
+                "number = T1",
+                "key 'drill.number' is T1: a number has no letter or sign before it; write number = 1",
+            ),
+            (
+                "diameter = Ø6,8",
+                "key 'drill.diameter' is Ø6,8: a number has no letter or sign before it; write diameter = 6.8",
+            ),
+            (
+                "diameter = 1/4",
+                "key 'drill.diameter' is 1/4: a fraction is written as a decimal; write diameter = 0.25",
+            ),
+            (
+                "X=-300.0 Y=-200.0",
+                "key 'drill.X' is -300.0 Y=-200.0: each key has a line of its own; write X = -300.0 and below it \
+                 Y = -200.0",
+            ),
+            (
+                "[offsets.G54.1 P1]",
+                "[offsets.G54.1 P1]: a name with a space has quotes; write [offsets.\"G54.1 P1\"]",
             ),
             ("length = 300 mm", "key 'drill.length' is 300 mm: a number has no unit; write length = 300"),
             ("length = 12,5mm", "key 'drill.length' is 12,5mm: a number has no unit; write length = 12.5"),

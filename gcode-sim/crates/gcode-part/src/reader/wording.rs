@@ -32,7 +32,12 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     if let Some((found, required)) =
         message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
     {
-        return format!("key '{name}' has {found} values: {required} are required");
+        let counts = (found.parse::<usize>().unwrap_or(0), required.parse::<usize>().unwrap_or(0));
+        let advice = match counts {
+            (found, required) if found == 2 * required => "; a number has a point, not a comma",
+            _ => "",
+        };
+        return format!("key '{name}' has {found} values: {required} are required{advice}");
     }
     if let Some((found, allowed)) =
         message.strip_prefix("unknown variant ").and_then(|rest| rest.split_once(", expected "))
@@ -62,8 +67,12 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     // A number that is written as text.
     let text = found.strip_prefix("string \"").and_then(|rest| rest.strip_suffix('"'));
     let number = text.map(|text| text.replacen(',', ".", 1)).filter(|number| number.parse::<f64>().is_ok());
+    let without_point = found.strip_prefix("floating point `").and_then(|rest| rest.strip_suffix(".0`"));
     let advice = match number.filter(|_| expected.contains("number")) {
         Some(number) => format!("; write {number} without quotes"),
+        None if expected == "a whole number" && without_point.is_some() => {
+            format!("; write {}", without_point.unwrap_or_default())
+        }
         None if found == "map" && expected.starts_with("a list") => format!("; write [[{name}]]"),
         None => String::new(),
     };
@@ -184,6 +193,12 @@ mod tests {
                 "1.0",
                 "invalid type: string \"x\", expected f64",
                 "key 'hole.radius' is string \"x\": a number is required",
+            ),
+            (
+                JOB,
+                "1.0",
+                "invalid type: floating point `1.0`, expected u32",
+                "key 'hole.radius' is floating point 1.0: a whole number is required; write 1",
             ),
             (JOB, "radius", "duplicate key", "duplicate key"),
             (

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use std::thread;
 
 use self::pass_strokes::PassStrokes;
-use super::causes::work_offset_name;
 use super::marked_events::{MarkedEvents, marks_of};
 use super::outside_text::names_outside;
 use super::{Request, Run, Simulation, set_up_control};
@@ -122,14 +121,7 @@ pub(super) fn of_flutes(request: &Request, run: &Run, tracker: FluteTracker<'_>)
 
 /// Returns the name of an outside value on the control of a run.
 fn name_of(value: OutsideValue, run: &Run) -> String {
-    let dialect = run.control.settings().dialect;
-    match value {
-        OutsideValue::WorkOffset(system, None) => work_offset_name(system, dialect),
-        OutsideValue::WorkOffset(system, Some(letter)) => {
-            format!("{} {letter}", work_offset_name(system, dialect))
-        }
-        _ => value.name(),
-    }
+    value.name(run.control.settings().dialect)
 }
 
 impl Dependencies {

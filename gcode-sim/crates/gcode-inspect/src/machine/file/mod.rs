@@ -380,6 +380,10 @@ kind = "axis"
 origin = [1, 2, 3, 4]
 => line 2: key 'part.origin' has 4 values: 3 are required
 
+[part]
+origin = [-300,5, 200,0, -400,0]
+=> line 2: key 'part.origin' has 6 values: 3 are required; a number has a point, not a comma
+
 [head]
 kind = "fixed"
 direction = [0, 1]

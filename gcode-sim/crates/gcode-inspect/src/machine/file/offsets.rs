@@ -3,6 +3,7 @@ use std::collections::BTreeSet;
 
 use super::AXES;
 use crate::machine::WorkOffset;
+use gcode_lang::control::Dialect;
 use gcode_lang::motion::{Axes, AxisIndex};
 use gcode_lang::program::modes::WorkSystem;
 use gcode_part::reader::bounds::WorkOffsetValue;
@@ -76,12 +77,12 @@ pub(super) fn work_offsets(
     offsets: <FileOffsets as FileKey>::Value,
 ) -> Result<Vec<WorkOffset>, FileError> {
     let axis = |system: WorkSystem, letter: char| {
-        axis_of(reader, axes, &format!("offsets.{}", system.name()), letter)
+        axis_of(reader, axes, &format!("offsets.{}", system.name(Dialect::default())), letter)
     };
     let mut systems = BTreeSet::new();
     let offset = |(system, values): (WorkSystem, Vec<(char, f64)>)| {
         if !systems.insert(system) {
-            let key = format!("offsets.{}", system.name());
+            let key = format!("offsets.{}", system.name(Dialect::default()));
             let message = format!("key '{key}': the offset is there twice, and G154 P1 is G54.1 P1");
             return Err(reader.error_at(&key, message));
         }

@@ -108,7 +108,7 @@ fn missing_origin(machine: &Machine, by: &Vector3<f64>) -> Option<String> {
         .offsets
         .iter()
         .find(|offset| [(b'X', by.x), (b'Y', by.y)].into_iter().all(|part| is_shift(part, &offset.values)))?;
-    let (name, values) = (offset.system.name(), &offset.values);
+    let (name, values) = (offset.system.name(machine.dialect), &offset.values);
     let [x, y, z] = [b'X', b'Y', b'Z'].map(|letter| value(values, letter).unwrap_or(0.0));
     Some(format!(
         "the machine file states {name} and no origin of the part: write below [part] origin = [{x:?}, {y:?}, {z:?}], the \

@@ -1,0 +1,69 @@
+//! Rule: an address twice in one block with two values. The last counts, or with AD2 the block raises PS5074.
+use gcode_lang::program::{LoweredWord, WordOperand};
+
+use crate::prelude::*;
+
+pub(super) static RULE: Rule =
+    Rule::of_block("repeated-address", Severity::Warning, "an address twice in one block", find);
+
+fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> Vec<Diagnostic> {
+    let words = unit.op(block).kind().words();
+    // A block skip inside leaves one of the two.
+    let Some(words) = words.filter(|words| words.form_if_skipped().is_none()) else { return Vec::new() };
+    let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
+    // I, J and K of a macro call repeat: argument specification II.
+    let arguments = arguments.filter(|word| !matches!(word.letter, b'I'..=b'K'));
+    let mut found = in_words(words.list.iter().filter(|word| !matches!(word.letter, b'G' | b'M')));
+    found.extend(in_words(arguments));
+    let finding = |(lost, kept): (&LoweredWord, &LoweredWord)| {
+        let (letter, alarms) = (char::from(kept.letter), context.settings.alarms_on_repeated_address);
+        let alarm = Alarm::RepeatedAddress { letter }.located_at(kept.span);
+        let is_argument = !words.list.iter().any(|word| std::ptr::eq(word, kept));
+        let finding = match alarms && !is_argument {
+            true => context.alarm_finding(unit, &RULE.kind, block, &alarm).with_severity(Severity::Error),
+            false => {
+                let message = format!("{letter} is there twice in the block: the last counts");
+                unit.finding(&RULE.kind, block, message).with_span(kept.span)
+            }
+        };
+        finding.label(lost.span, "without effect").help("correct the letter, or remove one of the two")
+    };
+    found.into_iter().map(finding).collect()
+}
+
+/// Returns the words whose letter a word before them has with another value: the lost one and the one that counts.
+fn in_words<'w>(words: impl Iterator<Item = &'w LoweredWord>) -> Vec<(&'w LoweredWord, &'w LoweredWord)> {
+    let number = |word: &LoweredWord| match word.value {
+        WordOperand::Literal(number) => Some(number.value()),
+        _ => None,
+    };
+    let (mut before, mut found) = (Vec::<&LoweredWord>::new(), Vec::new());
+    for word in words {
+        let same = |other: &&&LoweredWord| (other.letter, other.comma) == (word.letter, word.comma);
+        if let Some(lost) = before.iter().rev().find(same) {
+            let is_equal = number(lost).is_some_and(|value| Some(value) == number(word));
+            found.extend((!is_equal).then_some((*lost, word)));
+        }
+        before.push(word);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::RULE;
+
+    #[test]
+    fn an_address_with_two_values_is_reported() {
+        let text = "O1\nG1 X10. X-40. F100\nG65 P2 A1. B2. A3.\nG3 X-50. X#1 R40.\nM30\nO2\nM99\n";
+        assert_eq!(lines(&RULE, text), [2, 3, 4]);
+        assert_eq!(messages(&RULE, text)[0], "X is there twice in the block: the last counts");
+    }
+
+    #[test]
+    fn codes_repeated_arguments_equal_values_and_a_skip_inside_are_right() {
+        let text = "O1\nG90 G0 G17 M8 X1.\nG65 P2 I1. I2. J3. I4.\nG1 X5. Y2. X5. F9.\nX1. /X2.\nG1 X3. ,C1. C2.\nM30\nO2\nM99\n";
+        assert_eq!(lines(&RULE, text), NOWHERE);
+    }
+}
