@@ -24,6 +24,7 @@ pub(crate) fn run(case: &Case) {
         let (program, expected) =
             rest.rsplit_once("-- ").unwrap_or_else(|| panic!("{name}: no end is expected"));
         assert!(!names.contains(&name), "{}: two cases are called '{name}'", case.name());
+        assert!(!program.contains("\n-- "), "{}: '{name}' has two ends", case.name());
         names.push(name);
         let head = if program.starts_with(['O', ':', '%']) { "" } else { "O0001\n" };
         let program = format!("{head}{program}");
