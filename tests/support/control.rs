@@ -9,7 +9,8 @@
 //! -- end=normal; #100=1
 //! ```
 //!
-//! A case with a `machine.toml` runs on the rotary axes of that machine file. A program that doesn't begin with O, `:` or `%` is O0001. [`crate::expect`] has the words behind `--`.
+//! A case with a `machine.toml` runs on the rotary axes of that machine file. A program that doesn't begin with O, `:` or `%` is
+//! O0001. [`crate::expect`] has the words behind `--`.
 use gcode_inspect::machine::Machine;
 
 use crate::{Case, expect};

@@ -12,8 +12,8 @@
 //! -- bounds #100: 0 2.236
 //! ```
 //!
-//! Lines that begin with `# ` are remarks. A program that doesn't begin with O is O0001. `where`, `call`, `max-blocks N`, `control KEY=VALUE` and `widen PART` may be left out. `bounds` has the least and the largest value
-//! that a run gives: the bounds must hold both, and be wider by 5 % at most. The counterexample of a refuted claim must lie in the
+//! Lines that begin with `# ` are remarks. A program that doesn't begin with O is O0001. `where`, `call`, `max-blocks N`,
+//! `control KEY=VALUE` and `widen PART` may be left out. `bounds` has the least and the largest value that a run gives: the bounds must hold both, and be wider by 5 % at most. The counterexample of a refuted claim must lie in the
 //! ranges, and the control must refute the claim when it runs that point alone.
 use std::time::{Duration, Instant};
 

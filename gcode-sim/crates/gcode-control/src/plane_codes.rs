@@ -182,7 +182,8 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// G68 with I, J or K: rotates by R about the direction I J K through X Y Z, the new origin. A second G68 counts in the first.
+    /// G68 with I, J or K: rotates by R about the direction I J K through X Y Z, the new origin. A second G68 counts in the
+    /// first.
     pub(super) fn plan_rotation_in_space(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let format = |what| Alarm::SpaceRotation(what).located_at(self.block);
         let axes = self.locate(self.slides())?;

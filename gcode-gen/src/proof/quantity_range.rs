@@ -62,13 +62,13 @@ impl Quantity {
 
 /// A quantity with its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Over {
+pub(crate) struct QuantityRange {
     pub(crate) quantity: Quantity,
     pub(crate) low: f64,
     pub(crate) high: f64,
 }
 
-impl Over {
+impl QuantityRange {
     /// Parses ranges, each of another quantity; the message of one that can't be used.
     pub(crate) fn parse_all(texts: &[String]) -> Result<Vec<Self>, String> {
         let mut all: Vec<Self> = Vec::new();
@@ -120,8 +120,8 @@ mod tests {
     #[test]
     fn a_range_names_a_key_of_the_job() {
         let texts = ["hole.radius=0..1100", "hole.azimuth = -180 .. 180"].map(str::to_owned);
-        let all = Over::parse_all(&texts).unwrap();
-        assert_eq!(all[1], Over { quantity: Quantity::Azimuth, low: -180.0, high: 180.0 });
+        let all = QuantityRange::parse_all(&texts).unwrap();
+        assert_eq!(all[1], QuantityRange { quantity: Quantity::Azimuth, low: -180.0, high: 180.0 });
         for (text, why) in [
             ("hole.radius", "write a key"),
             ("hole.colour=0..1", "is none of"),
@@ -131,9 +131,11 @@ mod tests {
             ("hole.radius=-1..1", "below 0"),
             ("surface.a=0..1", "below 0.001"),
         ] {
-            let error = Over::parse_all(&[text.to_owned()]).unwrap_err();
+            let error = QuantityRange::parse_all(&[text.to_owned()]).unwrap_err();
             assert!(error.contains(why), "{error}");
         }
-        assert!(Over::parse_all(&[texts[0].clone(), texts[0].clone()]).unwrap_err().contains("already"));
+        assert!(
+            QuantityRange::parse_all(&[texts[0].clone(), texts[0].clone()]).unwrap_err().contains("already")
+        );
     }
 }
