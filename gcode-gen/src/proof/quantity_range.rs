@@ -91,14 +91,9 @@ impl QuantityRange {
             let keys = Quantity::ALL.map(Quantity::key).join(", ");
             format!("--over {text}: '{}' is none of {keys}", key.trim())
         })?;
-        let limit = |limit: &str| limit.trim().parse::<f64>().ok().filter(|limit| limit.abs() <= 1e5);
-        let limits =
-            limits.split_once("..").and_then(|(low, high)| Some((limit(low)? + 0.0, limit(high)? + 0.0)));
-        let (low, high) = limits
+        let [low, high] = parse_limits(limits)
             .ok_or_else(|| format!("--over {text}: write two numbers up to 100000, '{key}=0..1100'"))?;
-        if low > high {
-            return Err(format!("--over {text}: the lower limit is above the upper one: exchange them"));
-        }
+        check_order(text, [low, high])?;
         let least = match quantity {
             Quantity::Azimuth => f64::NEG_INFINITY,
             Quantity::Radius => 0.0,
@@ -110,6 +105,21 @@ impl QuantityRange {
             ));
         }
         Ok(Self { quantity, low, high })
+    }
+}
+
+/// Parses the limits of a range, `0..1100`; `None` for others than two numbers up to 100000. −0 becomes 0.
+pub(super) fn parse_limits(text: &str) -> Option<[f64; 2]> {
+    let limit = |limit: &str| limit.trim().parse::<f64>().ok().filter(|limit| limit.abs() <= 1e5);
+    let (low, high) = text.split_once("..")?;
+    Some([limit(low)? + 0.0, limit(high)? + 0.0])
+}
+
+/// Refuses a range whose lower limit is above the upper one; `text` is the range as written.
+pub(super) fn check_order(text: &str, [low, high]: [f64; 2]) -> Result<(), String> {
+    match low <= high {
+        true => Ok(()),
+        false => Err(format!("--over {text}: the lower limit is above the upper one: exchange them")),
     }
 }
 
