@@ -2,8 +2,8 @@
 //!
 //! **In:** a job file of one of the [`families`]. **Out:** a [`package::Package`] of programs and a machine file;
 //! [`check`] runs it as the control would and verifies its effect against the job's geometry, [`sheet`] makes the
-//! set-up sheet, [`proof`] proves the macros for all values of a job's quantities, and [`report`] formats the result. [`cli`] writes the files if the verdict is a pass. A module
-//! uses only those listed above it.
+//! set-up sheet, [`proof`] proves the macros for all values of a job's quantities, and [`report`] formats the
+//! result. [`cli`] writes the files if the verdict is a pass. A module uses only those listed above it.
 //!
 //! ```
 //! use gcode_gen::check::check;

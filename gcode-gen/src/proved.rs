@@ -70,15 +70,14 @@ mod tests {
     use std::num::NonZeroUsize;
     use std::time::Duration;
 
-    use gcode_control::Control;
     use gcode_inspect::machine::Machine;
     use gcode_part::job::Job;
-    use gcode_prove::{Ask, Setup, Verdict, Watch, prove};
+    use gcode_prove::{Ask, Verdict, Watch, prove};
     use gcode_session::Request;
 
     use super::*;
-    use crate::check::Programs;
     use crate::families::{ALL, emit};
+    use crate::proof::controls::Controls;
     use crate::proof::report::VerdictName;
     use crate::proof::{ProofRequest, prove_job};
 
@@ -88,20 +87,6 @@ mod tests {
         let packages = jobs.map(|job| (emit(&job), job)).map(|(package, job)| (job, package));
         let mut found = packages.filter(|(_, package)| digests(package).contains_key(name));
         found.next().unwrap_or_else(|| panic!("no family has {name}"))
-    }
-
-    struct Controls<'a>(Request, &'a str, &'a Package);
-
-    impl<'a> Setup for Controls<'a> {
-        type Library = Programs<'a>;
-
-        fn control(&self, _: &[(String, String)]) -> Result<Control, String> {
-            gcode_session::set_up(&self.0, Some(self.1)).map_err(|error| error.to_string())
-        }
-
-        fn library(&self) -> Programs<'a> {
-            Programs(self.2)
-        }
     }
 
     fn texts(entry: &Entry, key: &str) -> Vec<String> {
@@ -135,7 +120,8 @@ mod tests {
             .map(|text| text.trim_start_matches('#').split_once('=').unwrap())
             .map(|(variable, value)| (variable.parse().unwrap(), value.parse().unwrap()))
             .collect();
-        let controls = Controls(request, entry.way["call"].as_str().unwrap(), package);
+        let call = entry.way["call"].as_str().unwrap().to_owned();
+        let controls = Controls { request, call: Some(call), programs: package };
         let ask = Ask {
             ranges: texts(entry, "range"),
             conditions: texts(entry, "where"),

@@ -69,6 +69,8 @@ pub(crate) fn run(case: &Case) {
         names.push(name);
         let lines: Vec<&str> =
             lines.lines().filter(|line| !line.is_empty() && !line.starts_with("# ")).collect();
+        let is_expectation = |line: &&str| ["->", "<-", "idle "].iter().any(|word| line.starts_with(word));
+        assert!(lines.iter().any(is_expectation), "{}: '{name}' expects nothing", case.name());
         let is_program = |line: &&&str| {
             !["->", "<-", "   ", "idle ", "machine "].iter().any(|word| line.starts_with(word))
                 && !line.contains(" =>")

@@ -9,7 +9,8 @@
 //! -- end=normal; #100=1
 //! ```
 //!
-//! A case with a `machine.toml` runs on the rotary axes of that machine file. A program that doesn't begin with O, `:` or `%` is O0001. [`crate::expect`] has the words behind `--`.
+//! A case with a `machine.toml` runs on the rotary axes of that machine file. A program that doesn't begin with O, `:` or `%` is
+//! O0001. [`crate::expect`] has the words behind `--`.
 use gcode_inspect::machine::Machine;
 
 use crate::{Case, expect};
@@ -24,6 +25,7 @@ pub(crate) fn run(case: &Case) {
         let (program, expected) =
             rest.rsplit_once("-- ").unwrap_or_else(|| panic!("{name}: no end is expected"));
         assert!(!names.contains(&name), "{}: two cases are called '{name}'", case.name());
+        assert!(!program.contains("\n-- "), "{}: '{name}' has two ends", case.name());
         names.push(name);
         let head = if program.starts_with(['O', ':', '%']) { "" } else { "O0001\n" };
         let program = format!("{head}{program}");

@@ -104,13 +104,13 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
             let centre = format!("{a}{:.4} {b}{:.4}", arc.centre.0, arc.centre.1);
             format!("arc   {} at {:.1}, {:.3} degrees round {centre}", at(to), rate.0, arc.sweep.0)
         }
-        EventKind::Skip { to, rate, has_signal: touched } => {
-            format!("skip  {} at {:.1}, {}", at(to), rate.0, if *touched { "signal" } else { "no signal" })
+        EventKind::Skip { to, rate, has_signal } => {
+            format!("skip  {} at {:.1}, {}", at(to), rate.0, if *has_signal { "signal" } else { "no signal" })
         }
         EventKind::Dwell { time } => format!("dwell {:.3} s", time.0),
         EventKind::ToolSelected { number } => format!("tool {number} selected"),
         EventKind::ToolChange { number } => format!("tool {number}"),
-        EventKind::ToolLength { offset, compensation: by, .. } => match by {
+        EventKind::ToolLength { offset, compensation, .. } => match compensation {
             LengthCompensation::Off => format!("tool length {}", at(offset)),
             LengthCompensation::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
             LengthCompensation::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
@@ -119,14 +119,14 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
         EventKind::PositionUnknown { axes: unknown } => {
             format!("not placed on the part: {}", axes.names(unknown.at_machine_position))
         }
-        EventKind::Spindle { direction: turning, speed, .. } => {
-            format!("spindle {turning:?} {}", speed.0).to_lowercase()
+        EventKind::Spindle { direction, speed, .. } => {
+            format!("spindle {direction:?} {}", speed.0).to_lowercase()
         }
-        EventKind::Coolant { is_on: on, .. } => format!("coolant {}", if *on { "on" } else { "off" }),
+        EventKind::Coolant { is_on, .. } => format!("coolant {}", if *is_on { "on" } else { "off" }),
         EventKind::Auxiliary { code } => format!("M{code:02} for the machine builder"),
-        EventKind::Stop { kind, text, variables: named } => {
-            let named: Vec<_> = named.iter().map(|(n, value)| format!(" #{n} is {value:.4}")).collect();
-            format!("stop {kind:?} {text}{}", named.concat()).trim_end().to_owned()
+        EventKind::Stop { kind, text, variables } => {
+            let values: Vec<_> = variables.iter().map(|(n, value)| format!(" #{n} is {value:.4}")).collect();
+            format!("stop {kind:?} {text}{}", values.concat()).trim_end().to_owned()
         }
     }
 }

@@ -18,6 +18,7 @@ pub mod expect;
 pub mod fuzz;
 pub mod fuzz_sessions;
 mod r#gen;
+mod json;
 mod lsp;
 mod macros;
 mod picture;

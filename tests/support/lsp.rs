@@ -8,9 +8,8 @@
 //! - `change O1.nc VERSION`: then lines `2:0-2:4 "text"` or `all "text"`, each a change. `close O1.nc`.
 //! - `disk O1.nc`: writes the lines behind `|` to the disk and says so; `disk O1.nc silently` says nothing.
 //! - `diagnostics O1.nc [VERSION]`: waits for them; then lines `2:0-2:4 error missing-n`, `~words` of the message behind.
-//! - `-> METHOD {…}` and `<- {…}` or `<- error -32602 ~words`: a request and its answer. `$O1.nc` is the URI of a file. In an
-//!   answer, objects may have further keys, lists that begin with `"..."` further items, and a text `~words` contains
-//!   these words.
+//! - `-> METHOD {…}` and `<- {…}` or `<- error -32602 ~words`: a request and its answer, which [`crate::json`] compares. `$O1.nc`
+//!   is the URI of a file.
 //! - `notify METHOD {…}`; `server METHOD ~words`: waits for a message of the server; `reply METHOD {…}`: answers its request.
 //! - `eol crlf`: lines behind `|` end with CR LF from here on.
 use std::collections::VecDeque;
@@ -24,7 +23,7 @@ use gcode_sim::cli::lsp::EditorHost;
 use lsp_server::{Connection, Message, Notification, Request, Response};
 use serde_json::{Value, json};
 
-use crate::{Case, copy_folder};
+use crate::{Case, copy_folder, json};
 
 /// Longest time until an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -276,7 +275,7 @@ impl<'a> Session<'a> {
         }
         let expected = self.json_of(rest, body);
         let result = answer.result.unwrap_or_else(|| panic!("{}: {:?}", self.place, answer.error));
-        if let Err(path) = compare(&expected, &result) {
+        if let Err(path) = json::compare(&expected, &result) {
             panic!("{}\nat {path}:\n{}", self.place, serde_json::to_string_pretty(&result).unwrap());
         }
     }
@@ -349,41 +348,5 @@ fn change(line: &str) -> Value {
             json!({ "range": { "start": position(start), "end": position(end) }, "text": text })
         }
         None => json!({ "text": text }),
-    }
-}
-
-/// Compares an answer with what is expected; an error is the path of the first difference.
-fn compare(expected: &Value, found: &Value) -> Result<(), String> {
-    match (expected, found) {
-        (Value::String(expected), Value::String(found)) if expected.starts_with('~') => {
-            let words = &expected[1..];
-            if found.contains(words) { Ok(()) } else { Err(format!(" (without '{words}': '{found}')")) }
-        }
-        (Value::Object(expected), Value::Object(found)) => {
-            for (key, value) in expected {
-                let found = found.get(key).unwrap_or(&Value::Null);
-                compare(value, found).map_err(|path| format!(".{key}{path}"))?;
-            }
-            Ok(())
-        }
-        // Among others.
-        (Value::Array(expected), Value::Array(found)) if expected.first() == Some(&json!("...")) => {
-            let is_there = |item: &&Value| found.iter().any(|found| compare(item, found).is_ok());
-            match expected[1..].iter().find(|item| !is_there(item)) {
-                Some(missing) => Err(format!(" (without {missing})")),
-                None => Ok(()),
-            }
-        }
-        (Value::Array(expected), Value::Array(found)) => {
-            if expected.len() != found.len() {
-                return Err(format!(" ({} items instead of {})", found.len(), expected.len()));
-            }
-            for (index, (expected, found)) in expected.iter().zip(found).enumerate() {
-                compare(expected, found).map_err(|path| format!("[{index}]{path}"))?;
-            }
-            Ok(())
-        }
-        _ if expected == found => Ok(()),
-        _ => Err(format!(" ({found} instead of {expected})")),
     }
 }

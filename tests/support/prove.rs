@@ -12,8 +12,8 @@
 //! -- bounds #100: 0 2.236
 //! ```
 //!
-//! Lines that begin with `# ` are remarks. A program that doesn't begin with O is O0001. `where`, `call`, `max-blocks N`, `control KEY=VALUE` and `widen PART` may be left out. `bounds` has the least and the largest value
-//! that a run gives: the bounds must hold both, and be wider by 5 % at most. The counterexample of a refuted claim must lie in the
+//! Lines that begin with `# ` are remarks. A program that doesn't begin with O is O0001. `where`, `call`, `max-blocks N`,
+//! `control KEY=VALUE` and `widen PART` may be left out. `bounds` has the least and the largest value that a run gives: the bounds must hold both, and be wider by 5 % at most. The counterexample of a refuted claim must lie in the
 //! ranges, and the control must refute the claim when it runs that point alone.
 use std::time::{Duration, Instant};
 
@@ -103,6 +103,8 @@ impl<'t> Rows<'t> {
 
     /// Returns what differs from an answer.
     fn differences(&self, answer: &Answer, controls: &Controls) -> Vec<String> {
+        assert_eq!(answer.claims.len(), self.verdicts.len(), "each claim has an answer");
+        assert_eq!(answer.bounds.len(), self.bounds.len(), "each bounds row has an answer");
         let mut wrong = Vec::new();
         for (claim, expected) in answer.claims.iter().zip(&self.verdicts) {
             let verdict = match claim.verdict {
@@ -117,10 +119,14 @@ impl<'t> Rows<'t> {
                     claim.claim, answer.unfollowed
                 ));
             }
-            if let Some(point) = &claim.counterexample
-                && !self.is_refuted(&claim.claim, point, controls)
-            {
-                wrong.push(format!("{}: the control doesn't refute it at {point:?}", claim.claim));
+            match &claim.counterexample {
+                Some(point) if !self.is_refuted(&claim.claim, point, controls) => {
+                    wrong.push(format!("{}: the control doesn't refute it at {point:?}", claim.claim));
+                }
+                None if claim.verdict == Verdict::Refuted => {
+                    wrong.push(format!("{} has no counterexample", claim.claim));
+                }
+                _ => {}
             }
         }
         for (bounds, (low, high)) in answer.bounds.iter().zip(&self.bounds) {
@@ -145,10 +151,14 @@ impl<'t> Rows<'t> {
             bounds: Vec::new(),
             ..self.ask.clone()
         };
-        let is_inside = self.ask.ranges.iter().zip(point).all(|(range, (_, value))| {
-            let (low, high) = range.split_once('=').unwrap().1.split_once("..").unwrap();
-            (low.parse::<f64>().unwrap()..=high.parse::<f64>().unwrap()).contains(value)
-        });
+        let is_within = |(range, (variable, value)): (&String, &(u32, f64))| {
+            let (name, range) = range.split_once('=').unwrap();
+            let (low, high) = range.split_once("..").unwrap();
+            *name == format!("#{variable}")
+                && (low.parse::<f64>().unwrap()..=high.parse::<f64>().unwrap()).contains(value)
+        };
+        let is_inside =
+            self.ask.ranges.len() == point.len() && self.ask.ranges.iter().zip(point).all(is_within);
         let answer = prove(controls, &ask, &Watch::new(&|| Duration::ZERO, LIMIT)).unwrap();
         is_inside && answer.verdict == Verdict::Refuted
     }

@@ -21,8 +21,8 @@ pub fn html(job: &str, rates: Option<&Rates>) -> String {
     Sheet::new(&job, &package, &checked, rates, Vec::new()).unwrap().html()
 }
 
-/// The visible text: a line for each row or paragraph, bars between cells. Hashes are shown by their length alone, for they change with
-/// every byte of a macro.
+/// The visible text: a line for each row or paragraph, bars between cells. Hashes are shown by their length alone, for they
+/// change with every byte of a macro.
 fn text(html: &str) -> String {
     let body = html.split_once("<body>").unwrap().1;
     let mut text = String::new();

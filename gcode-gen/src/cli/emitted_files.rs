@@ -1,4 +1,5 @@
-//! The programs and machine files that `emit` has written into a folder, with their SHA-256: a file that has changed since, or that
+//! The programs and machine files that `emit` has written into a folder, with their SHA-256: a file that has changed since, or
+//! that
 //! `emit` did not write, is kept.
 #![expect(clippy::disallowed_methods, reason = "the command line finds files")]
 

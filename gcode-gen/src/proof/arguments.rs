@@ -9,6 +9,7 @@ use gcode_session::Request;
 
 use super::ProofRequest;
 use super::controls::Controls;
+use super::quantity_range::{check_order, parse_limits};
 use super::report::{CaseReport, ClaimReport, JobProof, ranges_of};
 use super::statements::Statements;
 use crate::package::{Program, stem};
@@ -28,22 +29,14 @@ impl ArgumentRange {
             || format!("--over {text}: write a macro, its argument and the limits, 'O8301.A=1..10'");
         let parsed = text.split_once('=').and_then(|(name, limits)| {
             let (program, letter) = name.trim().strip_prefix('O')?.split_once('.')?;
-            let (low, high) = limits.split_once("..")?;
-            let limit = |limit: &str| limit.trim().parse::<f64>().ok().filter(|limit| limit.abs() <= 1e5);
+            let [low, high] = parse_limits(limits)?;
             let mut letters = letter.chars();
             let letter = letters.next().filter(|letter| letter.is_ascii_uppercase() && *letter != 'P')?;
-            let range = Self {
-                program: program.parse().ok()?,
-                letter,
-                low: limit(low)? + 0.0,
-                high: limit(high)? + 0.0,
-            };
+            let range = Self { program: program.parse().ok()?, letter, low, high };
             letters.next().is_none().then_some(range)
         });
         let range = parsed.ok_or_else(unreadable)?;
-        if range.low > range.high {
-            return Err(format!("--over {text}: the lower limit is above the upper one: exchange them"));
-        }
+        check_order(text, [range.low, range.high])?;
         Ok(range)
     }
 

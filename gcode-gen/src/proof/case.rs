@@ -13,8 +13,8 @@ use super::ProofRequest;
 use super::boxes::CaseBounds;
 use super::controls::Controls;
 use super::hole_path::PinAxes;
-use super::over::{Over, Quantity};
 use super::position::NominalHole;
+use super::quantity_range::{Quantity, QuantityRange};
 use super::report::{CaseReport, ClaimReport, Point, RangeReport, named, ranges_of};
 use super::sample::{SampledHole, sampled};
 use super::statements::Statements;
@@ -27,7 +27,7 @@ pub(super) struct Case<'a> {
     pub(super) job: &'a PinHoles,
     pub(super) hole: &'a HoleSpec,
     pub(super) tool: &'a Tool,
-    pub(super) overs: &'a [Over],
+    pub(super) overs: &'a [QuantityRange],
     pub(super) tolerances: &'a [f64],
     /// Time since the start at which the case ends.
     pub(super) limit: Duration,
@@ -246,7 +246,7 @@ impl Case<'_> {
 
     /// Returns a box in the quantities that are left open.
     fn ranges(&self, domain: &gcode_enclosure::Domain) -> RangeReport {
-        let range = |over: &Over| {
+        let range = |over: &QuantityRange| {
             let place = Quantity::ALL.iter().position(|one| *one == over.quantity)?;
             let range = domain.range(place);
             Some((over.quantity.key().to_owned(), [range.lo(), range.hi()]))

@@ -7,11 +7,11 @@ use crate::check::Programs;
 use crate::package::Package;
 
 /// Source of controls that run a program, or a block instead of it.
-pub(super) struct Controls<'a> {
-    pub(super) request: Request,
+pub(crate) struct Controls<'a> {
+    pub(crate) request: Request,
     /// Block that is run instead of the program.
-    pub(super) call: Option<String>,
-    pub(super) programs: &'a Package,
+    pub(crate) call: Option<String>,
+    pub(crate) programs: &'a Package,
 }
 
 impl<'a> Setup for Controls<'a> {

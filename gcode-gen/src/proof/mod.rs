@@ -6,10 +6,10 @@
 mod arguments;
 mod boxes;
 mod case;
-mod controls;
+pub(crate) mod controls;
 mod hole_path;
-mod over;
 mod position;
+mod quantity_range;
 mod rapids;
 pub mod report;
 mod sample;
@@ -23,7 +23,7 @@ use std::time::Duration;
 use gcode_part::job::{AxisDirection, HoleSpec, Job, PinHoles, Tool};
 
 use self::case::Case;
-use self::over::{Over, Quantity};
+use self::quantity_range::{Quantity, QuantityRange};
 use self::report::{CaseReport, JobProof};
 use crate::package::Package;
 
@@ -53,7 +53,7 @@ pub fn prove_job(request: &ProofRequest<'_>) -> Result<JobProof, String> {
     let Job::PinHoles(job) = request.job else {
         return arguments::prove_arguments(request);
     };
-    let overs = Over::parse_all(request.over)?;
+    let overs = QuantityRange::parse_all(request.over)?;
     if overs.is_empty() {
         return Err("nothing is left open: give --over, 'hole.radius=0..1100'".to_owned());
     }
@@ -74,7 +74,7 @@ pub fn prove_job(request: &ProofRequest<'_>) -> Result<JobProof, String> {
 }
 
 /// Returns a hole and a tool for each call that differs in more than the quantities left open.
-fn kinds<'j>(job: &'j PinHoles, overs: &[Over]) -> Vec<(&'j HoleSpec, &'j Tool)> {
+fn kinds<'j>(job: &'j PinHoles, overs: &[QuantityRange]) -> Vec<(&'j HoleSpec, &'j Tool)> {
     let fixed = |quantity: &Quantity| overs.iter().all(|over| over.quantity != *quantity);
     let key = |hole: &HoleSpec, tool: &Tool| {
         let values = Quantity::ALL.into_iter().filter(fixed).map(|quantity| quantity.of(job, hole).to_bits());

@@ -3,10 +3,10 @@
 //! The tool starts clear of the part, in the plane Z0, its tip at X and Y from 0 on. A move on which neither X nor Y falls leads
 //! away, whatever path the axes take: no point of the part is beyond a point outside in both. The head turns only where its pivot
 //! is so high that the tip is above the part at any angle. A move between two points above the hole has no point below the nearer
-//! one in either coordinate. Above a hole along the normal these are E + c·d and E + v·d with 0 ≤ c ≤ v: the surface lies below its
-//! tangent plane at the entry E, so that the tip is c away, less the rounding. Above an axial hole the metal under the tool is
-//! highest at the edge next to the axis, e = max(r − D/2, 0): a tip at y(e) + c is c above it; where rounding moves it by δ towards
-//! the axis the surface is higher by no more than b·√(2δ/a), as y(e − δ)² ≤ y(e)² + 2·b²·δ/a.
+//! one in either coordinate. Above a hole along the normal these are E + c·d and E + v·d with 0 ≤ c ≤ v: the surface lies below
+//! its tangent plane at the entry E, so that the tip is c away, less the rounding. Above an axial hole the metal under the tool
+//! is highest at the edge next to the axis, e = max(r − D/2, 0): a tip at y(e) + c is c above it; where rounding moves it by δ
+//! towards the axis the surface is higher by no more than b·√(2δ/a), as y(e − δ)² ≤ y(e)² + 2·b²·δ/a.
 use gcode_enclosure::{Condition, NodeId, Relation};
 use gcode_prove::{ExactForms, Polynomial};
 

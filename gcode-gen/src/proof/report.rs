@@ -6,7 +6,7 @@ use gcode_prove::Verdict;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::over::Over;
+use super::quantity_range::QuantityRange;
 
 /// Values of quantities.
 pub(super) type Point = BTreeMap<String, f64>;
@@ -154,7 +154,7 @@ fn words(point: &Point) -> String {
 }
 
 /// Returns `hole.radius 3, surface.a 500`.
-pub(super) fn named(overs: &[Over], values: &[f64]) -> String {
+pub(super) fn named(overs: &[QuantityRange], values: &[f64]) -> String {
     let all = overs.iter().zip(values).map(|(over, value)| format!("{} {value}", over.quantity.key()));
     all.collect::<Vec<_>>().join(", ")
 }

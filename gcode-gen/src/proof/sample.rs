@@ -2,7 +2,7 @@
 use gcode_inspect::verify::Ending;
 use gcode_part::job::{HoleSpec, Job, PinHoles};
 
-use super::over::{Over, Quantity};
+use super::quantity_range::{Quantity, QuantityRange};
 use crate::check::{PackageVerdict, check};
 use crate::families::emit;
 use crate::package::Package;
@@ -24,7 +24,7 @@ const SPREAD: u32 = 40;
 pub(super) fn sampled(
     job: &PinHoles,
     hole: &HoleSpec,
-    overs: &[Over],
+    overs: &[QuantityRange],
     macros: &Package,
     is_over: &dyn Fn() -> bool,
 ) -> Vec<SampledHole> {
@@ -40,13 +40,13 @@ pub(super) fn sampled(
 
 /// Returns the corners, then points after Halton with three decimals; an azimuth is halfway between two increments of a rotary,
 /// where it is rounded most.
-fn points(overs: &[Over]) -> Vec<Vec<f64>> {
+fn points(overs: &[QuantityRange]) -> Vec<Vec<f64>> {
     const PRIMES: [u32; 5] = [2, 3, 5, 7, 11];
-    let within = |over: &Over, part: f64| {
+    let within = |over: &QuantityRange, part: f64| {
         let value = over.low + (over.high - over.low) * part;
         ((value * 1000.0).round() / 1000.0).clamp(over.low, over.high)
     };
-    let halfway = |over: &Over, value: f64| match over.quantity {
+    let halfway = |over: &QuantityRange, value: f64| match over.quantity {
         Quantity::Azimuth => (value + 0.0005).clamp(over.low, over.high),
         _ => value,
     };
@@ -75,7 +75,7 @@ fn points(overs: &[Over]) -> Vec<Vec<f64>> {
 fn verified(
     job: &PinHoles,
     hole: &HoleSpec,
-    overs: &[Over],
+    overs: &[QuantityRange],
     macros: &Package,
     values: Vec<f64>,
 ) -> Option<SampledHole> {
@@ -113,8 +113,8 @@ mod tests {
     #[test]
     fn corners_come_first_and_all_points_are_inside() {
         let overs = [
-            Over { quantity: Quantity::Radius, low: 0.0, high: 1.0005 },
-            Over { quantity: Quantity::Azimuth, low: -180.0, high: 180.0 },
+            QuantityRange { quantity: Quantity::Radius, low: 0.0, high: 1.0005 },
+            QuantityRange { quantity: Quantity::Azimuth, low: -180.0, high: 180.0 },
         ];
         let points = points(&overs);
         assert_eq!(points.len(), 44);

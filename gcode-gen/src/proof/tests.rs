@@ -57,8 +57,8 @@ fn every_pin_hole_is_as_near_as_rounding_allows() {
     let found = claims[1].found.as_ref().unwrap().0;
     assert!(found > 0.01 && found < bound, "{found}");
     assert!((0.000_707..0.000_708).contains(&claims[2].bound.unwrap()), "{:?}", claims[2].bound);
-    // The clearance of 2 mm, less the rounding: (0.0005 + 0.0005)·√2 between the two ends, 0.0005·√2 of the nearer one, and 3 mm of
-    // the tool tilted by 0.0005°.
+    // The clearance of 2 mm, less the rounding: (0.0005 + 0.0005)·√2 between the two ends, 0.0005·√2 of the nearer one, and 3 mm
+    // of the tool tilted by 0.0005°.
     assert!((1.9978..1.9979).contains(&claims[3].bound.unwrap()), "{:?}", claims[3]);
     assert!(claims[5].claim.contains("at most 95 blocks"), "{verdicts:?}");
 }

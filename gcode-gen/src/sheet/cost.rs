@@ -76,19 +76,19 @@ impl Cost {
 }
 
 /// Returns the time on the job's own machine.
-pub(super) fn machine_time(words: &SheetInfo, record: &Record) -> MachineTime {
+pub(super) fn machine_time(info: &SheetInfo, record: &Record) -> MachineTime {
     MachineTime {
         run: record.times.total() / 60.0,
         stops: record.stops.len(),
         tool_changes: record.tools.len(),
-        minutes: words.minutes(),
+        minutes: info.minutes(),
     }
 }
 
 /// Returns the costs of the job's own machine and of the others. Times not given for another machine are
 /// taken to be the same.
 pub(super) fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
-    let beside = |other: &AlternativeMachine| Cost {
+    let alternative = |other: &AlternativeMachine| Cost {
         machine: Some(other.machine.clone()),
         time: MachineTime {
             run: other.run_minutes.unwrap_or(own.run),
@@ -103,7 +103,7 @@ pub(super) fn costs(rates: &Rates, own: &MachineTime) -> Vec<Cost> {
         is_run_specified: other.run_minutes.is_some(),
     };
     let first = Cost { machine: None, time: own.clone(), rate: rates.rate, is_run_specified: false };
-    std::iter::once(first).chain(rates.alternatives.iter().map(beside)).collect()
+    std::iter::once(first).chain(rates.alternatives.iter().map(alternative)).collect()
 }
 
 #[cfg(test)]

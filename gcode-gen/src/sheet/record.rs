@@ -159,11 +159,11 @@ impl EventSink for RunRecorder {
             }
             EventKind::Dwell { .. } => self.times.dwell += seconds,
             EventKind::ToolChange { number } => self.tools.push(*number),
-            EventKind::Stop { kind, text, variables: named } => {
+            EventKind::Stop { kind, text, variables } => {
                 let stop = OperatorStop {
                     kind: *kind,
                     text: text.clone(),
-                    variables: named.clone(),
+                    variables: variables.clone(),
                     tool: self.tools.last().copied(),
                     elapsed: self.times.total(),
                     locations: Vec::new(),

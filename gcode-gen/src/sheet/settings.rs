@@ -2,7 +2,7 @@
 //! compared with that of the default settings.
 use gcode_control::{Limits, Outcome};
 use gcode_lang::control::{ROWS, SettingRow, Settings};
-use gcode_lang::motion::{Event, EventKind, EventSink, Position, StopKind};
+use gcode_lang::motion::{Event, EventKind, EventSink};
 use gcode_part::job::Job;
 use gcode_session::{Request, SessionError};
 
@@ -75,13 +75,10 @@ fn switched(row: &SettingRow, usual: &Settings) -> Option<(&'static str, Setting
     })
 }
 
-/// All events of a run for the machine and the operator.
+/// Everything that the machine and the operator do in a run, in its order.
 #[derive(Debug, Default, PartialEq)]
 struct RunTrace {
-    moves: Vec<(Position, Option<f64>)>,
-    tools: Vec<u32>,
-    stops: Vec<(StopKind, String)>,
-    dwells: Vec<f64>,
+    events: Vec<EventKind>,
     alarm: Option<String>,
 }
 
@@ -102,23 +99,10 @@ impl RunTrace {
 
 impl EventSink for RunTrace {
     fn event(&mut self, event: &Event<'_>) {
-        match &event.kind {
-            EventKind::Rapid { to } => self.moves.push((*to, None)),
-            EventKind::Feed { to, rate }
-            | EventKind::Arc { to, rate, .. }
-            | EventKind::Skip { to, rate, .. } => {
-                self.moves.push((*to, Some(rate.0)));
-            }
-            EventKind::Dwell { time } => self.dwells.push(time.0),
-            EventKind::ToolChange { number } => self.tools.push(*number),
-            EventKind::Stop { kind, text, .. } => self.stops.push((*kind, text.clone())),
-            EventKind::ToolLength { .. }
-            | EventKind::Start { .. }
-            | EventKind::PositionUnknown { .. }
-            | EventKind::Spindle { .. }
-            | EventKind::ToolSelected { .. }
-            | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. } => {}
+        match event.kind {
+            // What the control knows of positions moves nothing.
+            EventKind::ToolLength { .. } | EventKind::Start { .. } | EventKind::PositionUnknown { .. } => {}
+            kind => self.events.push(kind.clone()),
         }
     }
 }

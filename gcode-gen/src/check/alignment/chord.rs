@@ -3,7 +3,7 @@
 use gcode_inspect::machine::{Machine, Placement};
 use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
-use gcode_part::job::{Alignment, Surface};
+use gcode_part::job::{Alignment, SurfaceSpec};
 use gcode_session::Run;
 
 use super::{CheckError, TrialProgram, TrialResult, common_variable, search};
@@ -70,7 +70,7 @@ pub(super) fn run_trial(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckEr
 /// surface.
 fn check_touched_candidates(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), CheckError> {
     let job = bench.job;
-    let Surface { a, b, .. } = job.surface;
+    let SurfaceSpec { a, b, .. } = job.surface;
     let high = 0.3;
     let part = Placement { shift: [0.0, high, 0.0].into(), ..Placement::default() };
     tried.seconds = {
@@ -105,14 +105,14 @@ fn tolerance(job: &Alignment) -> f64 {
 
 /// Returns E and F of the model.
 fn ends(job: &Alignment) -> [Point; 2] {
-    let Surface { a, b, .. } = job.surface;
+    let SurfaceSpec { a, b, .. } = job.surface;
     [job.chord.e_radius, job.chord.f_radius].map(|x| [x, b * (1.0 - (x / a) * (x / a)).sqrt(), 0.0])
 }
 
 /// Returns ten points of the surface round each of E and F, one of them E or F itself. The two groups are
 /// arranged differently, so that no two pairs are alike.
 fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
-    let Surface { a, b, .. } = job.surface;
+    let SurfaceSpec { a, b, .. } = job.surface;
     let count = job.chord.candidates as usize;
     let mut all = ends(job).map(|end| [end; 10]);
     for (points, (true_one, step)) in all.iter_mut().zip(TRUE_PAIR.into_iter().zip([137.5, 71.3])) {

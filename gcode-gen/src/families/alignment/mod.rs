@@ -100,8 +100,8 @@ fn machine_file(job: &Alignment) -> String {
         job.probe.radius
     )
 }
-/// Returns the main programs in the order of execution. Setting the sine table moves the part, so the run-out is measured at least
-/// twice.
+/// Returns the main programs in the order of execution. Setting the sine table moves the part, so the run-out is measured at
+/// least twice.
 pub(crate) fn run_order(mains: &[u32]) -> Vec<u32> {
     let twice = |main: &u32| std::iter::once(*main).chain((*main == SINE_TABLE).then_some(RUNOUT));
     mains.iter().flat_map(twice).collect()

@@ -2,7 +2,7 @@
 use gcode_draw::{Align, Pen, arc};
 use gcode_inspect::verify::Verdict;
 use gcode_part::Flutes;
-use gcode_part::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
+use gcode_part::job::{Alignment, Burr, Honeycomb, Job, PinHoles, SurfaceSpec};
 use gcode_sim::report::figures::short;
 use maud::{Markup, html};
 
@@ -84,7 +84,7 @@ fn of_pin_holes(job: &PinHoles, verdict: &Verdict) -> Markup {
 }
 
 /// Returns a point of the surface in the plane z = 0 and the direction out of the part: x, y, across, up.
-pub(super) fn on_surface(surface: Surface, x: f64) -> [f64; 4] {
+pub(super) fn on_surface(surface: SurfaceSpec, x: f64) -> [f64; 4] {
     let (a, b) = (surface.a, surface.b);
     let y = b * (1.0 - (x / a) * (x / a)).sqrt();
     let (across, up) = (x / (a * a), y / (b * b));
@@ -140,7 +140,7 @@ fn of_alignment(job: &Alignment) -> Markup {
 }
 
 /// Draws the section z = 0: the ellipse, and arrows along the outward directions at some of its points.
-fn section(surface: Surface, rotary: char, mut tools: Vec<([f64; 4], String)>) -> Markup {
+fn section(surface: SurfaceSpec, rotary: char, mut tools: Vec<([f64; 4], String)>) -> Markup {
     let (a, b) = (surface.a, surface.b);
     let scale = (150.0 / a).min(220.0 / b);
     let (wide, high, unit) = (a * scale, b * scale, 1.0 / scale);

@@ -195,7 +195,7 @@ impl ControlData {
             Length::Minus => -1.0,
             Length::Off => return Ok((Position::default(), 0.0)),
         };
-        self.settings.axes.find(b'Z').ok_or(Alarm::ImproperAddress { letter: 'Z' })?;
+        self.axis_with_letter(b'Z')?;
         let h = state.modal_words.h;
         let wear = sign * self.offsets.tool(Register::HWear, h)?;
         Ok((self.along_tool(state, sign * self.offsets.length(h)?), wear))

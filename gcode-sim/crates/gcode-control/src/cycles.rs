@@ -32,10 +32,7 @@ impl Planner<'_> {
     /// Returns the drilling axis: Z; with FXY 5101#0 the normal of the plane or the axis parallel to it that the block names,
     /// the same until G80.
     pub(super) fn drilling_axis(&self, state: &State) -> Result<AxisIndex, Alarm> {
-        let find = |letter: u8| {
-            let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            self.data.settings.axes.find(letter).ok_or(missing)
-        };
+        let find = |letter| self.data.axis_with_letter(letter);
         if !self.data.settings.drills_by_plane {
             return find(b'Z');
         }
@@ -67,7 +64,7 @@ impl Planner<'_> {
         let axis = self.locate(self.drilling_axis(&plan.state))?;
         let scale_factor = self.locate(scale_factor_along(plan, cycle, axis))?;
         let repeats = self.cycle_repeats(pattern)?;
-        let incremental = plan.state.modal.distance == Distance::Incremental;
+        let is_incremental = plan.state.modal.distance == Distance::Incremental;
         let from = *plan.state;
         // The depth is no move.
         let Endpoint { programmed: mut endpoint, machine: end_on_machine, .. } =
@@ -79,7 +76,7 @@ impl Planner<'_> {
         }
         endpoint[axis] = from.programmed_position[axis];
         plan.state.unknown = plan.state.unknown.with_axes_of(1 << axis, from.unknown);
-        self.read_cycle_words(plan, axis, incremental)?;
+        self.read_cycle_words(plan, axis, is_incremental)?;
         self.note_cycle(plan, axis);
         if cycle.needs_q {
             self.check_peck_words(plan, pattern)?;
@@ -252,14 +249,19 @@ impl Planner<'_> {
     }
 
     /// Reads the depth, R, P and Q, which stay in force from hole to hole.
-    fn read_cycle_words(&self, plan: &mut BlockPlan, axis: AxisIndex, incremental: bool) -> ExecResult<()> {
+    fn read_cycle_words(
+        &self,
+        plan: &mut BlockPlan,
+        axis: AxisIndex,
+        is_incremental: bool,
+    ) -> ExecResult<()> {
         let state = &plan.state;
         let mut data = state.cycle;
         if let Some(value) = self.dimension(b'R', state)? {
-            data.r = CycleLevel { value, is_incremental: incremental, is_commanded: true };
+            data.r = CycleLevel { value, is_incremental, is_commanded: true };
         }
         if let Some(value) = self.dimension(self.data.axis_letter(axis), state)? {
-            data.z = CycleLevel { value, is_incremental: incremental, is_commanded: true };
+            data.z = CycleLevel { value, is_incremental, is_commanded: true };
         }
         // J of a Haas: a faster retract.
         if self.data.settings.codes == Dialect::HaasNgc && state.modal.cycle.is_some_and(Cycle::taps) {

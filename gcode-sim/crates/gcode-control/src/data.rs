@@ -156,6 +156,12 @@ impl ControlData {
         Some(if self.settings.has_diameter_offsets() { sum / 2.0 } else { sum })
     }
 
+    /// Returns the axis with a letter; PS0009 if the control lacks it.
+    pub(super) fn axis_with_letter(&self, letter: u8) -> Result<AxisIndex, Alarm> {
+        let missing = Alarm::ImproperAddress { letter: char::from(letter) };
+        self.settings.axes.find(letter).ok_or(missing)
+    }
+
     pub(super) fn axis_letter(&self, axis: AxisIndex) -> u8 {
         self.settings.axes.letter(axis) as u8
     }

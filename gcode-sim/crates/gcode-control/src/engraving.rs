@@ -4,7 +4,6 @@ use super::kinematics::sine_cosine;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::UnknownAxes;
 
 /// Most characters of a text.
@@ -17,9 +16,7 @@ impl Planner<'_> {
     pub(super) fn plan_engraving(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &plan.state;
         self.check_outside_cycle_and_offset("47", &state.modal)?;
-        let missing = |letter: u8| Alarm::ImproperAddress { letter: char::from(letter) };
-        let find = |letter: u8| self.data.settings.axes.find(letter).ok_or_else(|| missing(letter));
-        let [x, y, z] = [self.locate(find(b'X'))?, self.locate(find(b'Y'))?, self.locate(find(b'Z'))?];
+        let [x, y, z] = self.locate(self.slides())?;
         let kind = self.words.count(b'P')?.unwrap_or(0);
         let characters = match kind {
             0 | 1 => self.words.comment_length.unwrap_or(1).min(MAX_TEXT),

@@ -164,8 +164,8 @@ impl Alignment {
         Self { frame, tool: head.rotation, at: *at }
     }
 
-    /// Returns the alignment that turns a plane level about its origin, in machine coordinates, as a table does; for a machine that
-    /// nothing describes.
+    /// Returns the alignment that turns a plane level about its origin, in machine coordinates, as a table does; for a machine
+    /// that nothing describes.
     pub(super) fn level(plane: &Matrix, origin: Vector) -> Self {
         let rotation = plane.transposed();
         let shift = sum(origin, scaled(rotation.apply(origin), -1.0));
@@ -181,13 +181,13 @@ impl Alignment {
 }
 
 /// Rotation of a part's direction relative to the spindle by one axis.
-struct Turn<'k> {
+struct AxisRotation<'k> {
     axis: &'k RotaryAxis,
     /// Effect of a positive command about the axis's direction: that of a head turns the tool, not the part.
     sense: f64,
 }
 
-impl Turn<'_> {
+impl AxisRotation<'_> {
     /// Returns the position of the axis for an angle in degrees; the current one if any will do.
     fn position(&self, angle: Option<f64>, current: &Position) -> f64 {
         angle.map_or(current[self.axis.axis], |angle| (angle * self.sense * 1e9).round() / 1e9)
@@ -202,16 +202,16 @@ pub(super) fn pointing_positions(
     normal: Vector,
     current: &Position,
 ) -> Option<Vec<Position>> {
-    let on_table = kinematics.table.iter().rev().map(|axis| Turn { axis, sense: axis.sign });
-    let on_head = kinematics.head.iter().map(|axis| Turn { axis, sense: -axis.sign });
-    let turns: Vec<_> = on_table.chain(on_head).collect();
+    let on_table = kinematics.table.iter().rev().map(|axis| AxisRotation { axis, sense: axis.sign });
+    let on_head = kinematics.head.iter().map(|axis| AxisRotation { axis, sense: -axis.sign });
+    let rotations: Vec<_> = on_table.chain(on_head).collect();
     let goal = kinematics.direction;
     let is_same = |a: Vector, b: Vector| {
         let difference = sum(a, scaled(b, -1.0));
         dot(difference, difference).sqrt() < 1e-7
     };
     let mut found = Vec::new();
-    match turns.as_slice() {
+    match rotations.as_slice() {
         [] => found.extend(is_same(normal, goal).then_some(*current)),
         [only] => {
             let angle = angle_about(only.axis.direction, normal, goal);

@@ -70,11 +70,7 @@ impl ControlData {
             Plane::Zx => (b'Z', b'X'),
             Plane::Yz => (b'Y', b'Z'),
         };
-        let find = |letter: u8| {
-            let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            self.settings.axes.find(letter).ok_or(missing)
-        };
-        Ok((find(first)?, find(second)?))
+        Ok((self.axis_with_letter(first)?, self.axis_with_letter(second)?))
     }
 
     /// Returns the origin and units of axis words in a state.

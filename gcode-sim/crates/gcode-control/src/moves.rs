@@ -44,7 +44,7 @@ impl Planner<'_> {
         let has_other_source = wear != plan.state.length_wear
             || plan.state.length_compensation() != self.registers.state.length_compensation();
         (plan.state.length_offset, plan.state.length_wear) = (offset, wear);
-        // A repeated offset is told too: its block decides on the cuts behind it.
+        // A repeated offset is emitted too: its block decides on the cuts behind it.
         let is_repeated = plan.state.length_compensation().number().is_some();
         if changed || has_other_source || is_repeated {
             plan.push_event(self.data.length_event(&plan.state));

@@ -119,18 +119,6 @@ impl Registers {
                         numbers.truncate(counts[0]);
                     }
                 }
-                Operation::Add(values)
-                | Operation::Subtract(values)
-                | Operation::Multiply(values)
-                | Operation::Divide(values)
-                | Operation::Compare(_, values)
-                | Operation::Atan2(values)
-                | Operation::Uncommon(UncommonOp::Whole(_, values) | UncommonOp::Power(values)) => {
-                    values.iter().for_each(|value| self.reads_of_source(value, numbers));
-                }
-                Operation::Function(_, value) | Operation::Uncommon(UncommonOp::Load(value)) => {
-                    self.reads_of_source(value, numbers);
-                }
                 Operation::Uncommon(UncommonOp::Read(number)) => self.add_read(*number, numbers),
                 Operation::Uncommon(UncommonOp::ReadItem { number, rounded, .. }) => {
                     let has_items = self.data.settings.has_variable_bits;
@@ -142,7 +130,7 @@ impl Registers {
                         self.add_read(number, numbers);
                     }
                 }
-                Operation::Uncommon(_) => {}
+                _ => operation.sources().iter().for_each(|source| self.reads_of_source(source, numbers)),
             }
             counts = [counts[1], counts[2], before];
         }

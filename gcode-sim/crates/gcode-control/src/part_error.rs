@@ -71,7 +71,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Raises the alarm of a block whose path leaves its plane, because the part leans.
+    /// Raises the alarm of a block whose path leaves its plane, because the part is tilted.
     pub(super) fn check_part_error(&self, state: &State) -> ExecResult<()> {
         let modal = &state.modal;
         let is_planar = modal.cycle.is_some()

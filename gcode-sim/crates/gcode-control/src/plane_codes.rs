@@ -74,10 +74,9 @@ impl Planner<'_> {
     }
 
     /// Returns X, Y and Z; PS0009 if the control lacks one.
-    fn slides(&self) -> Result<[AxisIndex; 3], Alarm> {
-        let missing = |letter: u8| Alarm::ImproperAddress { letter: char::from(letter) };
-        let find = |letter: u8| self.data.settings.axes.find(letter).ok_or_else(|| missing(letter));
-        Ok([find(b'X')?, find(b'Y')?, find(b'Z')?])
+    pub(super) fn slides(&self) -> Result<[AxisIndex; 3], Alarm> {
+        let axis = |letter| self.data.axis_with_letter(letter);
+        Ok([axis(b'X')?, axis(b'Y')?, axis(b'Z')?])
     }
 
     /// Returns the values of three letters as lengths, 0 for those that the block lacks.
@@ -182,7 +181,8 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// G68 with I, J or K: rotates by R about the direction I J K through X Y Z, the new origin. A second G68 counts in the first.
+    /// G68 with I, J or K: rotates by R about the direction I J K through X Y Z, the new origin. A second G68 counts in the
+    /// first.
     pub(super) fn plan_rotation_in_space(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         let format = |what| Alarm::SpaceRotation(what).located_at(self.block);
         let axes = self.locate(self.slides())?;

@@ -28,8 +28,7 @@ impl Planner<'_> {
         if !self.words.has(b'Z') {
             return Err(missing('Z'));
         }
-        let no_z = Alarm::ImproperAddress { letter: 'Z' };
-        let z = self.locate(self.data.settings.axes.find(b'Z').ok_or(no_z))?;
+        let z = self.locate(self.data.axis_with_letter(b'Z'))?;
         self.words.mark_read(Letters::of(b"IJKQ"));
         let start = state.programmed_position[z];
         let bottom: Endpoint = self.resolve_endpoint(plan)?;

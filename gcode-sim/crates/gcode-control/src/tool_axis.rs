@@ -17,8 +17,8 @@ use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{Length, Motion};
 
 impl Planner<'_> {
-    /// Makes X, Y and Z unknown on the part, until a code ends the mode and an absolute word commands them, and the rotary axes if
-    /// they turn: nothing states the kinematics of the machine.
+    /// Makes X, Y and Z unknown on the part, until a code ends the mode and an absolute word commands them, and the rotary axes
+    /// if they turn: nothing states the kinematics of the machine.
     pub(super) fn lose_position(&self, plan: &mut BlockPlan, code: u32, turns: bool) {
         plan.notes.push(Note::NoKinematics(code));
         let axes = &self.data.settings.axes;

@@ -1,4 +1,5 @@
-//! Virtual planes of polar and cylindrical interpolation: the control computes in lengths, and a rotary axis turns on the machine.
+//! Virtual planes of polar and cylindrical interpolation: the control computes in lengths, and a rotary axis turns on the
+//! machine.
 use super::kinematics::remove_noise;
 use super::plane_arc::point_of_arc;
 use gcode_lang::motion::{AxisIndex, EventKind, Position};
@@ -11,9 +12,9 @@ const MAX_DEPTH: u32 = 20;
 /// Pieces that an arc is divided into before the halving, so that none begins and ends at one point.
 const FIRST_PIECES: u32 = 8;
 
-/// Surface that a virtual plane covers.
+/// Surface of the machine that a virtual plane represents.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Surface {
+pub(super) enum VirtualSurface {
     /// G12.1: the plane square to the rotary axis, with the linear axis as its radius.
     Disc {
         /// −1 where the mode began on the minus side of the linear axis.
@@ -36,7 +37,7 @@ pub(super) enum Surface {
 /// Mode in which machine positions of the control are those of a virtual plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct VirtualPlane {
-    pub(super) surface: Surface,
+    pub(super) surface: VirtualSurface,
     /// Axis that stays linear.
     pub(super) linear: AxisIndex,
     pub(super) rotary: AxisIndex,
@@ -55,16 +56,16 @@ impl VirtualPlane {
     /// Returns the axis whose coordinate is a length in the plane and an angle on the machine.
     pub(super) fn virtual_axis(&self) -> AxisIndex {
         match self.surface {
-            Surface::Disc { .. } | Surface::Cylinder { .. } => self.rotary,
-            Surface::WrappedAxis { .. } => self.linear,
+            VirtualSurface::Disc { .. } | VirtualSurface::Cylinder { .. } => self.rotary,
+            VirtualSurface::WrappedAxis { .. } => self.linear,
         }
     }
 
     /// Returns the factor from a programmed number of the rotary axis to a coordinate of the plane.
     pub(super) fn scale(&self) -> f64 {
         match self.surface {
-            Surface::Cylinder { mm_per_degree } => mm_per_degree,
-            Surface::Disc { .. } | Surface::WrappedAxis { .. } => 1.0,
+            VirtualSurface::Cylinder { mm_per_degree } => mm_per_degree,
+            VirtualSurface::Disc { .. } | VirtualSurface::WrappedAxis { .. } => 1.0,
         }
     }
 
@@ -73,7 +74,7 @@ impl VirtualPlane {
         let mut machine = *point;
         let (x, y) = (point[self.linear] - self.origin.0, point[self.rotary] - self.origin.1);
         match self.surface {
-            Surface::Disc { side } => {
+            VirtualSurface::Disc { side } => {
                 let radius = libm::hypot(x, y);
                 machine[self.linear] = remove_noise(self.origin.0 + side * radius);
                 let angle = match radius < 1e-9 {
@@ -82,10 +83,10 @@ impl VirtualPlane {
                 };
                 machine[self.rotary] = remove_noise(angle + 360.0 * ((near - angle) / 360.0).round());
             }
-            Surface::Cylinder { mm_per_degree } => {
+            VirtualSurface::Cylinder { mm_per_degree } => {
                 machine[self.rotary] = remove_noise(self.start_angle + y / mm_per_degree);
             }
-            Surface::WrappedAxis { mm_per_degree, rest } => {
+            VirtualSurface::WrappedAxis { mm_per_degree, rest } => {
                 machine[self.linear] = rest;
                 machine[self.rotary] = remove_noise(self.start_angle + x / mm_per_degree);
             }
@@ -97,14 +98,14 @@ impl VirtualPlane {
     fn in_plane(&self, machine: &Position) -> (f64, f64) {
         let angle = machine[self.rotary] - self.start_angle;
         match self.surface {
-            Surface::Disc { .. } => {
+            VirtualSurface::Disc { .. } => {
                 let radius = machine[self.linear] - self.origin.0;
                 (self.origin.0 + radius * Deg(angle).cos(), self.origin.1 + radius * Deg(angle).sin())
             }
-            Surface::Cylinder { mm_per_degree } => {
+            VirtualSurface::Cylinder { mm_per_degree } => {
                 (machine[self.linear], self.origin.1 + angle * mm_per_degree)
             }
-            Surface::WrappedAxis { mm_per_degree, .. } => (self.origin.0 + angle * mm_per_degree, 0.0),
+            VirtualSurface::WrappedAxis { mm_per_degree, .. } => (self.origin.0 + angle * mm_per_degree, 0.0),
         }
     }
 
@@ -123,7 +124,7 @@ impl VirtualPlane {
                 let between = |fraction: f64| {
                     Position(std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * fraction))
                 };
-                let pieces = if matches!(self.surface, Surface::Disc { .. }) {
+                let pieces = if matches!(self.surface, VirtualSurface::Disc { .. }) {
                     self.pieces(&between, 1, tolerance)
                 } else {
                     vec![1.0]
@@ -191,9 +192,13 @@ impl VirtualPlane {
             let (x, y) = self.in_plane(&at);
             let nominal = path(start + (end - start) * share);
             let across = match self.surface {
-                Surface::Disc { .. } => libm::hypot(x - nominal[self.linear], y - nominal[self.rotary]),
-                Surface::Cylinder { .. } => libm::hypot(x - nominal[self.linear], y - nominal[self.rotary]),
-                Surface::WrappedAxis { .. } => (x - nominal[self.linear]).abs(),
+                VirtualSurface::Disc { .. } => {
+                    libm::hypot(x - nominal[self.linear], y - nominal[self.rotary])
+                }
+                VirtualSurface::Cylinder { .. } => {
+                    libm::hypot(x - nominal[self.linear], y - nominal[self.rotary])
+                }
+                VirtualSurface::WrappedAxis { .. } => (x - nominal[self.linear]).abs(),
             };
             let other = (0..at.0.len()).filter(|axis| *axis != self.linear && *axis != self.rotary);
             let along = other.map(|axis| (at[axis] - nominal[axis]).abs()).fold(0.0, f64::max);
@@ -220,7 +225,7 @@ mod tests {
         let mut at = Position::default();
         at[0] = 10.0;
         VirtualPlane {
-            surface: Surface::Disc { side: 1.0 },
+            surface: VirtualSurface::Disc { side: 1.0 },
             linear: 0,
             rotary: 5,
             origin: (0.0, 0.0),

@@ -4,7 +4,7 @@ use super::functions::{ExecResult, locate};
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::State;
-use super::virtual_plane::{Surface, VirtualPlane};
+use super::virtual_plane::{VirtualPlane, VirtualSurface};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::code_facts::CoordinateUse;
@@ -23,9 +23,9 @@ impl ControlData {
             return self.plane_axes(state.modal.plane);
         };
         match surface {
-            Surface::Disc { .. } => Ok((linear, rotary)),
-            Surface::WrappedAxis { .. } => self.plane_axes(state.modal.plane),
-            Surface::Cylinder { .. } => match self.plane_axes(state.modal.plane)? {
+            VirtualSurface::Disc { .. } => Ok((linear, rotary)),
+            VirtualSurface::WrappedAxis { .. } => self.plane_axes(state.modal.plane),
+            VirtualSurface::Cylinder { .. } => match self.plane_axes(state.modal.plane)? {
                 (first, _) if first == linear => Ok((linear, rotary)),
                 (_, second) if second == linear => Ok((rotary, linear)),
                 _ => Err(Alarm::CylinderFormat(
@@ -55,7 +55,7 @@ impl Planner<'_> {
     /// Raises the alarm of a code that a virtual plane excludes.
     pub(super) fn check_code_in_virtual_plane(&self, row: &GCodeRow) -> ExecResult<()> {
         let Some(plane) = &self.registers.state.virtual_plane else { return Ok(()) };
-        if let Surface::WrappedAxis { .. } = plane.surface {
+        if let VirtualSurface::WrappedAxis { .. } = plane.surface {
             let is_excluded = row.facts.coordinates == CoordinateUse::NotTransformed
                 && row.effect != Effect::OneShot(OneShot::WrappedAxis)
                 || matches!(row.effect, Effect::OneShot(OneShot::Skip | OneShot::SingleDirection));
@@ -70,16 +70,16 @@ impl Planner<'_> {
             Effect::Motion(motion) => {
                 matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise)
             }
-            Effect::Plane(_) => matches!(plane.surface, Surface::Cylinder { .. }),
+            Effect::Plane(_) => matches!(plane.surface, VirtualSurface::Cylinder { .. }),
             Effect::FeedMode(mode) => mode != FeedMode::InverseTime,
             Effect::OneShot(one) => match plane.surface {
-                Surface::Cylinder { .. } => {
+                VirtualSurface::Cylinder { .. } => {
                     matches!(one, OneShot::Dwell | OneShot::Cylinder | OneShot::CornerArc)
                 }
                 _ => matches!(one, OneShot::Dwell | OneShot::CornerArc),
             },
             Effect::PolarInterpolation(mode) => {
-                mode == PolarInterpolation::Off && matches!(plane.surface, Surface::Disc { .. })
+                mode == PolarInterpolation::Off && matches!(plane.surface, VirtualSurface::Disc { .. })
             }
             Effect::Cycle(cycle) => cycle.is_none(),
             Effect::Distance(_)
@@ -95,7 +95,7 @@ impl Planner<'_> {
         };
         match (is_allowed, plane.surface) {
             (true, _) => Ok(()),
-            (false, Surface::Disc { .. }) => {
+            (false, VirtualSurface::Disc { .. }) => {
                 Err(Alarm::CodeInPolarInterpolation(name(row.code)).located_at(self.block))
             }
             (false, _) => Err(Alarm::CodeInCylinder(name(row.code)).located_at(self.block)),
@@ -108,17 +108,19 @@ impl Planner<'_> {
         let is_cut =
             matches!(state.modal.motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise);
         match state.virtual_plane {
-            Some(VirtualPlane { surface: Surface::Disc { .. }, .. }) if !is_cut => {
+            Some(VirtualPlane { surface: VirtualSurface::Disc { .. }, .. }) if !is_cut => {
                 Err(Alarm::CodeInPolarInterpolation(code()).located_at(self.block))
             }
-            Some(VirtualPlane { surface: Surface::Cylinder { .. }, .. }) => match is_cut {
+            Some(VirtualPlane { surface: VirtualSurface::Cylinder { .. }, .. }) => match is_cut {
                 false => Err(Alarm::CodeInCylinder(code()).located_at(self.block)),
                 true if self.words.has_any(b"IJK") && state.modal.motion != Motion::Linear => {
                     Err(self.cylinder_format("an arc is commanded by R, not by I, J, K"))
                 }
                 true => Ok(()),
             },
-            Some(VirtualPlane { surface: Surface::WrappedAxis { .. }, rotary, .. }) if self.names(rotary) => {
+            Some(VirtualPlane { surface: VirtualSurface::WrappedAxis { .. }, rotary, .. })
+                if self.names(rotary) =>
+            {
                 Err(self.not_simulated("the rotary axis of G107 in a block of its own words"))
             }
             _ => Ok(()),
@@ -170,7 +172,7 @@ impl Planner<'_> {
         let zero = |axis| self.data.zero(state, axis);
         let origin = (zero(linear) + state.length_offset[linear], zero(rotary));
         let side = if state.machine_position[linear] < origin.0 { -1.0 } else { 1.0 };
-        self.begin_virtual_plane(state, Surface::Disc { side }, (linear, rotary), origin);
+        self.begin_virtual_plane(state, VirtualSurface::Disc { side }, (linear, rotary), origin);
         state.modal.plane = match self.data.settings.axes.letter(linear) {
             'Y' => Plane::Yz,
             'Z' => Plane::Zx,
@@ -237,7 +239,7 @@ impl Planner<'_> {
         let mm_per_degree = radius.to_radians();
         let zero = self.data.zero(state, rotary);
         let origin = (self.data.zero(state, linear), zero);
-        self.begin_virtual_plane(state, Surface::Cylinder { mm_per_degree }, (linear, rotary), origin);
+        self.begin_virtual_plane(state, VirtualSurface::Cylinder { mm_per_degree }, (linear, rotary), origin);
         let angle = state.programmed_position[rotary];
         let position = zero + angle * mm_per_degree;
         if let Some(plane) = &mut state.virtual_plane {
@@ -292,7 +294,7 @@ impl Planner<'_> {
         }
         let state = &mut plan.state;
         let rest = state.machine_position[linear];
-        let surface = Surface::WrappedAxis { mm_per_degree: radius.to_radians(), rest };
+        let surface = VirtualSurface::WrappedAxis { mm_per_degree: radius.to_radians(), rest };
         let origin = (rest, state.machine_position[rotary]);
         self.begin_virtual_plane(state, surface, (linear, rotary), origin);
         Ok(())
@@ -301,7 +303,7 @@ impl Planner<'_> {
     fn begin_virtual_plane(
         &self,
         state: &mut State,
-        surface: Surface,
+        surface: VirtualSurface,
         (linear, rotary): (AxisIndex, AxisIndex),
         origin: (f64, f64),
     ) {
@@ -321,7 +323,7 @@ impl Planner<'_> {
     fn end_virtual_plane(&self, state: &mut State) {
         let Some(plane) = state.virtual_plane.take() else { return };
         state.machine_position = plane.machine_position;
-        if let Surface::Disc { .. } = plane.surface {
+        if let VirtualSurface::Disc { .. } = plane.surface {
             state.modal.plane = plane.selected;
         }
         self.data.recompute_position(state);

@@ -96,8 +96,8 @@ impl std::fmt::Display for FindingKind {
     }
 }
 
-/// Declares a static [`FindingKind`](crate::diag::FindingKind) per line, and `ALL`. The folder of the pages comes first. The first line of a page is
-/// compared with code and title at compile time.
+/// Declares a static [`FindingKind`](crate::diag::FindingKind) per line, and `ALL`. The folder of the pages comes first. The
+/// first line of a page is compared with code and title at compile time.
 #[macro_export]
 macro_rules! finding_kinds {
     ($folder:literal; $($name:ident = $code:literal, $severity:ident, $title:literal;)+) => {

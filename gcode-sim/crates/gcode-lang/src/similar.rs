@@ -1,8 +1,8 @@
 //! The known name that a misspelt one means.
 
 /// Returns the known name nearest to a misspelt one: one letter left out, added, changed or swapped with its neighbour, two of
-/// them in a name of six letters or more. Upper and lower case don't count, and digits have to agree: G53 is no slip of G54. `None`
-/// if no name is so near.
+/// them in a name of six letters or more. Upper and lower case don't count, and digits have to agree: G53 is no slip of G54.
+/// `None` if no name is so near.
 pub fn similar<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let limit = if name.chars().count() < 6 { 1 } else { 2 };
     let digits = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();

@@ -12,8 +12,8 @@ pub struct Assumption {
     pub value: Option<f64>,
     /// The block of the first read.
     pub place: AssumptionPlace,
-    /// Ids of the holes that it can touch, or their numbers without a reference, or the numbers of flutes; those without a nominal one are `extra 1`,
-    /// `extra 2`, …. Empty if it touches none of them, and another value may make further ones.
+    /// Ids of the holes that it can touch, or their numbers without a reference, or the numbers of flutes; those without a
+    /// nominal one are `extra 1`, `extra 2`, …. Empty if it touches none of them, and another value may make further ones.
     pub decides: Vec<String>,
 }
 

@@ -8,8 +8,9 @@ use super::feature::{DepthTo, Feature, FeatureKind};
 use super::hole::Hole;
 use super::limits::NOISE;
 use super::point_tree::PointTree;
-use super::solid::{Rod, Taper, shares_between};
+use super::solid::{Rod, Taper};
 use super::surface::Surface;
+use super::travel_shares::shares_between;
 
 /// Thickness of the wall round a hole that is known to be metal, mm.
 const WALL: f64 = 1.0;

@@ -40,12 +40,12 @@ pub struct Hole {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub depth: f64,
+    /// Diameter; `None` if unknown.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
-    /// Diameter; `None` if unknown.
     pub diameter: Option<f64>,
-    #[serde(default)]
     /// Block that made the hole; `None` in a reference.
+    #[serde(default)]
     pub from: Option<Origin>,
     /// Diameters, cones and threads on the axis; without them `diameter` and `depth` are one feature.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -81,8 +81,8 @@ fn is_false(value: &bool) -> bool {
 /// Unit of a hole list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Unit {
-    #[default]
     /// Millimetres.
+    #[default]
     #[serde(rename = "mm")]
     Mm,
     /// Inches, in a list that is read; a reader makes millimetres of them.

@@ -59,8 +59,8 @@ mod tests {
 
     /// a = 1000, b = 500: a²/b² = 4, and 1° is 0.017 453 293.
     ///
-    /// At y = 200 the radius is 1000·√(1 − 0.16) = 916.515 139. First order: 0.017 453 293·200·3. Second: 0.000 152 308 7·3·(4·40 000
-    /// − 840 000)/916.515 139. Exactly, from x²(cos² + 4 sin²) − 6·y·x·sin·cos + y²(sin² + 4 cos²) = 1000².
+    /// At y = 200 the radius is 1000·√(1 − 0.16) = 916.515 139. First order: 0.017 453 293·200·3. Second: 0.000 152 308 7·3·(4·40
+    /// 000 − 840 000)/916.515 139. Exactly, from x²(cos² + 4 sin²) − 6·y·x·sin·cos + y²(sin² + 4 cos²) = 1000².
     /// Below the equator the sign is reversed. On the equator the first order is 0: 1000/√(1 + 3·sin² 1°) =
     /// 999.543 433. A tall part: a²/b² − 1 = −0.75.
     #[test]

@@ -64,6 +64,7 @@ mod stock;
 mod surface;
 mod thread_size;
 mod touch_uncertainty;
+mod travel_shares;
 
 pub use assumption::{Assumption, AssumptionPlace, Total};
 pub use clusters::Clusters;
@@ -85,7 +86,8 @@ pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
-pub use solid::{NearestPoint, Rod, Taper, common, shares_between, shares_within};
+pub use solid::{NearestPoint, Rod, Taper};
 pub use stock::{Pocket, Stock, StockAxis};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};
+pub use travel_shares::{common_shares, shares_between, shares_within};

@@ -73,7 +73,7 @@ impl NominalThread {
 
 /// Step of a stepped hole that a list has as several holes on one axis.
 #[derive(Clone, Debug, PartialEq)]
-struct Step {
+struct ListedStep {
     entry: Point3<f64>,
     depth: f64,
     /// Diameters of the hole and its features, mm.
@@ -95,7 +95,7 @@ pub struct NominalAxes {
     /// Largest major radius of a thread, mm; 0 without threads.
     max_thread: f64,
     /// Steps of each stepped hole, the uppermost first, with those of the axes that it has.
-    stacks: Vec<Vec<Step>>,
+    stacks: Vec<Vec<ListedStep>>,
     stack_of: BTreeMap<usize, usize>,
 }
 
@@ -152,13 +152,13 @@ impl NominalAxes {
         let Some(stack) = at.and_then(|(index, _)| self.stacks.get(*self.stack_of.get(&index)?)) else {
             return 0;
         };
-        let below = |step: &Step| (step.entry - pass[1]).dot(out);
-        let is_as_wide = |step: &Step| {
+        let below = |step: &ListedStep| (step.entry - pass[1]).dot(out);
+        let is_as_wide = |step: &ListedStep| {
             diameter
                 .is_some_and(|own| step.diameters.iter().any(|other| (own - other).abs() <= SAME_DIAMETER))
         };
         let steps = || stack.iter().enumerate();
-        let off = |step: &Step| (below(step) - step.depth).abs();
+        let off = |step: &ListedStep| (below(step) - step.depth).abs();
         let wide = steps().filter(|(_, step)| is_as_wide(step));
         let mut entered = steps().filter(|(_, step)| SAME_LEVEL < below(step));
         let nearest = wide.min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
@@ -250,7 +250,7 @@ impl NominalAxes {
 }
 
 /// Returns the steps of each stepped hole, and the stepped hole of each of its axes.
-fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
+fn stacks(holes: &[Hole]) -> (Vec<Vec<ListedStep>>, BTreeMap<usize, usize>) {
     let (mut stacks, mut stack_of) = (Vec::new(), BTreeMap::new());
     if holes.iter().all(|hole| diameters(hole).eq(diameters(&holes[0]))) {
         return (stacks, stack_of);
@@ -264,11 +264,12 @@ fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
     let mut partners: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     let mut opposite: Vec<(usize, usize)> = Vec::new();
     feet.pairs(SAME_AXIS, &mut |one, other| {
-        if Step::is_on_axis_of(&holes[one], &holes[other]) {
+        if ListedStep::is_on_axis_of(&holes[one], &holes[other]) {
             partners.entry(one.min(other)).or_default().push(one.max(other));
         }
         let both = [(one, other), (other, one)].into_iter();
-        opposite.extend(both.filter(|(one, other)| Step::is_at_far_side_of(&holes[*one], &holes[*other])));
+        opposite
+            .extend(both.filter(|(one, other)| ListedStep::is_at_far_side_of(&holes[*one], &holes[*other])));
     });
     for (first, others) in partners {
         if stack_of.contains_key(&first) {
@@ -281,15 +282,15 @@ fn stacks(holes: &[Hole]) -> (Vec<Vec<Step>>, BTreeMap<usize, usize>) {
         let bottom = |index: &usize| height(index) - holes[*index].depth;
         members.sort_by(|a, b| bottom(b).total_cmp(&bottom(a)));
         stack_of.extend(members.iter().map(|index| (*index, stacks.len())));
-        stacks.push(members.iter().map(|index| Step::of(&holes[*index])).collect());
+        stacks.push(members.iter().map(|index| ListedStep::of(&holes[*index])).collect());
     }
     // From its far side a through hole is the lowest step of the holes there.
     for (hole, through) in opposite {
         let stack = *stack_of.entry(hole).or_insert_with(|| {
-            stacks.push(vec![Step::of(&holes[hole])]);
+            stacks.push(vec![ListedStep::of(&holes[hole])]);
             stacks.len() - 1
         });
-        stacks[stack].push(Step::of(&holes[through].from_far_side()));
+        stacks[stack].push(ListedStep::of(&holes[through].from_far_side()));
     }
     (stacks, stack_of)
 }
@@ -299,7 +300,7 @@ fn diameters(hole: &Hole) -> impl Iterator<Item = f64> + '_ {
     hole.diameter.into_iter().chain(hole.features.iter().map(|feature| feature.diameter))
 }
 
-impl Step {
+impl ListedStep {
     fn of(hole: &Hole) -> Self {
         Self { entry: hole.entry.into(), depth: hole.depth, diameters: diameters(hole).collect() }
     }

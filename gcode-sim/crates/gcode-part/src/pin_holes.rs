@@ -36,7 +36,7 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
 }
 
 fn process_limits(job: &PinHoles) -> ProcessLimits {
-    let duty = |tool: &Tool| ToolProcess {
+    let tool_process = |tool: &Tool| ToolProcess {
         number: tool.number,
         offset: Some(tool.number),
         speed: Some(tool.speed),
@@ -50,7 +50,7 @@ fn process_limits(job: &PinHoles) -> ProcessLimits {
         retract: job.machine.retract,
         rotary: Some(job.machine.rotary),
         clamp: None,
-        tools: job.tools.iter().filter(|_| job.are_tools_specified).map(duty).collect(),
+        tools: job.tools.iter().filter(|_| job.are_tools_specified).map(tool_process).collect(),
         ..ProcessLimits::default()
     }
 }

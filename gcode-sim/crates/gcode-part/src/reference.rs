@@ -158,7 +158,7 @@ impl ProcessLimits {
     /// spindle.
     pub fn tool_process(&self, tool: Option<u32>) -> Option<&ToolProcess> {
         match tool {
-            Some(number) => self.tools.iter().find(|duty| duty.number == number),
+            Some(number) => self.tools.iter().find(|process| process.number == number),
             None => self.tools.first().filter(|_| self.tools.len() == 1),
         }
     }

@@ -2,9 +2,8 @@
 //! gradients.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::solid::{
-    Rod, Taper, block_exit, block_face, block_span, either, sag, shares_between, shares_within,
-};
+use super::solid::{Rod, Taper, block_exit, block_face, block_span};
+use super::travel_shares::{either, sag, shares_between, shares_within};
 
 /// A convex body; lengths in mm, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]

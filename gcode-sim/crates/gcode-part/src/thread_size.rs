@@ -52,7 +52,8 @@ const PIPE: [(&str, f64, f64); 12] = [
     ("3", 87.884, 11.0),
 ];
 
-/// Sizes of the Unified coarse and fine series, each with its threads an inch (ASME B1.1, table 2 and 3); 0 where a series has none.
+/// Sizes of the Unified coarse and fine series, each with its threads an inch (ASME B1.1, table 2 and 3); 0 where a series has
+/// none.
 const UNIFIED: [(&str, f64, f64); 31] = [
     ("#0", 0.0, 80.0),
     ("#1", 64.0, 72.0),

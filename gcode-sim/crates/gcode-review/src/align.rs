@@ -1,7 +1,7 @@
 //! Alignment of the steps of two runs, so that one inserted move does not make all later ones different.
 //!
-//! Three stages: the longest common sequence of equal steps; in the gaps between them moves with equal displacements; then the pairs with the nearest end
-//! points.
+//! Three stages: the longest common sequence of equal steps; in the gaps between them moves with equal
+//! displacements; then the pairs with the nearest end points.
 use std::borrow::Cow;
 
 use super::block_location::BlockLocation;
@@ -79,7 +79,7 @@ impl<'a> StepRange<'a> {
 }
 
 /// Steps of both runs.
-type Sides<'a> = (StepRange<'a>, StepRange<'a>);
+type BothSteps<'a> = (StepRange<'a>, StepRange<'a>);
 
 /// Aligns like [`align`]; if one run alone stops (old, new), later steps of the other are lost or added.
 pub(super) fn align_until_stop(old: &StepList, new: &StepList, stops: (bool, bool), tolerance: f64) -> Links {
@@ -106,7 +106,7 @@ fn reach(long: usize, short: usize, same: impl Fn(usize, usize) -> bool) -> usiz
 
 /// Returns all steps of both runs in an order that keeps both, with the fewest lost and added; tool by tool if that
 /// adds none.
-pub(super) fn align((old, new): Sides<'_>, tolerance: f64) -> Links {
+pub(super) fn align((old, new): BothSteps<'_>, tolerance: f64) -> Links {
     let whole = [(old.len(), new.len())];
     let mut links = between((old, new), &whole, tolerance);
     if links.differences().next().is_some() {
@@ -129,7 +129,7 @@ fn tool_changes(steps: StepRange<'_>) -> Vec<usize> {
 }
 
 /// Counts lost and added steps; a tool change counts as three, so that moves stay with their tool.
-fn edits(links: &Links, (old, new): Sides<'_>) -> usize {
+fn edits(links: &Links, (old, new): BothSteps<'_>) -> usize {
     let of = |kind: &StepKind| if matches!(kind, StepKind::Tool(_)) { 3 } else { 1 };
     let each = |(_, link): (usize, StepPair)| match link {
         StepPair::Same(..) => 0,
@@ -141,7 +141,7 @@ fn edits(links: &Links, (old, new): Sides<'_>) -> usize {
 }
 
 /// Links the steps from stop to stop, each a pair of equal steps; the last one is where both end.
-fn between((old, new): Sides<'_>, stops: &[(usize, usize)], tolerance: f64) -> Links {
+fn between((old, new): BothSteps<'_>, stops: &[(usize, usize)], tolerance: f64) -> Links {
     let mut links = Links::default();
     let (mut i, mut j) = (0, 0);
     for &(stop_i, stop_j) in stops {
@@ -166,7 +166,7 @@ fn between((old, new): Sides<'_>, stops: &[(usize, usize)], tolerance: f64) -> L
 
 /// Pairs a move that is lost and added on either side of one equal command: the command is the one that is
 /// reordered.
-fn keep_moves_paired((old, new): Sides<'_>, tolerance: f64, links: &Links) -> Links {
+fn keep_moves_paired((old, new): BothSteps<'_>, tolerance: f64, links: &Links) -> Links {
     let mut all = Links::default();
     let mut links = links.iter();
     let mut next = [links.next(), links.next(), links.next()];
@@ -186,7 +186,7 @@ fn keep_moves_paired((old, new): Sides<'_>, tolerance: f64, links: &Links) -> Li
 fn reordered(
     [first, between, last]: [StepPair; 3],
     before: &Links,
-    (old, new): Sides<'_>,
+    (old, new): BothSteps<'_>,
     tolerance: f64,
 ) -> Option<[StepPair; 3]> {
     let (i, j) = match (first, last) {
@@ -210,10 +210,11 @@ fn reordered(
     })
 }
 
-type Side<'a> = (StepRange<'a>, std::ops::Range<usize>);
+/// Steps of one run, and those between two equal pairs.
+type StepGap<'a> = (StepRange<'a>, std::ops::Range<usize>);
 
 /// Links the steps between two equal pairs.
-fn align_gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64, links: &mut Links) {
+fn align_gap((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, tolerance: f64, links: &mut Links) {
     let (first_i, first_j) = (range_i.start, range_j.start);
     let parallel = common_runs(range_i.len(), range_j.len(), |i, j| {
         old.at(first_i + i).is_parallel(&new.at(first_j + j), tolerance)
@@ -236,7 +237,7 @@ fn align_gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64,
 }
 
 /// Links the remaining steps: as many pairs as possible, with the nearest end points.
-fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, link: &mut impl FnMut(StepPair)) {
+fn nearest((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, link: &mut impl FnMut(StepPair)) {
     let (rows, columns) = (range_i.len(), range_j.len());
     if rows == columns || rows == 0 || columns == 0 || rows * columns > MOST_PAIRS {
         in_order((old, range_i), (new, range_j), link);
@@ -277,7 +278,7 @@ fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, link: &mut impl F
 }
 
 /// Pairs steps of one kind of change as they come.
-fn in_order((old, range_i): Side<'_>, (new, range_j): Side<'_>, link: &mut impl FnMut(StepPair)) {
+fn in_order((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, link: &mut impl FnMut(StepPair)) {
     let (mut i, mut j) = (range_i.start, range_j.start);
     while i < range_i.end && j < range_j.end {
         if old.kind(i).change() == new.kind(j).change() {

@@ -8,7 +8,7 @@ use gcode_lang::diag::FindingKind;
 use gcode_lang::motion::{MAX_AXES, Position};
 
 /// Differences with one sentence, or those that one edit makes of moves.
-pub(super) struct Group {
+pub(super) struct EffectGroup {
     pub kind: &'static FindingKind,
     /// The difference without its count.
     pub text: String,
@@ -84,7 +84,7 @@ pub(super) enum Numbers {
     },
 }
 
-impl Group {
+impl EffectGroup {
     /// Joins a difference that has the text and the numbers of one in the group, and other edits.
     pub(super) fn join_same(&mut self, causes: EditSet, is_direct: bool) {
         self.add_causes(causes, is_direct);

@@ -9,7 +9,7 @@ use super::change::Effect;
 use super::descriptions::{coordinates, describe, point, short};
 use super::differences::{Difference, StepDifference};
 use super::edits::{Causes, Edits};
-use super::effect_groups::{EditSet, Group, Numbers, RepeatedBlocks, block_key};
+use super::effect_groups::{EditSet, EffectGroup, Numbers, RepeatedBlocks, block_key};
 use super::entries::CausedEffect;
 use super::hole_groups::name_holes;
 use super::kinds;
@@ -44,7 +44,7 @@ const MOST_RATES: usize = 4096;
 
 /// All groups, in the order of their first differences.
 pub(super) struct Effects<'a> {
-    all: Vec<Group>,
+    all: Vec<EffectGroup>,
     by_text: BTreeMap<(&'static str, String), usize>,
     /// Groups of differences of feeds by the bits of the feeds, old and new: those of [`MOST_RATES`] pairs.
     by_rates: BTreeMap<[u64; 2], usize>,
@@ -97,7 +97,7 @@ impl<'a> Effects<'a> {
     pub(super) fn finish(mut self) -> Vec<CausedEffect> {
         self.join_shifts();
         let groups = std::mem::take(&mut self.all);
-        let effect = |group: Group| {
+        let effect = |group: EffectGroup| {
             let blocks = self.blocks(group.block_numbers);
             let effect = Effect::new(group.kind, self.message(&group), blocks);
             (group.causes.all.into_iter().map(|edit| edit as usize).collect(), effect)
@@ -189,7 +189,7 @@ impl<'a> Effects<'a> {
     }
 
     /// Returns the group of one difference.
-    fn group_of_difference(&self, kind: &StepDifference, steps: [Option<usize>; 2]) -> Group {
+    fn group_of_difference(&self, kind: &StepDifference, steps: [Option<usize>; 2]) -> EffectGroup {
         let [old, new] = &self.alignment.steps(steps);
         let Some(step) = old.as_ref().or(new.as_ref()) else { unreachable!("a difference has a step") };
         let described = match (kind, old.as_ref().zip(new.as_ref())) {
@@ -223,7 +223,7 @@ impl<'a> Effects<'a> {
         }
         let (causes, is_direct) = self.causes_of_difference(&numbers, block_numbers, steps);
         let counts = vec![(name, 1)];
-        Group { kind, text, counts, varies: false, numbers, causes, is_direct, block_numbers }
+        EffectGroup { kind, text, counts, varies: false, numbers, causes, is_direct, block_numbers }
     }
 
     /// Returns the edits that cause a difference, and whether its blocks are part of them.
@@ -327,7 +327,7 @@ impl<'a> Effects<'a> {
         let into: BTreeMap<usize, usize> = many
             .flat_map(|numbers| numbers[1..].iter().map(|number| (*number, numbers[0])).collect::<Vec<_>>())
             .collect();
-        let mut kept: BTreeMap<usize, Group> = BTreeMap::new();
+        let mut kept: BTreeMap<usize, EffectGroup> = BTreeMap::new();
         for (number, group) in std::mem::take(&mut self.all).into_iter().enumerate() {
             match into.get(&number).and_then(|first| kept.get_mut(first)) {
                 Some(first) => first.join(group),
@@ -337,7 +337,7 @@ impl<'a> Effects<'a> {
         self.all = kept.into_values().collect();
     }
 
-    fn message(&self, group: &Group) -> String {
+    fn message(&self, group: &EffectGroup) -> String {
         let text = &group.text;
         let counts = || -> String {
             let counts: Vec<String> = group.counts.iter().map(|(what, n)| format!("{n} {what}s")).collect();

@@ -3,7 +3,9 @@ use std::collections::BTreeMap;
 
 use super::change::{Change, Effect};
 use super::edits::Edits;
-use super::kinds::precedence;
+use super::kinds::{
+    CUTTER_SIDE, CYCLE, DWELL, FEED, RETURN_LEVEL, TOOL, TOOL_LENGTH, WORK_SYSTEM, precedence,
+};
 
 /// An effect and the numbers of the edits that cause it; none if no edit precedes it.
 pub(super) type CausedEffect = (Vec<usize>, Effect);
@@ -43,9 +45,9 @@ pub(super) fn entries(effects: Vec<CausedEffect>, edits: &Edits<'_>) -> Vec<Chan
 
 /// Returns true if the blocks of such an effect are those of moves, which may be other than the edited one.
 fn is_motion(code: &str) -> bool {
-    let codes =
-        ["feed", "dwell", "tool", "tool-length", "cutter-side", "work-system", "cycle", "return-level"];
-    ["hole-", "move-"].iter().any(|begin| code.starts_with(begin)) || codes.contains(&code)
+    let kinds = [&FEED, &DWELL, &TOOL, &TOOL_LENGTH, &CUTTER_SIDE, &WORK_SYSTEM, &CYCLE, &RETURN_LEVEL];
+    ["hole-", "move-"].iter().any(|begin| code.starts_with(begin))
+        || kinds.iter().any(|kind| kind.code == code)
 }
 
 /// Returns the first edit that an edit is joined with.

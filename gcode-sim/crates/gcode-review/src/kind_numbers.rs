@@ -6,20 +6,20 @@ const PIECE: usize = 256;
 /// Numbers by index.
 #[derive(Clone, Debug, Default)]
 pub(super) struct KindNumbers {
-    pieces: Vec<Piece>,
+    pieces: Vec<NumberPiece>,
     /// Numbers of the last piece, up to [`PIECE`].
     open: Vec<u32>,
 }
 
 #[derive(Clone, Debug)]
-enum Piece {
+enum NumberPiece {
     /// All are equal.
     Constant(u32),
     Short(Box<[u16]>),
     Long(Box<[u32]>),
 }
 
-impl Piece {
+impl NumberPiece {
     fn of(numbers: &[u32]) -> Self {
         let first = numbers.first().copied().unwrap_or_default();
         if numbers.iter().all(|number| *number == first) {
@@ -37,7 +37,7 @@ impl KindNumbers {
     pub(super) fn push(&mut self, number: u32) {
         self.open.push(number);
         if self.open.len() == PIECE {
-            self.pieces.push(Piece::of(&self.open));
+            self.pieces.push(NumberPiece::of(&self.open));
             self.open.clear();
         }
     }
@@ -45,9 +45,9 @@ impl KindNumbers {
     /// Returns the number at an index.
     pub(super) fn get(&self, index: usize) -> u32 {
         match self.pieces.get(index / PIECE) {
-            Some(Piece::Constant(number)) => *number,
-            Some(Piece::Short(numbers)) => u32::from(numbers[index % PIECE]),
-            Some(Piece::Long(numbers)) => numbers[index % PIECE],
+            Some(NumberPiece::Constant(number)) => *number,
+            Some(NumberPiece::Short(numbers)) => u32::from(numbers[index % PIECE]),
+            Some(NumberPiece::Long(numbers)) => numbers[index % PIECE],
             None => self.open[index % PIECE],
         }
     }

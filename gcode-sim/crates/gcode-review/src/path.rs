@@ -300,8 +300,8 @@ mod tests {
         assert_eq!(path.len(), 3);
     }
 
-    /// G54 is X −300 Z −400, H1 is 50 long: the machine stands at Z −400 + 50 + 10 where the display shows Z 10. G55 has other zeros,
-    /// and shows other numbers for the same place. B, which nothing has commanded yet, is not shown.
+    /// G54 is X −300 Z −400, H1 is 50 long: the machine stands at Z −400 + 50 + 10 where the display shows Z 10. G55 has other
+    /// zeros, and shows other numbers for the same place. B, which nothing has commanded yet, is not shown.
     #[test]
     fn a_display_shows_work_coordinates() {
         let text = "O1\nG10 L2 P1 X-300. Y0 Z-400.\nG10 L2 P2 X-100. Y0 Z0.\nG10 L10 P1 R50.\nG90 G54 G0 X5. Y0\nG43 H1 Z10.\nB90.\n\
@@ -317,8 +317,8 @@ mod tests {
         assert_eq!(shown[3], [(0, 5.0), (1, 0.0), (2, -390.0), (shown[2][3].0, 90.0)]);
     }
 
-    /// A zigzag of 40 feeds of 1 mm, 0.4 high, and the rapid before it from an unknown position, in 5 legs: 8 feeds each. The points of the zigzag are 0.4 from
-    /// the line between its ends, which is more than 0.05, 0.1 and 0.2 and no more than 0.4.
+    /// A zigzag of 40 feeds of 1 mm, 0.4 high, and the rapid before it from an unknown position, in 5 legs: 8 feeds each. The
+    /// points of the zigzag are 0.4 from the line between its ends, which is more than 0.05, 0.1 and 0.2 and no more than 0.4.
     #[test]
     fn a_whole_path_joins_moves_and_leaves_out_points() {
         let zigzag: String = (1..=40)

@@ -92,18 +92,6 @@ impl Slice {
         let mut marks = Marks::NONE;
         for (place, Instruction { operation, .. }) in code.iter().enumerate() {
             marks |= match operation {
-                Operation::Add(values)
-                | Operation::Subtract(values)
-                | Operation::Multiply(values)
-                | Operation::Divide(values)
-                | Operation::Compare(_, values)
-                | Operation::Atan2(values)
-                | Operation::Uncommon(UncommonOp::Whole(_, values) | UncommonOp::Power(values)) => {
-                    self.sources_marks(block, values)
-                }
-                Operation::Function(_, value) | Operation::Uncommon(UncommonOp::Load(value)) => {
-                    self.sources_marks(block, std::slice::from_ref(value))
-                }
                 Operation::Uncommon(UncommonOp::Read(number)) => self.variable_marks(block, *number),
                 Operation::Uncommon(UncommonOp::ReadItem { number, rounded, .. }) => {
                     let has_items = block.registers.data.settings.has_variable_bits;
@@ -120,26 +108,16 @@ impl Slice {
                     let number = block.number_before(code, place).filter(|_| is_whole);
                     self.outside(OutsideValue::Parameter(number), None, block.flow, block.op)
                 }
-                Operation::Uncommon(
-                    UncommonOp::Push
-                    | UncommonOp::Negate
-                    | UncommonOp::NegateWord
-                    | UncommonOp::Bracket
-                    | UncommonOp::RoundTo(_)
-                    | UncommonOp::Logic(_)
-                    | UncommonOp::AxisNumber(_)
-                    | UncommonOp::NameNumber(_)
-                    | UncommonOp::SystemNumber(_),
-                ) => Marks::NONE,
+                _ => self.sources_marks(block, operation.sources()),
             };
         }
         marks
     }
 
-    fn sources_marks(&mut self, block: &Block<'_>, values: &[OperandSource]) -> Marks {
+    fn sources_marks(&mut self, block: &Block<'_>, sources: &[OperandSource]) -> Marks {
         let mut marks = Marks::NONE;
-        for value in values {
-            if let OperandSource::Free(place) = value {
+        for source in sources {
+            if let OperandSource::Free(place) = source {
                 marks |= self.variable_marks(block, u32::from(*place));
             }
         }

@@ -1,5 +1,5 @@
 //! Strips of points between two straight lines.
-use gcode_part::common;
+use gcode_part::common_shares;
 use nalgebra::Point3;
 
 /// A straight line, from its start to its end.
@@ -28,7 +28,7 @@ impl Strip {
     pub(super) fn piece(&self, piece: impl Fn(&Line) -> Option<[f64; 2]>) -> Option<[f64; 2]> {
         let [one, other] = &self.edges;
         let first = piece(one)?;
-        if one == other { Some(first) } else { common(first, piece(other)?) }
+        if one == other { Some(first) } else { common_shares(first, piece(other)?) }
     }
 
     /// Returns the largest distance between the edges, mm.

@@ -278,7 +278,8 @@ with_defaults! {
         pub print_needs_open: bool = false,
         /// Most digits that the format of DPRNT allows.
         pub print_digits: usize = 8,
-        /// ODI 5004#2, setting 40 of a Haas: the offsets of D are diameters; `None` if nothing states it, and they count as radii.
+        /// ODI 5004#2, setting 40 of a Haas: the offsets of D are diameters; `None` if nothing states it, and they count as
+        /// radii.
         pub offsets_are_diameters: Option<bool> = None,
         /// OFH 5001#2: the offset of G45 to G48 is that of H, not of D.
         pub tool_offset_is_h: bool = false,

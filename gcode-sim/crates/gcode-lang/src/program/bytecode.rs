@@ -174,12 +174,44 @@ pub enum UncommonOp {
 }
 
 impl From<UncommonOp> for Operation {
-    fn from(rare: UncommonOp) -> Self {
-        Self::Uncommon(rare)
+    fn from(uncommon: UncommonOp) -> Self {
+        Self::Uncommon(uncommon)
     }
 }
 
 impl Operation {
+    /// Returns the sources of its operands; empty for an operation on the last result and the stack alone.
+    pub fn sources(&self) -> &[OperandSource] {
+        match self {
+            Self::Add(sources)
+            | Self::Subtract(sources)
+            | Self::Multiply(sources)
+            | Self::Divide(sources)
+            | Self::Compare(_, sources)
+            | Self::Atan2(sources)
+            | Self::Uncommon(UncommonOp::Whole(_, sources) | UncommonOp::Power(sources)) => sources,
+            Self::Function(_, source) | Self::Uncommon(UncommonOp::Load(source)) => {
+                std::slice::from_ref(source)
+            }
+            Self::Uncommon(
+                UncommonOp::Push
+                | UncommonOp::Read(_)
+                | UncommonOp::ReadItem { .. }
+                | UncommonOp::LoadIndirect
+                | UncommonOp::Negate
+                | UncommonOp::NegateWord
+                | UncommonOp::Bracket
+                | UncommonOp::RoundTo(_)
+                | UncommonOp::Logic(_)
+                | UncommonOp::Parameter { .. }
+                | UncommonOp::AxisNumber(_)
+                | UncommonOp::AddPoint
+                | UncommonOp::NameNumber(_)
+                | UncommonOp::SystemNumber(_),
+            ) => &[],
+        }
+    }
+
     pub(super) fn binary(op: BinaryOp, values: [OperandSource; 2]) -> Self {
         match op {
             BinaryOp::Add => Self::Add(values),

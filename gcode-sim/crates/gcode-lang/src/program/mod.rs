@@ -328,8 +328,8 @@ impl Program {
         self.blocks.texts()
     }
 
-    /// Calls `each` with every block in order: its index, and its operation and the text of its comment if it consists of numbers,
-    /// and one comment at most. Without a comment its text is empty.
+    /// Calls `each` with every block in order: its index, and its operation and the text of its comment if it consists of
+    /// numbers, and one comment at most. Without a comment its text is empty.
     pub fn visit_number_blocks<'t>(&'t self, each: impl FnMut(OpIndex, Option<(&Op, &'t [u8])>)) {
         self.blocks.visit_numbers(each);
     }

@@ -27,8 +27,8 @@ impl Op {
         true
     }
 
-    /// Replaces the operation as [`Op::refill`] does, also by a block of numbers with one comment behind them. Returns the text of
-    /// the comment, which is empty without one.
+    /// Replaces the operation as [`Op::refill`] does, also by a block of numbers with one comment behind them. Returns the text
+    /// of the comment, which is empty without one.
     pub(super) fn refill_commented<'t>(
         &mut self,
         source: SourceId,
@@ -47,8 +47,8 @@ impl Op {
     }
 }
 
-/// Appends the words of the line at `start` to an empty list, up to anything but a word with a number. Returns the iterator behind
-/// them, which has the sequence number, and the end of the last word; `None` for a call.
+/// Appends the words of the line at `start` to an empty list, up to anything but a word with a number. Returns the iterator
+/// behind them, which has the sequence number, and the end of the last word; `None` for a call.
 #[inline(always)]
 fn fill<'t>(
     list: &mut Vec<LoweredWord>,

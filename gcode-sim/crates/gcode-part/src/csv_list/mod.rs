@@ -1,4 +1,5 @@
-//! Lists of holes as CSV, as spreadsheets and people write them: columns in any order, decimal commas, features in columns of their own.
+//! Lists of holes as CSV, as spreadsheets and people write them: columns in any order, decimal commas, features in columns of
+//! their own.
 mod columns;
 #[cfg(test)]
 mod tests;

@@ -227,7 +227,8 @@ pub struct AxisSigns {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BurrProgram {
-    /// loop: a macro computes the points; moves: every move is written out, for a control without LN [default: loop where it can be].
+    /// loop: a macro computes the points; moves: every move is written out, for a control without LN [default: loop where it can
+    /// be].
     #[serde(default, with = "Optional::<Word<ProgramForm>>")]
     form: Option<ProgramForm>,
     /// Speed of the contact along the flute, mm/min [default: 200].

@@ -31,7 +31,8 @@ pub use pattern::{
     PatternPlace, PatternSpec, PatternStep, PatternTool, TiltedFace,
 };
 pub use pin_holes::{
-    AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool, WorkOrder,
+    AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, SurfaceSpec, Tool,
+    WorkOrder,
 };
 pub use sheet::{AlternativeMachine, Minutes, Rates, SheetInfo};
 

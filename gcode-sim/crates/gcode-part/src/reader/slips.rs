@@ -1,6 +1,7 @@
 //! Slips of TOML: a line that the reader of TOML refuses, and the line that is meant.
 //!
-//! Each repair changes the line in one way that people get wrong. The first after which the line is TOML is the one that is meant.
+//! Each repair changes the line in one way that people get wrong. The first after which the line is TOML is the one that is
+//! meant.
 use toml::Table;
 
 /// A repair: what is wrong, and the value or the line put right; `None` if the line isn't wrong in this way.

@@ -1,6 +1,6 @@
 //! Lowering of expressions to bytecode.
-use super::Lowering;
-use crate::alarm::{Alarm, LocatedAlarm};
+use super::{Lowering, LoweringResult};
+use crate::alarm::Alarm;
 use crate::program::DialectSyntax;
 use crate::program::bytecode::{
     AssignmentTarget, Bytecode, ComputedSource, Instruction, Operand, OperandSource, Operation, STACK, Slot,
@@ -41,8 +41,6 @@ impl ExprContext {
         Self { address: None, ..self }
     }
 }
-
-type LoweringResult<T> = Result<T, LocatedAlarm>;
 
 impl Lowering {
     pub(in crate::program) fn operand(

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
-use super::{Family, FileError, JobControl, PinMachine, Reader, SheetInfo, Surface};
+use super::{Family, FileError, JobControl, PinMachine, Reader, SheetInfo, SurfaceSpec};
 use crate::gauge::{self, GaugeSet};
 use crate::reader::bounds::{
     Candidates, ChordError, KeyRange, Length, PartHeight, PartShift, PathFeed, ProbeFeed, ProbeLength,
@@ -34,8 +34,8 @@ pub struct Alignment {
     #[serde(with = "Section::<PinMachine>")]
     pub machine: PinMachine,
     /// The surface that is measured.
-    #[serde(with = "Section::<Surface>")]
-    pub surface: Surface,
+    #[serde(with = "Section::<SurfaceSpec>")]
+    pub surface: SurfaceSpec,
     /// The touch probe.
     #[serde(with = "Section::<TouchProbe>")]
     pub probe: TouchProbe,
@@ -373,7 +373,7 @@ impl Alignment {
 ///
 /// The remainder is a tilt of 0.004° about z and a shift of 0.01 mm in x. At x they raise the part by δ·x·(1
 /// − b²/a²) and by dx·(b²/a²)·x/y.
-fn chord_unevenness(surface: Surface, e: f64, f: f64) -> f64 {
+fn chord_unevenness(surface: SurfaceSpec, e: f64, f: f64) -> f64 {
     let squares = (surface.b * surface.b) / (surface.a * surface.a);
     let steepness = |x: f64| x / surface.section(x).0;
     Deg(0.004).to_rad() * ((e - f) * (1.0 - squares)).abs()
@@ -382,7 +382,7 @@ fn chord_unevenness(surface: Surface, e: f64, f: f64) -> f64 {
 
 /// Returns the tilt about z, degrees, rounded down to thousandths, whose largest dial reading on the path is
 /// `dial`. The dial reads δ·(x·n_y − y·n_x).
-fn dial_tilt(dial: f64, surface: Surface, path: EllipsePath) -> f64 {
+fn dial_tilt(dial: f64, surface: SurfaceSpec, path: EllipsePath) -> f64 {
     let arm = |x: f64| {
         let (y, [across, up]) = surface.section(x);
         (x * up - y * across).abs()

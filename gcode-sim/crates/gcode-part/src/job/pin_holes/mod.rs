@@ -31,8 +31,8 @@ pub struct PinHoles {
     #[serde(with = "Section::<PinMachine>")]
     pub machine: PinMachine,
     /// The surface that the holes begin in.
-    #[serde(with = "Section::<Surface>")]
-    pub surface: Surface,
+    #[serde(with = "Section::<SurfaceSpec>")]
+    pub surface: SurfaceSpec,
     /// Tolerances of the holes.
     #[serde(with = "Section::<HoleTolerance>")]
     pub tolerance: HoleTolerance,
@@ -114,7 +114,7 @@ pub enum HeadKind {
 /// Ellipsoid of revolution about y: (x² + z²)/a² + y²/b² = 1.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Surface {
+pub struct SurfaceSpec {
     /// An ellipsoid of revolution.
     #[serde(rename = "kind", with = "Word::<SurfaceKind>")]
     _kind: SurfaceKind,
@@ -299,7 +299,7 @@ impl Family for PinHoles {
     }
 }
 
-impl Surface {
+impl SurfaceSpec {
     /// Returns the y of the surface over (x, 0, 0) and the x and y of its normal there.
     pub(super) fn section(&self, x: f64) -> (f64, [f64; 2]) {
         let y = self.b * (1.0 - (x / self.a) * (x / self.a)).sqrt();

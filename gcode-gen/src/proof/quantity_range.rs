@@ -62,13 +62,13 @@ impl Quantity {
 
 /// A quantity with its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Over {
+pub(crate) struct QuantityRange {
     pub(crate) quantity: Quantity,
     pub(crate) low: f64,
     pub(crate) high: f64,
 }
 
-impl Over {
+impl QuantityRange {
     /// Parses ranges, each of another quantity; the message of one that can't be used.
     pub(crate) fn parse_all(texts: &[String]) -> Result<Vec<Self>, String> {
         let mut all: Vec<Self> = Vec::new();
@@ -91,14 +91,9 @@ impl Over {
             let keys = Quantity::ALL.map(Quantity::key).join(", ");
             format!("--over {text}: '{}' is none of {keys}", key.trim())
         })?;
-        let limit = |limit: &str| limit.trim().parse::<f64>().ok().filter(|limit| limit.abs() <= 1e5);
-        let limits =
-            limits.split_once("..").and_then(|(low, high)| Some((limit(low)? + 0.0, limit(high)? + 0.0)));
-        let (low, high) = limits
+        let [low, high] = parse_limits(limits)
             .ok_or_else(|| format!("--over {text}: write two numbers up to 100000, '{key}=0..1100'"))?;
-        if low > high {
-            return Err(format!("--over {text}: the lower limit is above the upper one: exchange them"));
-        }
+        check_order(text, [low, high])?;
         let least = match quantity {
             Quantity::Azimuth => f64::NEG_INFINITY,
             Quantity::Radius => 0.0,
@@ -113,6 +108,21 @@ impl Over {
     }
 }
 
+/// Parses the limits of a range, `0..1100`; `None` for others than two numbers up to 100000. −0 becomes 0.
+pub(super) fn parse_limits(text: &str) -> Option<[f64; 2]> {
+    let limit = |limit: &str| limit.trim().parse::<f64>().ok().filter(|limit| limit.abs() <= 1e5);
+    let (low, high) = text.split_once("..")?;
+    Some([limit(low)? + 0.0, limit(high)? + 0.0])
+}
+
+/// Refuses a range whose lower limit is above the upper one; `text` is the range as written.
+pub(super) fn check_order(text: &str, [low, high]: [f64; 2]) -> Result<(), String> {
+    match low <= high {
+        true => Ok(()),
+        false => Err(format!("--over {text}: the lower limit is above the upper one: exchange them")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -120,8 +130,8 @@ mod tests {
     #[test]
     fn a_range_names_a_key_of_the_job() {
         let texts = ["hole.radius=0..1100", "hole.azimuth = -180 .. 180"].map(str::to_owned);
-        let all = Over::parse_all(&texts).unwrap();
-        assert_eq!(all[1], Over { quantity: Quantity::Azimuth, low: -180.0, high: 180.0 });
+        let all = QuantityRange::parse_all(&texts).unwrap();
+        assert_eq!(all[1], QuantityRange { quantity: Quantity::Azimuth, low: -180.0, high: 180.0 });
         for (text, why) in [
             ("hole.radius", "write a key"),
             ("hole.colour=0..1", "is none of"),
@@ -131,9 +141,11 @@ mod tests {
             ("hole.radius=-1..1", "below 0"),
             ("surface.a=0..1", "below 0.001"),
         ] {
-            let error = Over::parse_all(&[text.to_owned()]).unwrap_err();
+            let error = QuantityRange::parse_all(&[text.to_owned()]).unwrap_err();
             assert!(error.contains(why), "{error}");
         }
-        assert!(Over::parse_all(&[texts[0].clone(), texts[0].clone()]).unwrap_err().contains("already"));
+        assert!(
+            QuantityRange::parse_all(&[texts[0].clone(), texts[0].clone()]).unwrap_err().contains("already")
+        );
     }
 }
