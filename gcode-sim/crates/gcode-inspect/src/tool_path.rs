@@ -43,6 +43,8 @@ pub struct ToolPath {
     pub omitted_moves: u64,
     /// Number of stretches of feeds with the tool along each axis of the part, with its sign.
     tool_axes: BTreeMap<(usize, bool), u64>,
+    /// Number of stretches of feeds with the tool along none, by the axis that is nearest to it.
+    oblique_axes: BTreeMap<(usize, bool), u64>,
     /// The same, of moves of a tool whose direction is unknown.
     supposed_axes: BTreeMap<usize, u64>,
 }
@@ -113,9 +115,9 @@ pub struct PathStop {
 
 impl ToolPath {
     /// Returns the axis of the part, 0 to 2, along which the tool is in most stretches of feeds, and whether it points to the positive
-    /// end; `None` if the direction of the tool is unknown or along none.
+    /// end; of a tool that is always oblique the axis nearest to it in most of them; `None` if its direction is unknown.
     pub fn tool_axis(&self) -> Option<(usize, bool)> {
-        most(&self.tool_axes)
+        most(&self.tool_axes).or_else(|| most(&self.oblique_axes))
     }
 
     /// Returns the axis of the part along which a tool of unknown direction probably is: most arcs lie across it and most
@@ -298,9 +300,14 @@ impl<'m> PathRecorder<'m> {
             stretch.points.end = path.points.len();
             stretch.moves.end = moves + 1;
         } else {
-            if let StretchAxis::Along(along, is_positive) = axis {
-                *path.tool_axes.entry((along, is_positive)).or_default() += 1;
-            }
+            let (axes, nearest) = match (axis, axes) {
+                (StretchAxis::Along(along, is_positive), _) => {
+                    (&mut path.tool_axes, Some((along, is_positive)))
+                }
+                (StretchAxis::Oblique, [Some(from), _]) => (&mut path.oblique_axes, Some(nearest_axis(&from))),
+                _ => (&mut path.tool_axes, None),
+            };
+            nearest.into_iter().for_each(|axis| *axes.entry(axis).or_default() += 1);
             path.stretches.push(Stretch {
                 kind,
                 tool: self.setup.tool,
@@ -334,6 +341,12 @@ impl<'m> PathRecorder<'m> {
 fn axis_of(direction: &Unit<Vector3<f64>>) -> Option<(usize, bool)> {
     let axis = direction.iter().position(|part| MIN_COSINE < part.abs())?;
     Some((axis, 0.0 < direction[axis]))
+}
+
+/// Returns the axis of the part that is nearest to a direction, and whether that points to its positive end.
+fn nearest_axis(direction: &Unit<Vector3<f64>>) -> (usize, bool) {
+    let axis = direction.iamax();
+    (axis, 0.0 < direction[axis])
 }
 
 fn moves(arc: &PlanarArc, axis: usize) -> bool {

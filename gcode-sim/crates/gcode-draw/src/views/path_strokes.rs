@@ -105,7 +105,7 @@ impl PathDrawer<'_> {
         };
         let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed).filter(is_along_sight);
         let swept = feeds.filter_map(|run| {
-            let width = self.path.tools.get(run.tool)?.diameter?;
+            let width = self.path.tools.get(run.tool)?.swept_width?;
             let points = self.sparse(view, run);
             let style = Style { tint: Some(Tint::Pale), width: Some(width), ..Style::default() };
             // A plunge sweeps no more than its hole, which has a symbol.
