@@ -105,8 +105,10 @@ fn tool(number: Option<u32>, machine: &Machine) -> DrawnTool {
     let kind = kind_of_point.map(|kind| format!(" {}", kind.name().replace('-', " ")));
     let size = diameter.map(|diameter| format!(" Φ{}", super::figures::short(diameter)));
     let name = format!("T{number}{}{}", kind.unwrap_or_default(), size.unwrap_or_default());
-    let is_wide = !matches!(kind_of_point, Some(ToolKind::SpotDrill | ToolKind::Countersink | ToolKind::Probe))
-        && !(kind_of_point == Some(ToolKind::EndMill) && point_angle.is_some_and(|angle| angle.0 < 180.0));
+    let is_wide =
+        !matches!(kind_of_point, Some(ToolKind::SpotDrill | ToolKind::Countersink | ToolKind::Probe))
+            && !(kind_of_point == Some(ToolKind::EndMill)
+                && point_angle.is_some_and(|angle| angle.0 < 180.0));
     DrawnTool { name, swept_width: diameter.filter(|_| is_wide) }
 }
 
@@ -195,4 +197,27 @@ pub(crate) fn finding_line<'a>(
 /// Returns true if there is something to draw: a move or a hole.
 pub(crate) fn is_drawable(path: &ToolPath, holes: &TopView) -> bool {
     !path.moves.is_empty() || !holes.holes.is_empty()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_lang::units::Deg;
+
+    /// A cone of 60° that is 0.2 deep cuts 0.23 wide, not its 6: the depth below the surface is unknown.
+    #[test]
+    fn a_cone_sweeps_no_width_of_its_own() {
+        let width = |kind, point_angle| {
+            let known = Tool { number: 1, kind, diameter: Some(6.0), point_angle, ..Tool::default() };
+            tool(Some(1), &Machine { tools: vec![known], ..Machine::default() }).swept_width
+        };
+        let angle = Some(Deg(60.0));
+        for kind in [ToolKind::Countersink, ToolKind::SpotDrill, ToolKind::Probe] {
+            assert_eq!(width(Some(kind), None), None, "{kind:?}");
+        }
+        assert_eq!(width(Some(ToolKind::EndMill), angle), None);
+        for (kind, angle) in [(Some(ToolKind::EndMill), None), (Some(ToolKind::Drill), angle), (None, None)] {
+            assert_eq!(width(kind, angle), Some(6.0), "{kind:?}");
+        }
+    }
 }

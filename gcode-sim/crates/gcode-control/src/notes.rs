@@ -231,8 +231,8 @@ impl Note {
             Self::NoKinematics(code) => (&NO_KINEMATICS, format!("{} without the rotary axes of the machine: X, Y and Z go on as if a table had turned the part, and where they and the rotary axes are on the machine is unknown", name(code)), "describe [[table]] or [[head.axis]], and [head], in the machine file"),
             Self::UnclosedComment => (&UNCLOSED_COMMENT, "the comment is not closed: the rest of the block is comment".to_owned(), "close it with ): some controls refuse the block"),
             Self::NestedComment => (&NESTED_COMMENT, "a comment stands inside a comment: a control ends it at the first ), and reads the words behind that".to_owned(), "take the inner brackets out"),
-            Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
-            Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT=1 to switch block skip 1 on"),
+            Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT without its number to switch it off"),
+            Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT with its number, as BDT=2 or BDT=1+2, to switch it on"),
             Self::DrillsAlongZ(code) => (&DRILL_PLANE, format!("the cycle drills along Z while G{} is in force: a control may drill along the normal of that plane", spelled(code)), "write G17, or give --control FXY=1 for a control that drills along the normal"),
             Self::LargeAlarmNumber { number, max } => (&LARGE_ALARM_NUMBER, format!("#3000={number}: the manuals give numbers up to {max}"), "use a smaller number"),
         }

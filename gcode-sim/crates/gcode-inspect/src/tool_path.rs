@@ -300,14 +300,11 @@ impl<'m> PathRecorder<'m> {
             stretch.points.end = path.points.len();
             stretch.moves.end = moves + 1;
         } else {
-            let (axes, nearest) = match (axis, axes) {
-                (StretchAxis::Along(along, is_positive), _) => {
-                    (&mut path.tool_axes, Some((along, is_positive)))
-                }
-                (StretchAxis::Oblique, [Some(from), _]) => (&mut path.oblique_axes, Some(nearest_axis(&from))),
-                _ => (&mut path.tool_axes, None),
-            };
-            nearest.into_iter().for_each(|axis| *axes.entry(axis).or_default() += 1);
+            match (axis, axes[0]) {
+                (StretchAxis::Along(..), Some(out)) => count_axis(&mut path.tool_axes, &out),
+                (StretchAxis::Oblique, Some(out)) => count_axis(&mut path.oblique_axes, &out),
+                _ => {}
+            }
             path.stretches.push(Stretch {
                 kind,
                 tool: self.setup.tool,
@@ -343,10 +340,10 @@ fn axis_of(direction: &Unit<Vector3<f64>>) -> Option<(usize, bool)> {
     Some((axis, 0.0 < direction[axis]))
 }
 
-/// Returns the axis of the part that is nearest to a direction, and whether that points to its positive end.
-fn nearest_axis(direction: &Unit<Vector3<f64>>) -> (usize, bool) {
+/// Counts a stretch for the axis of the part that is nearest to a direction, and for its sign.
+fn count_axis(counts: &mut BTreeMap<(usize, bool), u64>, direction: &Unit<Vector3<f64>>) {
     let axis = direction.iamax();
-    (axis, 0.0 < direction[axis])
+    *counts.entry((axis, 0.0 < direction[axis])).or_default() += 1;
 }
 
 fn moves(arc: &PlanarArc, axis: usize) -> bool {
@@ -440,6 +437,14 @@ mod tests {
         let down = StretchAxis::Along(2, true);
         assert!(axes[..2] == [down, down] && matches!(axes[2..], [StretchAxis::Along(0, _)]), "{axes:?}");
         assert_eq!(path.tool_axis(), Some((2, true)));
+    }
+
+    /// With the table at B30 and B60 the tool is 30° and 60° off z: nearest to z in two stretches, to x in one.
+    #[test]
+    fn an_oblique_tool_counts_for_the_nearest_axis() {
+        let script = "rapid B30; feed X10; rapid Z5; feed X20; rapid Z9; rapid B60; feed X30";
+        let path = path(&upright(), &EventScript::new().then(script));
+        assert_eq!((path.tool_axes.len(), path.tool_axis()), (0, Some((2, true))));
     }
 
     /// Chords of a quarter of radius 10 deviate by at most 0.005: each spans at most 2·acos(1 − 0.0005) = 3.62°, so that

@@ -122,7 +122,7 @@ pub(super) fn unset_work_offsets<'r>(
 }
 
 /// Returns the name of a work offset on a control: `G55`, `G54.1 P3`, `G154 P3`.
-pub(super) fn work_offset_name(system: WorkSystem, dialect: Dialect) -> String {
+pub fn work_offset_name(system: WorkSystem, dialect: Dialect) -> String {
     match system {
         WorkSystem::Standard(_) => system.name(),
         WorkSystem::Additional(number) => additional_system_name(dialect, usize::from(number)),

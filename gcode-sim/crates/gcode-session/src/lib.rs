@@ -39,6 +39,7 @@ mod trace;
 use std::sync::Arc;
 
 pub use assumptions::Dependencies;
+pub use causes::work_offset_name;
 pub use error::SessionError;
 pub use judgement::{Criteria, HoleJudgement, judge_flutes, judge_holes, simulate_judged};
 pub use open_depths::complete_depths;

@@ -146,7 +146,9 @@ fn list(
             hole.diameter = None;
         }
         let far_side = body.and_then(|body| thickness(&body, &entry, &out));
-        if let Some(thick) = far_side.filter(|thick| drilled.breaks_out(&entry, &out, *thick, &request.machine)) {
+        if let Some(thick) =
+            far_side.filter(|thick| drilled.breaks_out(&entry, &out, *thick, &request.machine))
+        {
             (hole.through, hole.depth) = (true, thick);
             let depths = hole.features.iter_mut().filter_map(|feature| feature.depth.as_mut());
             depths.for_each(|depth| *depth = depth.min(rounded(thick, 1e4)));

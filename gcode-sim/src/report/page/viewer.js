@@ -282,8 +282,15 @@ class Side {
   // Draws the work zeros: a circle with two black quarters, and its name where the first of them is not the only one.
   drawZeros(colours) {
     const context = this.context;
+    // Zeros in one place have their names in one line.
+    const places = [];
     for (const [name, at] of this.zeros) {
       const [x, y] = this.point(at);
+      const same = places.find((place) => Math.hypot(place.x - x, place.y - y) < 8);
+      if (same) same.name += `, ${name}`;
+      else places.push({ x, y, name });
+    }
+    for (const { x, y, name } of places) {
       Object.assign(context, { strokeStyle: colours.ink, fillStyle: colours.paper, lineWidth: 1.5 });
       context.beginPath();
       context.arc(x, y, 8, 0, 2 * Math.PI);

@@ -15,7 +15,7 @@ use gcode_inspect::verify::{Answer, Conclusion};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, LengthCompensation};
 use gcode_part::{Assumption, Total};
-use gcode_session::{Request, Simulation};
+use gcode_session::{Request, Simulation, work_offset_name};
 use layout::{BASIS, blank, cell, digest, table};
 use recorder::{OffsetObserver, SheetStop, ToolUse, UseRecorder};
 
@@ -210,7 +210,7 @@ impl ProgramSheet<'_> {
                 Some(values) => cell(values.join(" ")),
                 None => blank(),
             };
-            vec![cell(system.name()), value, blank()]
+            vec![cell(work_offset_name(*system, self.request.settings.dialect)), value, blank()]
         });
         html! {
             h2 { "Work zeros" }

@@ -92,7 +92,8 @@ impl PathDrawer<'_> {
             ColorBy::Feed => self.shades.map(|scale| scale.tint(scale.level(run.feed))),
             ColorBy::Depth => None,
         };
-        Style { tint, pattern: (order % 6) as u8, ..Style::default() }
+        // The seventh tool has the first one's colour and the second one's dashes.
+        Style { tint, pattern: ((order + order / 6) % 6) as u8, ..Style::default() }
     }
 
     /// Draws the areas that the cutters sweep along the feeds, where the tool is along the line of sight.

@@ -31,8 +31,15 @@ impl DrilledHole {
 
     /// Returns true if a pass goes deeper than `thickness` below the entry, and each that does has its full diameter there.
     /// The end of a tool of unknown shape may be a point of any length.
-    pub fn breaks_out(&self, entry: &Point3<f64>, out: &Vector3<f64>, thickness: f64, machine: &Machine) -> bool {
-        let mut beyond = self.passes().filter(|pass| thickness < (entry - pass.cut.bottom).dot(out)).peekable();
+    pub fn breaks_out(
+        &self,
+        entry: &Point3<f64>,
+        out: &Vector3<f64>,
+        thickness: f64,
+        machine: &Machine,
+    ) -> bool {
+        let mut beyond =
+            self.passes().filter(|pass| thickness < (entry - pass.cut.bottom).dot(out)).peekable();
         let is_whole = |pass: ToolPass<'_>| {
             let tip = (entry - pass.cut.bottom).dot(out);
             let tool = pass.tool.and_then(|number| machine.find_tool(number));

@@ -60,7 +60,7 @@ const COLUMNS: [(&str, &[&str]); 11] = [
     ("depth", &["tiefe", "深度", "孔深"]),
     ("diameter", &["dia", "d", "ø", "φ", "durchmesser", "直径", "孔径"]),
     ("features", &[]),
-    ("through", &[]),
+    ("through", &["thru", "durchgehend", "通孔"]),
 ];
 
 /// Other names of the columns of features, which `thread depth` begins with too.

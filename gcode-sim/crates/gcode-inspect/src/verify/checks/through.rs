@@ -200,7 +200,9 @@ impl Judgement<'_> {
                 && exceeds(self.nominal.depth - thickness, tolerances.depth)
                 && !exceeds(thickness, cut);
             let help = if is_listed_deeper {
-                format!("the part is {thickness:.3} mm thick there: write that as the depth of a through hole, or drill deeper")
+                format!(
+                    "the part is {thickness:.3} mm thick there: write that as the depth of a through hole, or drill deeper"
+                )
             } else {
                 "drill deeper: the full diameter has to pass the far side".to_owned()
             };
