@@ -109,6 +109,37 @@ fn a_list_of_a_programs_holes_is_written_as_its_ending_says() {
     assert_eq!(std::fs::read_to_string(dir.join("holes.csv")).unwrap(), csv);
 }
 
+/// The full diameter of 8.5 with a point of 118° ends 8.5/2/tan 59° = 2.554 above the tip: 21.446 deep at Z-24, through the
+/// stock of 20; 19.446 at Z-22, not through.
+#[test]
+fn a_hole_whose_full_diameter_leaves_the_stock_is_listed_as_through() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    let machine = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n[[tool]]\nnumber = 1\nkind = \"drill\"\ndiameter = 8.5\n\
+                   point_angle = 118.0\nlength = 100.0\n[stock]\nkind = \"box\"\nmin = [0.0, 0.0, -20.0]\nmax = [60.0, 40.0, 0.0]\n";
+    std::fs::write(dir.join("machine.toml"), machine).unwrap();
+    let program = "O1\nG21 G90 G54 G40 G80\nT1 M6\nS800 M3\nG0 X15. Y20.\nG43 H1 Z50.\nG99 G83 Z-24. Q5. R2. F90.\nX45. Z-22.\n\
+                   G80 G0 Z50.\nM30\n";
+    std::fs::write(dir.join("O1.nc"), program).unwrap();
+    let (code, list, messages) = run("gcode-sim new reference --from O1.nc", dir);
+    let header = HEADER.replace("diameter\n", "diameter,through\n");
+    let expected = format!("{header}1,15,20,0,0,0,1,20,8.5,yes\n2,45,20,0,0,0,1,22,8.5,\n");
+    assert_eq!((code, list.as_str()), (0, expected.as_str()), "{messages}");
+    assert!(messages.contains("note: 1 hole through the stock"), "{messages}");
+    std::fs::write(dir.join("holes.csv"), &list).unwrap();
+    let (code, text, messages) = run("gcode-sim verify O1.nc --reference holes.csv", dir);
+    assert!(code == 0 && text.contains("PASS"), "{text}{messages}");
+
+    // A list with the depth of the tip says what is wrong with it.
+    std::fs::write(dir.join("holes.csv"), list.replace("1,20,8.5,yes", "1,24,8.5,yes")).unwrap();
+    let (code, _, messages) = run("gcode-sim verify O1.nc --reference holes.csv", dir);
+    assert!(code == 1 && messages.contains("the part is 20.000 mm thick there: write that"), "{messages}");
+    // A drill that doesn't break out is no fault of the list.
+    std::fs::write(dir.join("holes.csv"), list.replace("1,22,8.5,", "1,20,8.5,yes")).unwrap();
+    let (code, _, messages) = run("gcode-sim verify O1.nc --reference holes.csv", dir);
+    assert!(code == 1 && messages.contains("drill deeper: the full diameter"), "{messages}");
+}
+
 /// Features by hand: T1's cone of 90° is 2·4 wide where it is 4 deep, 8 of which T2 leaves open below 8.5, so that it makes
 /// none; T3's is 2·6 = 12 wide, T4 taps 750 / 500 = 1.5.
 #[test]

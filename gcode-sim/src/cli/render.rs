@@ -267,13 +267,12 @@ pub(super) fn path_picture(
     findings: &[Diagnostic],
     reference: Option<&Reference>,
 ) -> Result<Picture, UsageError> {
-    // Warnings are about holes, which only a reference says are meant.
-    let warnings = reference.and_then(|_| tool_path::finding_line(findings, Severity::Warning, "warning"));
-    let errors = match reference {
-        Some(_) => tool_path::finding_line(findings, Severity::Error, "error"),
-        None => tool_path::finding_line(&simulation.extracted.findings, Severity::Error, "error"),
-    };
-    holes.lines.extend(errors.into_iter().chain(warnings));
+    let findings = if reference.is_some() { findings } else { &simulation.extracted.findings };
+    let errors = tool_path::finding_line(findings, Severity::Error, "error");
+    let warnings = tool_path::finding_line(findings, Severity::Warning, "warning");
+    let is_inch = simulation.run.control.is_inch();
+    let unit = is_inch.then(|| "mm; the program is in inches".to_owned());
+    holes.lines.extend(errors.into_iter().chain(warnings).chain(unit));
     let stock = reference.and_then(|reference| reference.stock.clone()).or(request.machine.stock.clone());
     let surroundings = (stock, request.settings.stroke_limits);
     hole_picture(style, holes, path, simulation, &request.machine, surroundings)

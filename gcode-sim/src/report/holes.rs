@@ -64,7 +64,9 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
 pub(crate) fn csv(list: &HoleList) -> String {
     let has_features = list.holes.iter().any(|hole| !hole.features.is_empty());
     let mut text = String::from("id,x,y,z,i,j,k,depth,diameter");
-    text.push_str(if has_features { ",features\n" } else { "\n" });
+    let has_through = list.holes.iter().any(|hole| hole.through);
+    text.push_str(if has_features { ",features" } else { "" });
+    text.push_str(if has_through { ",through\n" } else { "\n" });
     for (index, hole) in list.holes.iter().enumerate() {
         let id = hole.id.clone().unwrap_or_else(|| (index + 1).to_string());
         let quoted =
@@ -75,6 +77,9 @@ pub(crate) fn csv(list: &HoleList) -> String {
         if has_features {
             let features = hole.features.iter().map(Feature::cell).collect::<Vec<_>>();
             let _ = write!(text, ",{}", features.join("; "));
+        }
+        if has_through {
+            text.push_str(if hole.through { ",yes" } else { "," });
         }
         text.push('\n');
     }

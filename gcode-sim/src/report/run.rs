@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use super::figures::{as_on_control, count, duration, rounded};
+use super::figures::{as_on_control, count, duration, rounded, short};
 use gcode_control::{Outcome, Value, printable};
 use gcode_inspect::machine::Machine;
 use gcode_lang::alarm::remedy;
@@ -373,7 +373,7 @@ impl RunReport {
             let _ = writeln!(text, "moves      machine coordinates in mm and degrees");
         }
         for step in self.path.iter().flatten() {
-            let feed = step.feed.map(|f| format!("  F{f}")).unwrap_or_default();
+            let feed = step.feed.map(|f| format!("  F{}", short(f))).unwrap_or_default();
             let location = format!("{}:{}", step.program, step.line);
             let _ = writeln!(
                 text,

@@ -2,12 +2,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{as_on_control, count};
+use super::run::comments;
 use super::top::side_along_holes;
 use super::work_zeros::zeros;
 use gcode_draw::{
     DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, Side, Sign, TopView, TravelLimit,
 };
-use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool};
+use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool, ToolKind};
 use gcode_inspect::tool_path::{PathKind, PathStop, StretchAxis, ToolPath};
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -94,17 +95,21 @@ pub(crate) fn of_path(
     }
 }
 
-/// Returns name and diameter of a tool.
+/// Returns the name of a tool and the width that it sweeps: a cone cuts as wide as it is deep, and a probe cuts nothing.
 fn tool(number: Option<u32>, machine: &Machine) -> DrawnTool {
     let Some(number) = number else {
-        return DrawnTool { name: "feed, no tool called before".to_owned(), diameter: None };
+        return DrawnTool { name: "feed, no tool called before".to_owned(), swept_width: None };
     };
     let known = machine.tools.iter().find(|tool| tool.number == number).copied();
-    let Tool { kind, diameter, .. } = known.unwrap_or_default();
-    let kind = kind.map(|kind| format!(" {}", kind.name().replace('-', " ")));
+    let Tool { kind: kind_of_point, diameter, point_angle, .. } = known.unwrap_or_default();
+    let kind = kind_of_point.map(|kind| format!(" {}", kind.name().replace('-', " ")));
     let size = diameter.map(|diameter| format!(" Φ{}", super::figures::short(diameter)));
     let name = format!("T{number}{}{}", kind.unwrap_or_default(), size.unwrap_or_default());
-    DrawnTool { name, diameter }
+    let is_wide =
+        !matches!(kind_of_point, Some(ToolKind::SpotDrill | ToolKind::Countersink | ToolKind::Probe))
+            && !(kind_of_point == Some(ToolKind::EndMill)
+                && point_angle.is_some_and(|angle| angle.0 < 180.0));
+    DrawnTool { name, swept_width: diameter.filter(|_| is_wide) }
 }
 
 /// Returns start and end of the path, its stops, and the position of an alarm.
@@ -154,14 +159,19 @@ fn notes(path: &ToolPath, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
     // The control and the path record the same stops in their order.
     let variables = simulation.run.control.stops().iter().map(|stop| stop.variables.as_slice());
-    let texts = path.stops.iter().zip(variables).filter(|(stop, _)| !stop.text.is_empty());
+    let sources = simulation.run.control.memory().sources();
+    let text = |stop: &PathStop| match stop.text.as_str() {
+        "" => comments(&sources.text(stop.block)),
+        shown => shown.to_owned(),
+    };
+    let texts = path.stops.iter().zip(variables).map(|(stop, variables)| (stop, text(stop), variables));
     let value = |(number, value): &(u32, f64)| format!("#{number} = {}", as_on_control(*value));
-    let line = |(stop, variables): (&PathStop, &[(u32, f64)])| {
+    let line = |(stop, text, variables): (&PathStop, String, &[(u32, f64)])| {
         let values: Vec<String> = variables.iter().map(value).collect();
         let values = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
-        format!("stop {}: {}{values}", stop.kind.name(), stop.text)
+        format!("stop {}: {text}{values}", stop.kind.name())
     };
-    notes.extend(texts.take(MAX_STOP_TEXTS).map(line));
+    notes.extend(texts.filter(|(_, text, _)| !text.is_empty()).take(MAX_STOP_TEXTS).map(line));
     if 0 < path.unplaced_feeds {
         let feeds = count(path.unplaced_feeds, "feed");
         notes.push(format!("{feeds} from or to an unknown position not drawn"));
@@ -187,4 +197,27 @@ pub(crate) fn finding_line<'a>(
 /// Returns true if there is something to draw: a move or a hole.
 pub(crate) fn is_drawable(path: &ToolPath, holes: &TopView) -> bool {
     !path.moves.is_empty() || !holes.holes.is_empty()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_lang::units::Deg;
+
+    /// A cone of 60° that is 0.2 deep cuts 0.23 wide, not its 6: the depth below the surface is unknown.
+    #[test]
+    fn a_cone_sweeps_no_width_of_its_own() {
+        let width = |kind, point_angle| {
+            let known = Tool { number: 1, kind, diameter: Some(6.0), point_angle, ..Tool::default() };
+            tool(Some(1), &Machine { tools: vec![known], ..Machine::default() }).swept_width
+        };
+        let angle = Some(Deg(60.0));
+        for kind in [ToolKind::Countersink, ToolKind::SpotDrill, ToolKind::Probe] {
+            assert_eq!(width(Some(kind), None), None, "{kind:?}");
+        }
+        assert_eq!(width(Some(ToolKind::EndMill), angle), None);
+        for (kind, angle) in [(Some(ToolKind::EndMill), None), (Some(ToolKind::Drill), angle), (None, None)] {
+            assert_eq!(width(kind, angle), Some(6.0), "{kind:?}");
+        }
+    }
 }

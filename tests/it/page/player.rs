@@ -91,6 +91,24 @@ fn the_listing_follows_the_moves() {
     }
 }
 
+/// Z is unknown until Z50.: the path begins there, as where one block commands X, Y and Z.
+#[test]
+fn the_start_is_where_the_known_path_begins() {
+    let drawn = |first: &str| {
+        let place = tempfile::tempdir().unwrap();
+        let program = format!("O1\nG21 G90 G54 {first}\nG1 Z-5. F100\nX100.\nY40.\nM30\n");
+        std::fs::write(place.path().join("O1.nc"), program).unwrap();
+        assert!(programs::run_line("gcode-sim page O1.nc -o page.html", place.path()).status.success());
+        let browser = Browser::start(1400, 1000);
+        browser.open(&place.path().join("page.html"));
+        browser.click("[data-view=front]");
+        picture(&browser, "new")
+    };
+    let begins_at_50 = drawn("G0 X0. Y0. Z50.");
+    assert_eq!(drawn("G0 X0. Y0.\nZ50."), begins_at_50);
+    assert_ne!(drawn("G0 X0. Y0. Z20."), begins_at_50);
+}
+
 /// The work zero, the start and the end are drawn, and in the legend.
 #[test]
 fn zero_start_and_end_are_drawn() {

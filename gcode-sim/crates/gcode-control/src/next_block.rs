@@ -4,7 +4,7 @@ use super::flow::CallFrame;
 use super::registers::Registers;
 use super::words::{computed_row, count};
 use gcode_lang::program::code_facts::{AxisWords, Letters, Unsimulated};
-use gcode_lang::program::g_codes::Effect;
+use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::m_codes::MCodeEffect;
 use gcode_lang::program::modes::Distance;
 use gcode_lang::program::{
@@ -23,6 +23,8 @@ pub struct BlockCommands {
     pub offsets: Vec<String>,
     /// Letters of F, S, T, H and D with a value.
     pub valued_letters: Vec<char>,
+    /// G12 or G13 of a Haas, whose circles are smaller by the radius of D.
+    pub is_circle_pocket: bool,
 }
 
 /// Codes of the next block that have no effect in a run and may have one on a machine.
@@ -188,6 +190,7 @@ impl Registers {
             if !matches!(row.facts.axis_words, AxisWords::Move | AxisWords::Hole) {
                 axis_words = row.facts.axis_words;
             }
+            commands.is_circle_pocket |= matches!(row.effect, Effect::OneShot(OneShot::CirclePocket(_)));
             commands.modes.extend(row.group().map(|group| (group, row.code)));
         }
         let is_positioned = match axis_words {

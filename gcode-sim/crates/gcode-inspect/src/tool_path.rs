@@ -43,6 +43,8 @@ pub struct ToolPath {
     pub omitted_moves: u64,
     /// Number of stretches of feeds with the tool along each axis of the part, with its sign.
     tool_axes: BTreeMap<(usize, bool), u64>,
+    /// Number of stretches of feeds with the tool along none, by the axis that is nearest to it.
+    oblique_axes: BTreeMap<(usize, bool), u64>,
     /// The same, of moves of a tool whose direction is unknown.
     supposed_axes: BTreeMap<usize, u64>,
 }
@@ -113,9 +115,9 @@ pub struct PathStop {
 
 impl ToolPath {
     /// Returns the axis of the part, 0 to 2, along which the tool is in most stretches of feeds, and whether it points to the positive
-    /// end; `None` if the direction of the tool is unknown or along none.
+    /// end; of a tool that is always oblique the axis nearest to it in most of them; `None` if its direction is unknown.
     pub fn tool_axis(&self) -> Option<(usize, bool)> {
-        most(&self.tool_axes)
+        most(&self.tool_axes).or_else(|| most(&self.oblique_axes))
     }
 
     /// Returns the axis of the part along which a tool of unknown direction probably is: most arcs lie across it and most
@@ -298,8 +300,10 @@ impl<'m> PathRecorder<'m> {
             stretch.points.end = path.points.len();
             stretch.moves.end = moves + 1;
         } else {
-            if let StretchAxis::Along(along, is_positive) = axis {
-                *path.tool_axes.entry((along, is_positive)).or_default() += 1;
+            match (axis, axes[0]) {
+                (StretchAxis::Along(..), Some(out)) => count_axis(&mut path.tool_axes, &out),
+                (StretchAxis::Oblique, Some(out)) => count_axis(&mut path.oblique_axes, &out),
+                _ => {}
             }
             path.stretches.push(Stretch {
                 kind,
@@ -334,6 +338,12 @@ impl<'m> PathRecorder<'m> {
 fn axis_of(direction: &Unit<Vector3<f64>>) -> Option<(usize, bool)> {
     let axis = direction.iter().position(|part| MIN_COSINE < part.abs())?;
     Some((axis, 0.0 < direction[axis]))
+}
+
+/// Counts a stretch for the axis of the part that is nearest to a direction, and for its sign.
+fn count_axis(counts: &mut BTreeMap<(usize, bool), u64>, direction: &Unit<Vector3<f64>>) {
+    let axis = direction.iamax();
+    *counts.entry((axis, 0.0 < direction[axis])).or_default() += 1;
 }
 
 fn moves(arc: &PlanarArc, axis: usize) -> bool {
@@ -427,6 +437,14 @@ mod tests {
         let down = StretchAxis::Along(2, true);
         assert!(axes[..2] == [down, down] && matches!(axes[2..], [StretchAxis::Along(0, _)]), "{axes:?}");
         assert_eq!(path.tool_axis(), Some((2, true)));
+    }
+
+    /// With the table at B30 and B60 the tool is 30° and 60° off z: nearest to z in two stretches, to x in one.
+    #[test]
+    fn an_oblique_tool_counts_for_the_nearest_axis() {
+        let script = "rapid B30; feed X10; rapid Z5; feed X20; rapid Z9; rapid B60; feed X30";
+        let path = path(&upright(), &EventScript::new().then(script));
+        assert_eq!((path.tool_axes.len(), path.tool_axis()), (0, Some((2, true))));
     }
 
     /// Chords of a quarter of radius 10 deviate by at most 0.005: each spans at most 2·acos(1 − 0.0005) = 3.62°, so that

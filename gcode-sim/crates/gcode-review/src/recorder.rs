@@ -119,7 +119,7 @@ impl Recorder {
     fn begin(&mut self, commands: BlockCommands, backtrace: &Backtrace) {
         let groups = commands.modes.iter().map(|(group, _)| *group).filter(|group| *group != MOVES);
         self.commanded = (ModalAspect::commanded_by(&commands), groups.collect());
-        let BlockCommands { modes, axes, offsets, valued_letters } = commands;
+        let BlockCommands { modes, axes, offsets, valued_letters, is_circle_pocket: _ } = commands;
         for letter in valued_letters {
             let number = self.numbers.number(backtrace);
             self.set_by.insert(letter, (backtrace.block, number));

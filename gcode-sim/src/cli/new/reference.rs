@@ -2,16 +2,17 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::{ExitStatus, OutputFile, UsageError};
 use crate::cli::conditions::{ProgramArguments, RunConditions};
 use crate::cli::{common, options, output, progress};
+use crate::report::figures::count as count_of;
 use crate::report::holes as report;
 use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT, MAIN_PROGRAM};
 use gcode_inspect::holes::DrilledHole;
 use gcode_lang::diag::Diagnostic;
-use gcode_part::{Hole, HoleList};
+use gcode_part::{Hole, HoleList, Surface};
 use gcode_session::{Request, Simulation};
 
 #[derive(Debug, Args)]
@@ -65,6 +66,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         output::print_message(
             "note: without a diameter: holes whose tool is not in the machine file; write those of the drawing\n",
         );
+    }
+    let through = list.holes.iter().filter(|hole| hole.through).count();
+    if 0 < through {
+        let holes = count_of(through, "hole");
+        output::print_message(&format!(
+            "note: {holes} through the stock: `through`, and the depth is the thickness there\n"
+        ));
     }
     let is_in_no_hole =
         |finding: &&Diagnostic| [&FEED_NO_HOLE, &FEED_WITHOUT_RETRACT].contains(&finding.kind);
@@ -137,6 +145,14 @@ fn list(
         if !hole.features.is_empty() {
             hole.diameter = None;
         }
+        let far_side = body.and_then(|body| thickness(&body, &entry, &out));
+        if let Some(thick) =
+            far_side.filter(|thick| drilled.breaks_out(&entry, &out, *thick, &request.machine))
+        {
+            (hole.through, hole.depth) = (true, thick);
+            let depths = hole.features.iter_mut().filter_map(|feature| feature.depth.as_mut());
+            depths.for_each(|depth| *depth = depth.min(rounded(thick, 1e4)));
+        }
         hole.id = Some((index + 1).to_string());
         hole.from = None;
         hole.entry = hole.entry.map(|value| rounded(value, 1e4));
@@ -145,6 +161,14 @@ fn list(
         hole.diameter = hole.diameter.map(|diameter| rounded(diameter, 1e4));
     }
     Ok((list, entries))
+}
+
+/// Returns the distance from an entry to the opposite side of a block; `None` where the hole runs askew or the body is round, so
+/// that its wall is longer than its axis.
+fn thickness(body: &Surface, entry: &Point3<f64>, out: &Vector3<f64>) -> Option<f64> {
+    let is_straight = matches!(body, Surface::Block { .. }) && 1.0 - 1e-9 < out.amax();
+    let far = body.exit(entry, &-Unit::new_normalize(*out)).filter(|_| is_straight)?;
+    Some((entry - far).dot(out)).filter(|thick| 0.0 < *thick)
 }
 
 /// Returns the holes, each once, with their indices in the extraction.

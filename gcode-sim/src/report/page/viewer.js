@@ -75,6 +75,9 @@ class Side {
     Object.assign(this, data, { canvas, context: canvas.getContext("2d"), moves: scene.strokes });
     this.starts = new Uint32Array(this.moves.length + 1);
     this.moves.forEach(({ line }, move) => (this.starts[move + 1] = this.starts[move] + line.length / 3));
+    // The point at which the known path begins: a move from an unknown position is its end alone.
+    const known = this.moves.findIndex(({ line }) => 3 < line.length);
+    this.first = known < 0 ? this.starts[this.moves.length] - 1 : this.starts[known];
     this.xyz = Float64Array.from(this.moves.flatMap(({ line }) => line));
     this.isChanged = new Set(changed);
     // Exact points by move, and those in sight on the canvas.
@@ -87,6 +90,7 @@ class Side {
       id: mark.label[0],
       entry: position,
       bottom: position.map((mm, axis) => mm - depth * direction[axis]),
+      axis: direction,
       depth,
     }));
   }
@@ -278,8 +282,15 @@ class Side {
   // Draws the work zeros: a circle with two black quarters, and its name where the first of them is not the only one.
   drawZeros(colours) {
     const context = this.context;
+    // Zeros in one place have their names in one line.
+    const places = [];
     for (const [name, at] of this.zeros) {
       const [x, y] = this.point(at);
+      const same = places.find((place) => Math.hypot(place.x - x, place.y - y) < 8);
+      if (same) same.name += `, ${name}`;
+      else places.push({ x, y, name });
+    }
+    for (const { x, y, name } of places) {
       Object.assign(context, { strokeStyle: colours.ink, fillStyle: colours.paper, lineWidth: 1.5 });
       context.beginPath();
       context.arc(x, y, 8, 0, 2 * Math.PI);
@@ -314,7 +325,7 @@ class Side {
     const last = 2 * (this.starts[this.moves.length] - 1);
     Object.assign(context, { strokeStyle: colours.paper, fillStyle: colours.ink, lineWidth: 1.5 });
     const [endX, endY] = this.inside(last);
-    const [startX, startY] = this.inside(0);
+    const [startX, startY] = this.inside(2 * this.first);
     context.beginPath();
     if (!hasAlarm) context.rect(endX - 5, endY - 5, 10, 10);
     context.stroke();
@@ -417,7 +428,7 @@ class Side {
   // Marks where the tool stands after a number of moves.
   drawTool(colours, upTo) {
     if (this.moves.length === 0) return;
-    const at = 2 * (upTo === 0 ? 0 : this.starts[upTo] - 1);
+    const at = 2 * Math.max(this.first, this.starts[upTo] - 1);
     const context = this.context;
     Object.assign(context, { strokeStyle: colours.paper, fillStyle: colours.pick, lineWidth: 2 });
     context.beginPath();
@@ -471,9 +482,12 @@ class Side {
   // Writes a hole's name beside it at the first free position; without one, a click on the hole shows it.
   label(hole, taken, colours, always) {
     const [x, y] = this.point(hole.entry);
-    const [away, wide, high] = [(this.isBeyond(hole) ? CROSS : this.radius(hole)) + 6, this.context.measureText(hole.id).width, 13];
+    const [wide, high] = [this.context.measureText(hole.id).width, 13];
+    const [along, across, angle] = this.isBeyond(hole) ? [CROSS, CROSS, 0] : this.ring(hole, this.radius(hole));
+    const away = 6 + Math.hypot(along * Math.cos(angle), across * Math.sin(angle));
+    const rise = 6 + Math.hypot(along * Math.sin(angle), across * Math.cos(angle));
     const [right, left] = [x + away, x - away - wide];
-    const corners = [y - away + 3, y + away + high - 6, y + high / 2 - 2, y - away - high + 3, y + away + 2 * high - 6];
+    const corners = [y - rise + 3, y + rise + high - 6, y + high / 2 - 2, y - rise - high + 3, y + rise + 2 * high - 6];
     const places = corners.flatMap((bottom) => [[right, bottom], [left, bottom]]);
     const isFree = ([at, bottom]) =>
       0 <= at && at + wide <= this.view.width && high <= bottom && bottom <= this.view.height &&
@@ -493,6 +507,12 @@ class Side {
 
   radius(hole) {
     return Math.max(this.holes.length > 500 ? 1.5 : 3, hole.radius * this.view.scale);
+  }
+
+  // The ring of a hole on the canvas, from its pixels of radius: half axes along and across the hole's axis, and the angle of that.
+  ring(hole, radius) {
+    const [right, up, near] = this.view.rows.map((row) => row.reduce((sum, part, axis) => sum + part * hole.axis[axis], 0));
+    return [radius * Math.min(1, Math.abs(near)), radius, Math.atan2(-up, right)];
   }
 
   // Whether the ring of a hole is wider than the canvas.
@@ -515,8 +535,9 @@ class Side {
         continue;
       }
       for (const radius of ringed ? [this.radius(hole), this.radius(hole) + 4] : [this.radius(hole)]) {
-        context.moveTo(x + radius, y);
-        context.arc(x, y, radius, 0, 2 * Math.PI);
+        const [along, across, angle] = this.ring(hole, radius);
+        context.moveTo(x + along * Math.cos(angle), y + along * Math.sin(angle));
+        context.ellipse(x, y, along, across, angle, 0, 2 * Math.PI);
       }
     }
     context.stroke();

@@ -221,12 +221,23 @@ impl ProgramSheet<'_> {
     fn tools(&self) -> Markup {
         let machine = &self.request.machine;
         let holes = &self.simulation.extracted.holes;
-        let rows = self.uses.uses.iter().filter(|one| one.first_block.is_some()).map(|one| {
+        let used: Vec<&ToolUse> = self.uses.uses.iter().filter(|one| one.first_block.is_some()).collect();
+        // A tool that comes again has the number of all its holes in its first row.
+        let times = |one: &ToolUse| used.iter().filter(|other| other.tool == one.tool).count();
+        let is_first = |one: &ToolUse| {
+            used.iter().find(|other| other.tool == one.tool).is_some_and(|first| std::ptr::eq(*first, one))
+        };
+        let rows = used.iter().map(|one| {
             let made = holes.iter().filter(|hole| hole.passes().any(|pass| pass.tool == one.tool)).count();
+            let holes = match (made, times(one)) {
+                (0, _) => String::new(),
+                (made, 1) => made.to_string(),
+                (made, _) if is_first(one) => format!("{made} in all"),
+                (..) => String::new(),
+            };
             let offsets = self.offsets.radius_offsets.iter().filter(|(tool, _)| Some(*tool) == one.tool);
-            let name = |(_, number): &(u32, u32)| format!("D{number}");
-            let offsets: Vec<String> =
-                offsets.map(name).map(|name| format!("{name}{}", self.mark_of(&name))).collect();
+            let name = |(_, number): &(u32, u32)| format!("D{number}{}", self.radius_offset(*number));
+            let offsets: Vec<String> = offsets.map(name).collect();
             let known = machine.tools.iter().find(|tool| Some(tool.number) == one.tool);
             let length = known.and_then(|tool| tool.length);
             let per_revolution = one.tool.and_then(|tool| self.offsets.feeds_per_revolution.get(&tool));
@@ -242,7 +253,7 @@ impl ProgramSheet<'_> {
                 cell(range_of(one.speed, short) + if one.is_reversed { " M04" } else { "" }),
                 cell(self.range_in_unit(one.feed) + &per_revolution.unwrap_or_default()),
                 cell(one.coolants.iter().map(|code| format!("M{code:02}")).collect::<Vec<_>>().join(" ")),
-                cell(if made == 0 { String::new() } else { made.to_string() }),
+                cell(holes),
                 cell(rounded(one.seconds / 60.0, 1)),
                 cell(one.first_block.as_ref().map_or_else(String::new, |at| self.location(at))),
             ]
@@ -252,7 +263,7 @@ impl ProgramSheet<'_> {
         html! {
             h2 { "Tools, in the order of use" }
             (table(&columns, rows))
-            p.note { "S and F are those of its cuts; a length is that of the machine file, from the gauge line to the tip. A kind that no machine file states is left empty; check H and D against the offset page." }
+            p.note { "S and F are those of its cuts; a length is that of the machine file, from the gauge line to the tip; a number behind D is a radius. A kind that no machine file states is left empty; check H and D against the offset page." }
         }
     }
 
@@ -277,6 +288,15 @@ impl ProgramSheet<'_> {
             (Some((_, value)), _) => format!(" = {} (--set)", short(*value)),
             (None, Some(value)) => format!(" = {}", self.in_unit(value)),
             (None, None) => self.mark_of(&format!("H{number}")).to_owned(),
+        }
+    }
+
+    /// Returns ` = 6` for a cutter radius that the machine file states.
+    fn radius_offset(&self, number: u32) -> String {
+        let stated = self.request.machine.tools.iter().find(|tool| tool.number == number);
+        match stated.and_then(|tool| tool.radius_offset) {
+            Some(radius) => format!(" = {}", self.in_unit(radius)),
+            None => self.mark_of(&format!("D{number}")).to_owned(),
         }
     }
 
@@ -385,7 +405,6 @@ impl ProgramSheet<'_> {
     }
 }
 
-/// Returns the text of the first comment of a file.
 /// Returns the first comment of the main program: of its part of a dump, whose first line has its number, else of the first file.
 fn main_comment<L: Iterator<Item = String>>(
     sources: impl Iterator<Item = L>,

@@ -166,17 +166,22 @@ pub(crate) struct OffsetObserver {
     /// Rotary axes with their first commanded positions in work coordinates, degrees.
     pub first_angles: Vec<(AxisIndex, f64)>,
     moves: u64,
+    /// The next block mills a circle that is smaller by the radius of D.
+    is_circle_pocket: bool,
 }
 
 impl Observer for OffsetObserver {
     fn before_block(&mut self, control: &mut Control) {
         self.moves = control.moves();
+        control.next_block();
+        self.is_circle_pocket = control.next_commands().is_circle_pocket;
     }
 
     fn after_block(&mut self, control: &Control) {
         let state = control.state();
         // A move with compensation waits for the next one.
-        if state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF {
+        let is_compensated = state.modal.code_in(ModalGroup::Cutter) != CUTTER_COMPENSATION_OFF;
+        if is_compensated || self.is_circle_pocket {
             self.radius_offsets.insert((state.tool, state.modal_words.d));
         }
         if control.moves() == self.moves {
@@ -235,6 +240,18 @@ mod tests {
         ] {
             assert_eq!(is_reversed(&lines), expected, "{lines}");
         }
+    }
+
+    /// G13 D1 at T1, whose circle needs the radius of D1; G41 D2 at T2; a D in a block of G43 is not yet used.
+    #[test]
+    fn offsets_of_circles_and_of_contours_are_on_the_sheet() {
+        let text = "O1\nG21 G90 G54 G40 G80\nT1 M6\nS500 M3\nG0 X0. Y0. Z5.\nG43 H1 D7 Z4.\nG1 Z-1. F100.\nG13 D1 I10. F200.\nG0 Z5.\n\
+                    T2 M6\nS500 M3\nG41 D2 G1 X20. F100.\nY20.\nG40 X30.\nM30\n";
+        let mut request = Request::new("O1.nc", text.as_bytes(), Machine::default());
+        request.settings.apply_dialect(gcode_lang::control::Dialect::HaasNgc);
+        let mut observer = OffsetObserver::default();
+        gcode_session::run_observed(&request, &mut NoLibrary, &mut (), &mut observer).unwrap();
+        assert_eq!(observer.radius_offsets, BTreeSet::from([(1, 1), (2, 2)]));
     }
 
     /// A move with compensation waits for the next block; D11 is in force all the same. F of G95 counts for cuts, not for rapids.

@@ -11,7 +11,7 @@ use crate::side::Projection;
 use nalgebra::Vector3;
 
 /// Largest number of tools or programs in the legend.
-const MAX_CLASSES: usize = 8;
+const MAX_CLASSES: usize = 12;
 /// Cosine of the largest angle between a hole and the line of sight at which the hole is drawn: 60°.
 const FACING: f64 = 0.5;
 
@@ -34,7 +34,7 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     let mut scene = Scene { zone: view.tolerance, ..Scene::default() };
     let feed_points = path.runs.iter().filter(|run| run.kind == RunKind::Feed).map(|run| run.points.len());
     let is_swept_drawn = feed_points.sum::<usize>() <= MAX_SWEPT_POINTS;
-    if !is_swept_drawn && path.tools.iter().any(|tool| tool.diameter.is_some()) {
+    if !is_swept_drawn && path.tools.iter().any(|tool| tool.swept_width.is_some()) {
         notes.push("swept width not drawn: too many moves".to_owned());
     }
     let (mut is_cut, mut labelled) = (false, vec![false; view.holes.len()]);
@@ -296,7 +296,7 @@ mod tests {
                 [100.0, 40.0, -2.0],
             ],
             runs: vec![run(RunKind::Rapid, 0..2), run(RunKind::Feed, 2..5)],
-            tools: vec![DrawnTool { name: "T1 end mill Φ10".to_owned(), diameter: Some(10.0) }],
+            tools: vec![DrawnTool { name: "T1 end mill Φ10".to_owned(), swept_width: Some(10.0) }],
             places: vec![PathPlace { sign: Sign::Start, at: [0.0, 0.0, 300.0], label: "start".to_owned() }],
             ..PathView::default()
         }

@@ -92,7 +92,8 @@ impl PathDrawer<'_> {
             ColorBy::Feed => self.shades.map(|scale| scale.tint(scale.level(run.feed))),
             ColorBy::Depth => None,
         };
-        Style { tint, pattern: (order % 6) as u8, ..Style::default() }
+        // The seventh tool has the first one's colour and the second one's dashes.
+        Style { tint, pattern: ((order + order / 6) % 6) as u8, ..Style::default() }
     }
 
     /// Draws the areas that the cutters sweep along the feeds, where the tool is along the line of sight.
@@ -105,7 +106,7 @@ impl PathDrawer<'_> {
         };
         let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed).filter(is_along_sight);
         let swept = feeds.filter_map(|run| {
-            let width = self.path.tools.get(run.tool)?.diameter?;
+            let width = self.path.tools.get(run.tool)?.swept_width?;
             let points = self.sparse(view, run);
             let style = Style { tint: Some(Tint::Pale), width: Some(width), ..Style::default() };
             // A plunge sweeps no more than its hole, which has a symbol.

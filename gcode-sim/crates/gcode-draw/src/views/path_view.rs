@@ -73,8 +73,8 @@ pub enum RunKind {
 pub struct DrawnTool {
     /// Number, kind and diameter: `T1 end mill Φ10`.
     pub name: String,
-    /// Diameter, mm; `None` if unknown.
-    pub diameter: Option<f64>,
+    /// Width that it sweeps across its axis, mm; `None` if it is unknown or depends on the depth.
+    pub swept_width: Option<f64>,
 }
 
 /// A travel limit of the tip along an axis of the part.

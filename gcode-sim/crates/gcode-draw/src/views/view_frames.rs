@@ -37,9 +37,9 @@ impl ViewBox {
     pub(super) fn of(top: Side, view: &TopView, path: &PathView) -> Self {
         let mut all = Self { top, low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
         for run in path.runs.iter().filter(|run| run.kind != RunKind::Rapid) {
-            let diameter = path.tools.get(run.tool).and_then(|tool| tool.diameter);
+            let width = path.tools.get(run.tool).and_then(|tool| tool.swept_width);
             for point in &path.points[run.points.clone()] {
-                all.add(*point, diameter.unwrap_or(0.0) / 2.0);
+                all.add(*point, width.unwrap_or(0.0) / 2.0);
             }
         }
         for hole in view.holes.iter().filter_map(DrawnHole::shown) {

@@ -29,6 +29,31 @@ impl DrilledHole {
         deepest
     }
 
+    /// Returns true if a pass goes deeper than `thickness` below the entry, and each that does has its full diameter there.
+    /// The end of a tool of unknown shape may be a point of any length.
+    pub fn breaks_out(
+        &self,
+        entry: &Point3<f64>,
+        out: &Vector3<f64>,
+        thickness: f64,
+        machine: &Machine,
+    ) -> bool {
+        let mut beyond =
+            self.passes().filter(|pass| thickness < (entry - pass.cut.bottom).dot(out)).peekable();
+        let is_whole = |pass: ToolPass<'_>| {
+            let tip = (entry - pass.cut.bottom).dot(out);
+            let tool = pass.tool.and_then(|number| machine.find_tool(number));
+            match (tool.map(Tool::point), pass.diameter) {
+                (Some(PointShape::Pointed(angle)), Some(diameter)) => {
+                    thickness <= tip - diameter / 2.0 / Deg(angle.0 / 2.0).tan()
+                }
+                (Some(PointShape::Flat), _) => true,
+                _ => false,
+            }
+        };
+        beyond.peek().is_some() && beyond.all(is_whole)
+    }
+
     /// Returns the features of a hole that several tools make, depths from `entry`, in the order of the program. Returns none
     /// of a hole of one tool, nor where kind or diameter of a tool is unknown: a list without features then says less, and
     /// nothing wrong.

@@ -196,7 +196,17 @@ impl Judgement<'_> {
             let message =
                 format!("hole {}{name} does not break out: {cut:.3} mm of {depth:.3} mm are cut", self.id);
             let finding = Diagnostic::new(&HOLE_NOT_THROUGH, message).with_backtrace(place);
-            self.findings.push(finding.help("drill deeper: the full diameter has to pass the far side"));
+            let is_listed_deeper = 0.0 < thickness
+                && exceeds(self.nominal.depth - thickness, tolerances.depth)
+                && !exceeds(thickness, cut);
+            let help = if is_listed_deeper {
+                format!(
+                    "the part is {thickness:.3} mm thick there: write that as the depth of a through hole, or drill deeper"
+                )
+            } else {
+                "drill deeper: the full diameter has to pass the far side".to_owned()
+            };
+            self.findings.push(finding.help(help));
         }
     }
 }
