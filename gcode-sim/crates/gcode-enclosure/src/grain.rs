@@ -101,7 +101,7 @@ impl Prover<'_> {
             _ => least(a) * least(b),
         };
         // Not a number where nothing is known of a range.
-        !(result > 0.0)
+        result.is_nan() || result <= 0.0
     }
 }
 
