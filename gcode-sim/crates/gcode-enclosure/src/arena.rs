@@ -18,6 +18,8 @@ pub struct Arena {
     factors: Vec<Factors>,
     /// By node, whether it has whole numbers only.
     whole: Vec<bool>,
+    /// By node, the number of operands that it is.
+    uses: Vec<u32>,
     semantics: Semantics,
     widening: f64,
     identities: Identities,
@@ -47,6 +49,7 @@ impl Arena {
             index: HashMap::new(),
             factors: Vec::new(),
             whole: Vec::new(),
+            uses: Vec::new(),
             semantics,
             widening: 0.0,
             identities: Identities::default(),
@@ -161,6 +164,7 @@ impl Arena {
                 Some(self.binary(Binary::Sub, b, a))
             }
             (Unary::Abs, Node::Unary(Unary::Neg, inner)) => Some(self.unary(Unary::Abs, inner)),
+            (_, Node::Unary(Unary::Neg, inner)) => self.of_opposite(function, inner),
             (Unary::Abs, Node::Unary(Unary::Abs | Unary::Sqrt, _)) => Some(x),
             (Unary::Fix | Unary::Fup | Unary::Round, _) if self.is_whole(x) => Some(x),
             _ => None,
@@ -180,6 +184,11 @@ impl Arena {
             && let Ok(value) = values::binary(operator, left, right, self.semantics)
         {
             return self.constant(value);
+        }
+        if let Some(simpler) =
+            self.by_whole_part(operator, a, b).or_else(|| self.of_opposites(operator, a, b))
+        {
+            return simpler;
         }
         match operator {
             Binary::Add if a == Self::ZERO => b,
@@ -382,9 +391,17 @@ impl Arena {
         let id = NodeId(self.nodes.len() as u32);
         self.factors.push(Factors::of(id, node, &self.factors));
         self.whole.push(self.has_whole_values(node));
+        self.uses.push(0);
         self.nodes.push(node);
         self.index.insert(key, id);
+        let operands: Vec<_> = self.operands(id).collect();
+        operands.into_iter().for_each(|operand| self.uses[operand.index()] += 1);
         id
+    }
+
+    /// Returns true for a node that other nodes have more than once for an operand.
+    pub(crate) fn is_used_again(&self, id: NodeId) -> bool {
+        self.uses[id.index()] > 1
     }
 
     /// Returns the factors of a node.

@@ -21,6 +21,8 @@ pub(crate) struct Basis {
 #[derive(Clone, Debug)]
 struct Tables {
     degree: u32,
+    /// Variables that count as several: their products with others soon lie beyond the degree.
+    heavy: u32,
     keys: Vec<u64>,
     index: HashMap<u64, u32>,
     products: Vec<Vec<u32>>,
@@ -63,9 +65,23 @@ impl Basis {
         }
     }
 
+    /// Lets a new variable count as half the degree: few monomials have it.
+    pub(crate) fn make_heavy(&mut self, variable: usize) {
+        Arc::make_mut(&mut self.tables).heavy |= 1 << variable;
+    }
+
     /// Returns true for the monomial that is one variable.
     pub(crate) fn is_variable(&self, monomial: u32, variable: usize) -> bool {
         self.tables.keys[monomial as usize] == 1 << (4 * variable)
+    }
+
+    /// Returns a monomial that has a variable, divided by it.
+    pub(crate) fn divided(&mut self, monomial: u32, variable: usize) -> u32 {
+        let key = self.tables.keys[monomial as usize] - (1 << (4 * variable));
+        match self.tables.index.get(&key) {
+            Some(known) => *known,
+            None => Arc::make_mut(&mut self.tables).intern(key),
+        }
     }
 
     /// Returns the exponent of a variable in a monomial.
@@ -140,8 +156,14 @@ pub(crate) struct Product {
 impl Tables {
     /// Returns the tables of all monomials of some variables up to a degree.
     fn new(variables: usize, degree: u32) -> Self {
-        let mut tables =
-            Self { degree, keys: Vec::new(), index: HashMap::new(), products: Vec::new(), complete: 0 };
+        let mut tables = Self {
+            degree,
+            heavy: 0,
+            keys: Vec::new(),
+            index: HashMap::new(),
+            products: Vec::new(),
+            complete: 0,
+        };
         tables.intern(0);
         for variable in (0..variables).filter(|_| degree > 0) {
             tables.intern(1 << (4 * variable));
@@ -165,7 +187,7 @@ impl Tables {
 
     fn find_product(&mut self, a: u32, b: u32) -> u32 {
         let (left, right) = (self.keys[a as usize], self.keys[b as usize]);
-        let product = if total_degree(left) + total_degree(right) <= self.degree {
+        let product = if self.total_degree(left) + self.total_degree(right) <= self.degree {
             self.intern(left + right)
         } else if (left ^ right) & ODD_BITS == 0 {
             BEYOND_EVEN
@@ -190,9 +212,14 @@ impl Tables {
         self.products.push(Vec::new());
         monomial
     }
-}
 
-/// Returns the sum of the exponents of a key.
-fn total_degree(key: u64) -> u32 {
-    (0..MAX_VARIABLES).map(|variable| (key >> (4 * variable) & 15) as u32).sum()
+    /// Returns the sum of the exponents of a key, of heavy variables as often as they count.
+    fn total_degree(&self, key: u64) -> u32 {
+        let of_heavy = (self.degree / 2).max(1);
+        let degree = |variable: usize| {
+            let exponent = (key >> (4 * variable) & 15) as u32;
+            if self.heavy >> variable & 1 == 1 { exponent * of_heavy } else { exponent }
+        };
+        (0..MAX_VARIABLES).map(degree).sum()
+    }
 }

@@ -1,6 +1,7 @@
 //! Decisions over a box on one path: which alarms are possible, and on which side a condition is.
 use crate::alarms::{self, PossibleAlarm};
 use crate::arena::Arena;
+use crate::divided_models::MAX_FACTORS;
 use crate::enclosures::Enclosures;
 use crate::hull;
 use crate::interval::{Interval, sub_down, sub_up};
@@ -156,6 +157,7 @@ impl Enclosures {
         left: NodeId,
         right: NodeId,
     ) -> Option<bool> {
+        self.enclose_facts(arena);
         let difference = self.difference(arena, left, right)?;
         let zero = Interval::point(0.0);
         let range = difference.range(&self.basis);
@@ -169,8 +171,8 @@ impl Enclosures {
         if facts.is_empty() {
             return None;
         }
-        let lo = self.lower_bound(model, range.lo(), &facts);
-        let hi = -self.lower_bound(&model.neg(), -range.hi(), &facts);
+        let lo = self.lower_bound(model, range.lo(), &facts, MAX_FACTORS);
+        let hi = -self.lower_bound(&model.neg(), -range.hi(), &facts, MAX_FACTORS);
         Some(Interval::new(lo, hi))
     }
 
@@ -184,6 +186,7 @@ impl Enclosures {
             (Some(x), Some(y)) if is_exact_difference(x, y) => Interval::point(x - y),
             _ => Interval::new(sub_down(a.lo(), b.hi()), sub_up(a.hi(), b.lo())),
         };
+        self.enclose_facts(arena);
         let Some(difference) = self.difference(arena, left, right) else { return by_hulls };
         let range = difference.range(&self.basis).intersect(by_hulls);
         self.range_by_facts(arena, &difference, range).map_or(range, |closer| range.intersect(closer))
@@ -238,10 +241,24 @@ impl Enclosures {
         Some(left.as_model()?.sub(&right.as_model()?)).filter(Model::is_finite)
     }
 
+    /// Returns the conditions assumed last.
+    fn last_conditions(&self) -> Vec<Condition> {
+        const MOST: usize = 8;
+        self.conditions.iter().rev().take(MOST).copied().collect()
+    }
+
+    /// Encloses the sides of the conditions assumed last: what is enclosed later may take variables back, which no model
+    /// that is in use may have.
+    fn enclose_facts(&mut self, arena: &Arena) {
+        for Condition { left, right, .. } in self.last_conditions() {
+            self.enclose(arena, left);
+            self.enclose(arena, right);
+        }
+    }
+
     /// Returns models that are 0 or more on this path: the differences of the conditions assumed last.
     fn facts(&mut self, arena: &Arena) -> Vec<Model> {
-        const MOST: usize = 8;
-        let conditions: Vec<_> = self.conditions.iter().rev().take(MOST).copied().collect();
+        let conditions = self.last_conditions();
         let mut facts = Vec::new();
         for Condition { relation, left, right } in conditions {
             let Some(difference) = self.difference(arena, left, right) else { continue };
@@ -259,34 +276,6 @@ impl Enclosures {
             }
         }
         facts
-    }
-
-    /// Returns a lower bound of a model: that of the model less multiples of facts, which are 0 or more.
-    fn lower_bound(&self, model: &Model, bound: f64, facts: &[Model]) -> f64 {
-        let (mut best, mut model) = (bound, model.clone());
-        for fact in facts {
-            // A multiple that cancels a linear term.
-            let linear = (0..self.next_variable).filter_map(|variable| {
-                let term = |model: &Model| {
-                    let mut terms = model.terms.iter();
-                    terms
-                        .find(|(monomial, _)| self.basis.is_variable(*monomial, variable))
-                        .map(|(_, value)| *value)
-                };
-                Some(term(&model)? / term(fact)?).filter(|factor| *factor > 0.0 && factor.is_finite())
-            });
-            let mut better = None;
-            for factor in linear {
-                let rest = model.sub(&fact.scale(factor));
-                let lo = rest.range(&self.basis).lo();
-                if lo > best && rest.is_finite() {
-                    best = lo;
-                    better = Some(rest);
-                }
-            }
-            model = better.unwrap_or(model);
-        }
-        best
     }
 }
 

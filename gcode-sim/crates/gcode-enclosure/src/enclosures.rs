@@ -1,5 +1,6 @@
 //! The enclosures of nodes over one box, on one path through a program.
 use std::cmp::Ordering;
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use crate::algebra;
@@ -28,7 +29,9 @@ pub struct Enclosures {
     variables: Vec<Option<usize>>,
     pub(crate) next_variable: usize,
     /// Nodes whose own variables follow those of the inputs.
-    sources: Vec<NodeId>,
+    pub(crate) sources: Vec<NodeId>,
+    /// Variables that stand for what the polynomial of a node leaves out, the oldest first.
+    pub(crate) rests: VecDeque<usize>,
     /// Inputs that are another input and a difference: by input, the other and the range of the difference.
     differences: Vec<(usize, usize, Interval)>,
 }
@@ -71,6 +74,7 @@ impl Enclosures {
             variables,
             next_variable,
             sources: Vec::new(),
+            rests: VecDeque::new(),
             differences: Vec::new(),
         }
     }
@@ -185,6 +189,8 @@ impl Enclosures {
         };
         let natural = self.with_identity(arena, node, arena.widened(node, natural));
         let natural = self.with_ratio(arena, node, natural);
+        let fraction = arena.fraction_range(node, &|operand| self.hull(operand));
+        let natural = fraction.map_or(natural, |fraction| natural.intersect(fraction));
         let is_product = matches!(content, Node::Binary(Binary::Mul, left, right) if left != right);
         let natural = match is_product && arena.widening() == 0.0 {
             true => arena
@@ -237,7 +243,10 @@ impl Enclosures {
         }
         // A polynomial within its own rest says nothing.
         let is_useful = model.rest < hull.width() * 0.4999 && !model.is_constant();
-        if is_useful { Form { hull, model: Some(model) } } else { self.free_form(node, hull) }
+        if !is_useful {
+            return self.free_form(node, hull);
+        }
+        Form { hull, model: Some(self.with_own_rest(arena, node, model, hull)) }
     }
 
     /// Returns the range of a node that is a constant but for roundings, as far as a range allows.

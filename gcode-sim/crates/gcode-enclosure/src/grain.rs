@@ -92,6 +92,19 @@ impl Enclosures {
     }
 }
 
+impl Prover<'_> {
+    /// Returns true if a product or a quotient of numbers that aren't 0 can be 0: only of small ones, or by a large one.
+    pub(crate) fn can_underflow(&self, operator: Binary, a: NodeId, b: NodeId) -> bool {
+        let least = |x: NodeId| self.range(x).mignitude().max(self.arena.grain(x, self.hull));
+        let result = match operator {
+            Binary::Div => least(a) / self.range(b).magnitude(),
+            _ => least(a) * least(b),
+        };
+        // Not a number where nothing is known of a range.
+        result.is_nan() || result <= 0.0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

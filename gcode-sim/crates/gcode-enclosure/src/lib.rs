@@ -77,6 +77,7 @@ mod bounds;
 mod certificate;
 mod contraction;
 mod decisions;
+mod divided_models;
 mod domain;
 mod elementary;
 mod enclosures;
@@ -98,6 +99,8 @@ mod proof;
 mod quotients;
 mod ratio;
 mod real_values;
+mod rests;
+mod signs;
 mod square_sums;
 mod squares;
 #[cfg(test)]

@@ -53,4 +53,11 @@ impl Prover<'_> {
         };
         of(a, b).or_else(|| of(b, a))
     }
+
+    /// Proves a + b ≥ 0: a sum of doubles has the sign of the real one.
+    pub(crate) fn is_sum_positive(&self, a: NodeId, b: NodeId, depth: u32) -> bool {
+        let [minus_a, minus_b] = [a, b].map(|node| self.opposite(node));
+        minus_b.is_some_and(|minus_b| self.ge(a, minus_b, depth))
+            || minus_a.is_some_and(|minus_a| self.ge(b, minus_a, depth))
+    }
 }

@@ -23,7 +23,7 @@ const STEPS: u32 = 4000;
 /// Proves relations between nodes from their ranges, their structure and the conditions of a path.
 pub(crate) struct Prover<'a> {
     pub(crate) arena: &'a Arena,
-    hull: &'a dyn Fn(NodeId) -> Interval,
+    pub(crate) hull: &'a dyn Fn(NodeId) -> Interval,
     conditions: &'a [Condition],
     steps: Cell<u32>,
     /// Operations round as doubles do; otherwise their results are off, and only the order of the conditions holds.
@@ -283,7 +283,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Returns the node of the opposite number, of those that the arena has.
-    fn opposite(&self, x: NodeId) -> Option<NodeId> {
+    pub(crate) fn opposite(&self, x: NodeId) -> Option<NodeId> {
         match self.arena.node(x) {
             Node::Unary(Unary::Neg, inner) => Some(inner),
             _ if x == Arena::ZERO => Some(x),
@@ -291,13 +291,6 @@ impl<'a> Prover<'a> {
             _ if x == Arena::MINUS_ONE => Some(Arena::ONE),
             _ => self.arena.find_unary(Unary::Neg, x),
         }
-    }
-
-    /// Proves a + b ≥ 0: a sum of doubles has the sign of the real one.
-    fn is_sum_positive(&self, a: NodeId, b: NodeId, depth: u32) -> bool {
-        let [minus_a, minus_b] = [a, b].map(|node| self.opposite(node));
-        minus_b.is_some_and(|minus_b| self.ge(a, minus_b, depth))
-            || minus_a.is_some_and(|minus_a| self.ge(b, minus_a, depth))
     }
 
     /// Proves a·b ≥ c·d.
@@ -430,7 +423,14 @@ impl<'a> Prover<'a> {
                 self.gt(a, y, depth) && self.is_positive(b, depth)
                     || self.gt(b, y, depth) && self.is_positive(a, depth)
             }
-            (Node::Unary(Unary::Sqrt, a), _) if y == Arena::ZERO => self.gt(a, y, depth),
+            (Node::Unary(Unary::Sqrt | Unary::Fup, a), _) if y == Arena::ZERO => self.gt(a, y, depth),
+            (Node::Binary(operator @ (Binary::Mul | Binary::Div), a, b), _) if y == Arena::ZERO => {
+                let has_one_sign = || {
+                    self.gt(a, y, depth) && self.gt(b, y, depth)
+                        || self.gt(y, a, depth) && self.gt(y, b, depth)
+                };
+                !self.can_underflow(operator, a, b) && has_one_sign()
+            }
             (Node::Unary(Unary::Abs, a), _) if y == Arena::ZERO => self.ne(a, y, depth),
             (Node::Unary(Unary::Neg, a), _) if y == Arena::ZERO => self.gt(y, a, depth),
             (_, Node::Unary(Unary::Neg, c)) if x == Arena::ZERO => self.gt(c, x, depth),
@@ -483,11 +483,12 @@ impl<'a> Prover<'a> {
         match self.arena.node(x) {
             _ if self.is_not_zero(x) => true,
             Node::Binary(Binary::Sub, a, b) => self.ne(a, b, depth),
-            Node::Unary(Unary::Neg | Unary::Abs | Unary::Sqrt, a) => self.ne(a, y, depth),
+            Node::Unary(Unary::Neg | Unary::Abs | Unary::Sqrt | Unary::Fup, a) => self.ne(a, y, depth),
             Node::Binary(Binary::Mul, a, b) if self.is_exact => {
-                // A product underflows to 0 only of small factors.
-                let least = |x: NodeId| self.range(x).mignitude().max(self.arena.grain(x, self.hull));
-                least(a) * least(b) > 0.0 && self.ne(a, y, depth) && self.ne(b, y, depth)
+                !self.can_underflow(Binary::Mul, a, b) && self.ne(a, y, depth) && self.ne(b, y, depth)
+            }
+            Node::Binary(Binary::Div, a, b) if self.is_exact => {
+                !self.can_underflow(Binary::Div, a, b) && self.ne(a, y, depth)
             }
             _ => false,
         }

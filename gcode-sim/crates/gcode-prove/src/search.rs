@@ -122,6 +122,7 @@ impl<'s, L: Library> Prober<'s, L> {
                 return;
             }
             self.try_point(&spread_point(&domain, index + 1));
+            self.try_point(&face_point(&domain, &values, index));
         }
         self.descend(&domain, share, shares);
     }
@@ -320,4 +321,33 @@ pub(crate) fn spread_point(domain: &Domain, index: u32) -> Vec<f64> {
             (range.lo() + (range.hi() - range.lo()) * coordinate(*base)).clamp(range.lo(), range.hi())
         })
         .collect()
+}
+
+/// Returns a point whose coordinates have all their digits, but for one input, or for none, which has a special value: what
+/// rounds only of such numbers fails at no corner and at no short number.
+fn face_point(domain: &Domain, special: &[Vec<f64>], index: u32) -> Vec<f64> {
+    // A generator of evenly distributed bits (Steele and others, Fast splittable pseudorandom number generators).
+    let mut state = u64::from(index);
+    let mut next = || {
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (state ^ state >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        mixed ^ mixed >> 31
+    };
+    next();
+    let ranges = domain.ranges();
+    let mut point: Vec<f64> = ranges
+        .iter()
+        .map(|range| {
+            let part = (next() >> 11) as f64 / (1_u64 << 53) as f64;
+            (range.lo() + (range.hi() - range.lo()) * part).clamp(range.lo(), range.hi())
+        })
+        .collect();
+    let input = next() as usize % (ranges.len() + 1);
+    if let Some(values) = special.get(input).filter(|values| !values.is_empty()) {
+        // Half of them an end or its neighbour.
+        let count = if next() % 2 == 0 { values.len() } else { values.len().min(6) };
+        point[input] = values[next() as usize % count];
+    }
+    point
 }

@@ -15,7 +15,7 @@ use super::words::BlockTerms;
 use gcode_lang::alarm::{Alarm, DigitLimit};
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
-use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Motion, Polar, Unit};
+use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Motion, Polar};
 use gcode_lang::program::{Library, Words};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Function, Relation};
@@ -224,7 +224,6 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
         }
         let has_limits = self.registers.data.settings.stroke_limits.is_some();
         let state = &self.plan.state;
-        let is_curve = state.modal.cycle.is_some() || state.moves_on_arc();
         let is_thread = state.modal.cycle.is_none() && state.modal.motion == Motion::Thread;
         let refused = [
             (is_thread && names_axis, "a thread"),
@@ -241,7 +240,6 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
             (names_axis && state.controls_tip(), "tool centre point control"),
             (names_axis && !state.transform.is_identity(), "mirrored, scaled or rotated coordinates"),
             (names_axis && state.end_before_transform.is_some(), "a move after a change of coordinates"),
-            (names_axis && is_curve && state.modal.unit == Unit::Inch, "a cycle or an arc in inches"),
             (
                 names_axis && (state.virtual_plane.is_some() || state.part_error.is_some()),
                 "a virtual plane or a setting error",
@@ -296,10 +294,14 @@ impl<T: Terms> MoveBlock<'_, '_, T> {
                 }
             }
         }
-        let is_term = |end: &AxisEnd| {
-            !matches!((end.programmed, end.machine), (Some(Term::Number(_)), Some(Term::Number(_))))
+        // An end that is known though it is computed of terms, as that of X#1 and X-#1 in G91, isn't the planned one.
+        let planned = &self.plan.state;
+        let is_planned = |end: &AxisEnd| {
+            let is = |term: Option<Term>, at: f64| matches!(term, Some(Term::Number(value)) if value == at);
+            is(end.programmed, planned.programmed_position[end.axis])
+                && is(end.machine, planned.machine_position[end.axis])
         };
-        ends.retain(is_term);
+        ends.retain(|end| !is_planned(end));
         Ok(ends)
     }
 

@@ -1,5 +1,6 @@
 //! Tests of the crate as a whole: soundness at random, published kernels.
 mod certificates;
+mod conditions;
 mod exact;
 mod guards;
 mod identities;
