@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use super::block_location::BlockLocation;
 use super::common_sequence::{
-    EqualRun, MOST_EDITS, Middle, common, common_of_shared, common_or_far, piece_by_piece, search,
+    EqualRun, MOST_EDITS, Middle, append, common, common_of_shared, common_or_far, piece_by_piece, search,
 };
 use super::links::{Links, StepPair};
 use super::position_cells::PositionCells;
@@ -238,11 +238,10 @@ fn align_gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64,
     let is_parallel = |i: usize, j: usize| old.at(first_i + i).is_parallel(&new.at(first_j + j), tolerance);
     let parallel = common_or_far((range_i.len(), range_j.len()), &is_parallel, |middle| {
         let Middle { before, rows, columns } = middle;
-        let is_alike =
-            |n: usize| old.kind(first_i + before + n).change() == new.kind(first_j + before + n).change();
-        // Where nearly all moves differ, equal displacements are chance: as many of one kind are paired in order.
-        match rows == columns && (0..rows).all(is_alike) {
-            true => Vec::new(),
+        let (from_i, from_j) = (first_i + before, first_j + before);
+        // Where nearly all moves differ, equal displacements are chance.
+        match rows.abs_diff(columns) <= MOST_EDITS {
+            true => pairs_in_order((old, from_i..from_i + rows), (new, from_j..from_j + columns), tolerance),
             false => piece_by_piece((rows, columns), |i, j| is_parallel(before + i, before + j)),
         }
     });
@@ -262,6 +261,37 @@ fn align_gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64,
         (i, j) = (to_i + length, to_j + length);
     }
 }
+
+/// Pairs differing moves in their order. The surplus of one side is left out where the others then end nearest to their partners.
+fn pairs_in_order((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64) -> Vec<EqualRun> {
+    let (rows, columns) = (range_i.len(), range_j.len());
+    let surplus = [rows.saturating_sub(columns), columns.saturating_sub(rows)];
+    let paired = rows.min(columns);
+    let steps = |i: usize, j: usize| (old.at(range_i.start + i), new.at(range_j.start + j));
+    let apart = |i: usize, j: usize| {
+        let (was, is) = steps(i, j);
+        step_distance(&was, &is).unwrap_or(UNLIKE)
+    };
+    // How much farther the pairs before a place end than those behind the surplus would.
+    let (mut farther, mut nearest, mut split) = (0.0, 0.0, 0);
+    for k in (0..paired).take_while(|_| surplus != [0, 0]) {
+        farther += apart(k, k) - apart(k + surplus[0], k + surplus[1]);
+        if farther < nearest {
+            (nearest, split) = (farther, k + 1);
+        }
+    }
+    let mut runs = Vec::new();
+    for k in 0..paired {
+        let [skip_i, skip_j] = if k < split { [0, 0] } else { surplus };
+        let (was, is) = steps(k + skip_i, k + skip_j);
+        let is_pair = was.is_move() && is.is_move() && !was.is_same(&is, tolerance);
+        append(&mut runs, (k + skip_i, k + skip_j, usize::from(is_pair)));
+    }
+    runs
+}
+
+/// Distance of two steps that are no likely pair, mm.
+const UNLIKE: f64 = 1e3;
 
 /// Links the remaining steps: as many pairs as possible, with the nearest end points.
 fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, link: &mut impl FnMut(StepPair)) {
@@ -376,6 +406,17 @@ mod tests {
             (1..=1500).map(of).collect()
         };
         assert_eq!(differing([points(0.0, 0.0), points(0.003, 0.01)]), ([1500; 2], [0; 2]));
+    }
+
+    /// Of 1,500 points that all are another, one revision alone has the 700th.
+    #[test]
+    fn a_surplus_move_among_moves_that_all_differ_is_unpaired() {
+        let points = |shift: f64, left_out: usize| {
+            let of = |n: usize| [0.1 * n as f64 + shift, 0.01 * (n * n * 7 % 23) as f64];
+            (1..=1500).filter(|n| *n != left_out).map(of).collect()
+        };
+        assert_eq!(differing([points(0.0, 700), points(0.003, 0)]), ([1499, 1500], [0, 1]));
+        assert_eq!(differing([points(0.0, 0), points(0.003, 700)]), ([1500, 1499], [1, 0]));
     }
 
     /// Of 2,400 moves each fourth goes to the same point; more than a thousand others differ.

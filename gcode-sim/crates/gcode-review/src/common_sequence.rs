@@ -16,7 +16,7 @@ pub(super) struct EqualRun {
 }
 
 /// Appends equal items.
-fn append(runs: &mut Vec<EqualRun>, (old, new, length): (usize, usize, usize)) {
+pub(super) fn append(runs: &mut Vec<EqualRun>, (old, new, length): (usize, usize, usize)) {
     match runs.last_mut() {
         Some(run) if (run.old + run.length, run.new + run.length) == (old, new) => run.length += length,
         _ if length > 0 => runs.push(EqualRun { old, new, length }),
