@@ -423,8 +423,9 @@ mod tests {
     #[test]
     fn equal_moves_among_many_others_are_found() {
         let points = |shift: f64| {
-            let of =
-                |n: usize| [0.1 * n as f64, if n % 4 == 0 { 1.0 } else { 1.0 + shift * (1 + n % 3) as f64 }];
+            let of = |n: usize| {
+                [0.1 * n as f64, if n.is_multiple_of(4) { 1.0 } else { 1.0 + shift * (1 + n % 3) as f64 }]
+            };
             (1..=2400).map(of).collect()
         };
         assert_eq!(differing([points(0.0), points(0.01)]), ([1800; 2], [0; 2]));

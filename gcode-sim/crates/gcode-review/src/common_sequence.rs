@@ -101,7 +101,7 @@ pub(super) fn common_lines(hashes: [&[u64]; 2], is_equal: impl Fn(usize, usize) 
 
 /// Returns the indices of the items that both of two lists may have: one of an item's `keys` is the `key` of an item of the other
 /// list. Both functions take the number of the list and an index.
-fn shared<K: IntoIterator<Item = u64>>(
+pub(super) fn shared<K: IntoIterator<Item = u64>>(
     lengths: [usize; 2],
     (key, keys): (impl Fn(usize, usize) -> u64, impl Fn(usize, usize) -> K),
 ) -> [Vec<usize>; 2] {
