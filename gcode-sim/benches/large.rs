@@ -56,6 +56,11 @@ fn main() {
         println!("lines with one of {count} feeds in each, all changed:");
         measured(folder.path(), "diff old.nc new.nc --machine m.toml", old.len());
     }
+    let [old, new] = [0.0, 0.01].map(numbered);
+    write("old.nc", &old);
+    write("new.nc", &new);
+    println!("numbered lines, all moved:");
+    measured(folder.path(), "diff old.nc new.nc --machine m.toml", old.len());
 }
 
 /// Prints time and peak memory of a command on texts of this length.
@@ -78,12 +83,20 @@ fn lines() -> String {
 
 /// Returns the same surface with words behind each line.
 fn surface(words: impl Fn(u32) -> String) -> String {
-    program((0..LINES).map(|index| {
-        let (row, column) = (index / 1000, index % 1000);
-        let x = 0.1 * f64::from(if row % 2 == 0 { column } else { 999 - column });
-        let y = 0.1 * f64::from(row);
-        format!("X{x:.3} Y{y:.3} Z{:.3}{}", -1.0 - 0.5 * (0.3 * x).sin() * (0.2 * y).cos(), words(index))
-    }))
+    program((0..LINES).map(|index| format!("{}{}", point(index, 0.0), words(index))))
+}
+
+/// Returns the same surface in numbered lines, shifted along X.
+fn numbered(shift: f64) -> String {
+    program((0..LINES).map(|index| format!("N{} G1 {}", index + 1, point(index, shift))))
+}
+
+/// Returns the words of a point of the surface.
+fn point(index: u32, shift: f64) -> String {
+    let (row, column) = (index / 1000, index % 1000);
+    let x = 0.1 * f64::from(if row % 2 == 0 { column } else { 999 - column }) + shift;
+    let y = 0.1 * f64::from(row);
+    format!("X{x:.3} Y{y:.3} Z{:.3}", -1.0 - 0.5 * (0.3 * x).sin() * (0.2 * y).cos())
 }
 
 fn half_circles() -> String {

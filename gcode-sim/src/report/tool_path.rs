@@ -105,11 +105,13 @@ fn tool(number: Option<u32>, machine: &Machine) -> DrawnTool {
     let kind = kind_of_point.map(|kind| format!(" {}", kind.name().replace('-', " ")));
     let size = diameter.map(|diameter| format!(" Φ{}", super::figures::short(diameter)));
     let name = format!("T{number}{}{}", kind.unwrap_or_default(), size.unwrap_or_default());
-    let is_wide =
-        !matches!(kind_of_point, Some(ToolKind::SpotDrill | ToolKind::Countersink | ToolKind::Probe))
-            && !(kind_of_point == Some(ToolKind::EndMill)
-                && point_angle.is_some_and(|angle| angle.0 < 180.0));
-    DrawnTool { name, swept_width: diameter.filter(|_| is_wide) }
+    let is_pointed = point_angle.is_some_and(|angle| angle.0 < 180.0);
+    let swept_width = match kind_of_point {
+        Some(ToolKind::SpotDrill | ToolKind::Countersink | ToolKind::Probe) => None,
+        Some(ToolKind::EndMill) if is_pointed => None,
+        _ => diameter,
+    };
+    DrawnTool { name, swept_width }
 }
 
 /// Returns start and end of the path, its stops, and the position of an alarm.

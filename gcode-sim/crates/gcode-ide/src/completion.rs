@@ -120,6 +120,12 @@ impl Project {
             completion.filter.starts_with(typed.text.trim_start_matches(['P', 'Q']))
                 || completion.filter.starts_with(&typed.text)
         });
+        // `GOTO10`: the number follows without a space.
+        if typed.text == "GOTO" {
+            let behind =
+                CursorWord { text: String::new(), range: TextRange::new(offset, offset), before: Vec::new() };
+            found.extend(key.map(|key| self.numbers(key, &behind, 0)).unwrap_or_default());
+        }
         found
     }
 
@@ -390,6 +396,8 @@ mod tests {
         let text = "O1\nN10 X1.\nN20\nGOTO $0\nO2\nN30\n";
         assert_eq!(offered(text), ["10", "20"]);
         assert_eq!(offered("O1\nN10 X1.\nN20\nIF[#1 EQ 1]GOTO2$0\n"), ["20"]);
+        assert_eq!(offered("O1\nN10 X1.\nIF[#1 EQ 1]GOTO$0\n"), ["GOTO", "10"]);
+        assert_eq!(offered("O1\nN10 X1.\nIF[#1 EQ 1]GOT$0\n"), ["GOTO"]);
         assert_eq!(offered("O1\nN10\nM99 P$0\n"), ["10"]);
         assert_eq!(offered("O1\nM98 P2\nN7\nO2\nN8\nM99 P$0\n"), ["7"], "in the caller");
         assert_eq!(offered("O1\nM98 P2 Q$0\nN7\nO2\nN8\nM99\n"), ["8"], "in the called program");

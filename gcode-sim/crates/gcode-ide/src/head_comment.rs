@@ -138,8 +138,20 @@ fn flush(
     found: &mut Vec<VariableMeaning>,
 ) {
     for number in pending.drain(..).filter(|_| !words.is_empty()) {
+        let (letter, words) = match letter_behind(number, words) {
+            Some((own, words)) => (Some(own), words),
+            None => (letter, words),
+        };
         found.push(VariableMeaning { number, letter, text: words.to_owned(), range });
     }
+}
+
+/// Returns the letter of a local's argument and the meaning in the words behind its number: `#1 A = RADIUS`, `#1: A - RADIUS`.
+fn letter_behind(number: u32, words: &str) -> Option<(char, &str)> {
+    let letter = argument_letter(number as usize)?;
+    let behind = words.strip_prefix([letter, letter.to_ascii_lowercase()])?.trim_start();
+    let meaning = behind.strip_prefix(['=', ':', '-', ','])?.trim();
+    (!meaning.is_empty()).then_some((letter, meaning))
 }
 
 /// Returns the letter at the start of a comment about an argument: `A #1`, `A = #1`, `(A) #1`.
@@ -170,6 +182,9 @@ mod tests {
             ["#1A RADIUS", "#2B ABOVE THE PART"]
         );
         assert_eq!(stated("O1\n(#1 = X START)\n(#2: DEPTH)\n"), ["#1 X START", "#2 DEPTH"]);
+        assert_eq!(stated("O1\n(#1 A = RADIUS)\n(#2: B - DEPTH)\n"), ["#1A RADIUS", "#2B DEPTH"]);
+        // #2 is the local of B; A without a sign is a word.
+        assert_eq!(stated("O1\n(#2 A = RADIUS)\n(#1 A RADIUS)\n"), ["#2 A = RADIUS", "#1 A RADIUS"]);
         assert_eq!(stated("O1\n(A = #1 RADIUS)\n(RADIUS = #18)\n"), ["#1A RADIUS", "#18 RADIUS"]);
         assert_eq!(
             stated("O1\n(VARIABLES #4 #5 MODES, #24-#26 RESULTS)\n(          #141 READ)\n"),

@@ -23,7 +23,7 @@ use crate::text_document::TextDocument;
 pub(crate) const SOURCE: &str = "gcode-sim";
 
 /// Largest number of diagnostics of a document.
-const MAX_DIAGNOSTICS: usize = 5000;
+const MAX_DIAGNOSTICS: usize = 1000;
 
 /// Result of a check of one document.
 #[derive(Debug)]
@@ -199,4 +199,29 @@ pub(crate) fn help_of(message: &str) -> Option<&str> {
 /// Returns the tags of a rule: blocks that no path reaches are faded.
 fn tags(code: &str) -> Option<Vec<DiagnosticTag>> {
     (code == "unreachable").then(|| vec![DiagnosticTag::UNNECESSARY])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::opened;
+
+    fn shown(count: usize) -> Vec<Diagnostic> {
+        let text = format!("O1\nG0\n{}M30\n", "X25 Y1.\n".repeat(count));
+        let (snapshot, files) = opened(&[("O1.nc", text.as_str())]);
+        let (uri, setup) = (snapshot.uri(files[0]).unwrap(), snapshot.setup(files[0]));
+        let text = snapshot.text(files[0]).unwrap();
+        let conditions = (&setup, BTreeMap::new());
+        check(uri, &text, CheckedBlocks::default(), conditions, &snapshot.files, &snapshot.client)
+            .0
+            .diagnostics
+    }
+
+    #[test]
+    fn more_findings_than_an_editor_shows_are_counted() {
+        assert!(shown(1000).iter().all(|finding| finding.code.is_some()));
+        let all = shown(1003);
+        assert_eq!(all.len(), 1001);
+        assert!(all[1000].message.starts_with("3 more findings are not shown"), "{}", all[1000].message);
+    }
 }

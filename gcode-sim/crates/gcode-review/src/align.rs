@@ -5,12 +5,15 @@
 use std::borrow::Cow;
 
 use super::block_location::BlockLocation;
-use super::common_sequence::{EqualRun, MOST_EDITS, common, common_runs, search};
+use super::common_sequence::{
+    EqualRun, MOST_EDITS, Middle, append, common, common_of_shared, common_or_far, piece_by_piece, search,
+};
 use super::links::{Links, StepPair};
+use super::position_cells::PositionCells;
 use super::record::Record;
 use super::step_list::StepList;
 use super::steps::{Step, StepKind, difference};
-use gcode_lang::motion::{Axes, MAX_AXES};
+use gcode_lang::motion::{Axes, MAX_AXES, Position};
 
 /// Two records, and which step of one is which of the other.
 #[derive(Clone, Copy)]
@@ -71,6 +74,11 @@ impl<'a> StepRange<'a> {
 
     fn at(self, number: usize) -> Step<'a> {
         self.list.at(self.first + number)
+    }
+
+    /// Returns what a step does, and its end.
+    fn end(self, number: usize) -> (&'a StepKind, Position) {
+        (self.kind(number), self.list.end(self.first + number))
     }
 
     fn kind(self, number: usize) -> &'a StepKind {
@@ -142,13 +150,25 @@ fn edits(links: &Links, (old, new): BothSteps<'_>) -> usize {
 
 /// Links the steps from stop to stop, each a pair of equal steps; the last one is where both end.
 fn between((old, new): BothSteps<'_>, stops: &[(usize, usize)], tolerance: f64) -> Links {
+    let cells = PositionCells::new(tolerance);
     let mut links = Links::default();
     let (mut i, mut j) = (0, 0);
     for &(stop_i, stop_j) in stops {
         let (from_i, from_j) = (i, j);
-        let same = common_runs(stop_i - from_i, stop_j - from_j, |a, b| {
-            old.at(from_i + a).is_same(&new.at(from_j + b), tolerance)
-        });
+        let is_same = |a: usize, b: usize| old.at(from_i + a).is_same(&new.at(from_j + b), tolerance);
+        let step = |side: usize, index: usize| match side {
+            0 => old.end(from_i + index),
+            _ => new.end(from_j + index),
+        };
+        let key = |side: usize, index: usize| {
+            let (kind, end) = step(side, index);
+            cells.key(kind, &end)
+        };
+        let keys = |side: usize, index: usize| {
+            let (kind, end) = step(side, index);
+            cells.keys(kind, &end)
+        };
+        let same = common_of_shared([stop_i - from_i, stop_j - from_j], is_same, (key, keys));
         for EqualRun { old: a, new: b, length } in same {
             let (to_i, to_j) = (from_i + a, from_j + b);
             align_gap((old, i..to_i), (new, j..to_j), tolerance, &mut links);
@@ -216,8 +236,15 @@ type StepGap<'a> = (StepRange<'a>, std::ops::Range<usize>);
 /// Links the steps between two equal pairs.
 fn align_gap((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, tolerance: f64, links: &mut Links) {
     let (first_i, first_j) = (range_i.start, range_j.start);
-    let parallel = common_runs(range_i.len(), range_j.len(), |i, j| {
-        old.at(first_i + i).is_parallel(&new.at(first_j + j), tolerance)
+    let is_parallel = |i: usize, j: usize| old.at(first_i + i).is_parallel(&new.at(first_j + j), tolerance);
+    let parallel = common_or_far((range_i.len(), range_j.len()), &is_parallel, |middle| {
+        let Middle { before, rows, columns } = middle;
+        let (from_i, from_j) = (first_i + before, first_j + before);
+        // Where nearly all moves differ, equal displacements are chance.
+        match rows.abs_diff(columns) <= MOST_EDITS {
+            true => pairs_in_order((old, from_i..from_i + rows), (new, from_j..from_j + columns), tolerance),
+            false => piece_by_piece((rows, columns), |i, j| is_parallel(before + i, before + j)),
+        }
     });
     let (mut i, mut j) = (first_i, first_j);
     let ends = [EqualRun { old: range_i.len(), new: range_j.len(), length: 0 }];
@@ -235,6 +262,37 @@ fn align_gap((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, tolerance
         (i, j) = (to_i + length, to_j + length);
     }
 }
+
+/// Pairs differing moves in their order. The surplus of one side is left out where the others then end nearest to their partners.
+fn pairs_in_order((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, tolerance: f64) -> Vec<EqualRun> {
+    let (rows, columns) = (range_i.len(), range_j.len());
+    let surplus = [rows.saturating_sub(columns), columns.saturating_sub(rows)];
+    let paired = rows.min(columns);
+    let steps = |i: usize, j: usize| (old.at(range_i.start + i), new.at(range_j.start + j));
+    let apart = |i: usize, j: usize| {
+        let (was, is) = steps(i, j);
+        step_distance(&was, &is).unwrap_or(UNLIKE)
+    };
+    // How much farther the pairs before a place end than those behind the surplus would.
+    let (mut farther, mut nearest, mut split) = (0.0, 0.0, 0);
+    for k in (0..paired).take_while(|_| surplus != [0, 0]) {
+        farther += apart(k, k) - apart(k + surplus[0], k + surplus[1]);
+        if farther < nearest {
+            (nearest, split) = (farther, k + 1);
+        }
+    }
+    let mut runs = Vec::new();
+    for k in 0..paired {
+        let [skip_i, skip_j] = if k < split { [0, 0] } else { surplus };
+        let (was, is) = steps(k + skip_i, k + skip_j);
+        let is_pair = was.is_move() && is.is_move() && !was.is_same(&is, tolerance);
+        append(&mut runs, (k + skip_i, k + skip_j, usize::from(is_pair)));
+    }
+    runs
+}
+
+/// Distance of two steps that are no likely pair, mm.
+const UNLIKE: f64 = 1e3;
 
 /// Links the remaining steps: as many pairs as possible, with the nearest end points.
 fn nearest((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, link: &mut impl FnMut(StepPair)) {
@@ -323,5 +381,54 @@ mod tests {
         assert_eq!(reach("ABCD", "ACD"), 4);
         assert_eq!(reach("AB", "ABCD"), 2);
         assert_eq!(reach("", "AB"), 0);
+    }
+
+    /// Returns the numbers of steps that differ in two programs, and of those that one alone has, old and new.
+    fn differing(points: [Vec<[f64; 2]>; 2]) -> ([usize; 2], [usize; 2]) {
+        let [old, new] = points.map(|points| {
+            let moves = points.iter().map(|[x, y]| format!("X{x:.3}Y{y:.3}\n")).collect::<String>();
+            let text = format!("O1\nG90G1F100.\n{moves}M30\n");
+            let machine = gcode_inspect::machine::Machine::default();
+            let request = gcode_session::Request::new("O1.nc", text.into_bytes(), machine);
+            crate::Revision::of(&request, &mut gcode_lang::program::NoLibrary, None).unwrap().record
+        });
+        let diff = crate::RevisionDiff::new(&old, &new, 1e-4);
+        (diff.steps.map(|steps| steps.len()), diff.unpaired_steps.map(|steps| steps.len()))
+    }
+
+    /// All 1,500 points are another; many displacements are equal to that of another move by chance.
+    #[test]
+    fn as_many_moves_that_all_differ_are_paired_in_order() {
+        let points = |shift: f64, wave: f64| {
+            let of = |n: usize| {
+                let y = 0.01 * (n * n * 7 % 23) as f64 + wave * (n % 2) as f64;
+                [0.1 * n as f64 + shift, y]
+            };
+            (1..=1500).map(of).collect()
+        };
+        assert_eq!(differing([points(0.0, 0.0), points(0.003, 0.01)]), ([1500; 2], [0; 2]));
+    }
+
+    /// Of 1,500 points that all are another, one revision alone has the 700th.
+    #[test]
+    fn a_surplus_move_among_moves_that_all_differ_is_unpaired() {
+        let points = |shift: f64, left_out: usize| {
+            let of = |n: usize| [0.1 * n as f64 + shift, 0.01 * (n * n * 7 % 23) as f64];
+            (1..=1500).filter(|n| *n != left_out).map(of).collect()
+        };
+        assert_eq!(differing([points(0.0, 700), points(0.003, 0)]), ([1499, 1500], [0, 1]));
+        assert_eq!(differing([points(0.0, 0), points(0.003, 700)]), ([1500, 1499], [1, 0]));
+    }
+
+    /// Of 2,400 moves each fourth goes to the same point; more than a thousand others differ.
+    #[test]
+    fn equal_moves_among_many_others_are_found() {
+        let points = |shift: f64| {
+            let of = |n: usize| {
+                [0.1 * n as f64, if n.is_multiple_of(4) { 1.0 } else { 1.0 + shift * (1 + n % 3) as f64 }]
+            };
+            (1..=2400).map(of).collect()
+        };
+        assert_eq!(differing([points(0.0), points(0.01)]), ([1800; 2], [0; 2]));
     }
 }

@@ -16,7 +16,7 @@ pub(super) struct EqualRun {
 }
 
 /// Appends equal items.
-fn append(runs: &mut Vec<EqualRun>, (old, new, length): (usize, usize, usize)) {
+pub(super) fn append(runs: &mut Vec<EqualRun>, (old, new, length): (usize, usize, usize)) {
     match runs.last_mut() {
         Some(run) if (run.old + run.length, run.new + run.length) == (old, new) => run.length += length,
         _ if length > 0 => runs.push(EqualRun { old, new, length }),
@@ -33,6 +33,28 @@ pub(super) fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool
 /// Returns the longest common sequence of two lists of these lengths; a long one if there are more than
 /// [`MOST_EDITS`] edits.
 pub(super) fn common_runs(old: usize, new: usize, same: impl Fn(usize, usize) -> bool) -> Vec<EqualRun> {
+    common_or_far((old, new), &same, |Middle { before, rows, columns }| {
+        piece_by_piece((rows, columns), |i, j| same(before + i, before + j))
+    })
+}
+
+/// Part of two lists between their equal beginnings and their equal ends.
+#[derive(Clone, Copy)]
+pub(super) struct Middle {
+    /// Number of items before it, in each list.
+    pub before: usize,
+    /// Its items of the old list, and of the new one.
+    pub rows: usize,
+    pub columns: usize,
+}
+
+/// Returns the longest common sequence of two lists of these lengths. If there are more than [`MOST_EDITS`] edits, `far` returns the
+/// equal items of the middle, with indices from its start.
+pub(super) fn common_or_far(
+    (old, new): (usize, usize),
+    same: &impl Fn(usize, usize) -> bool,
+    far: impl FnOnce(Middle) -> Vec<EqualRun>,
+) -> Vec<EqualRun> {
     let shorter = old.min(new);
     let before = (0..shorter).take_while(|k| same(*k, *k)).count();
     let after = (0..shorter - before).take_while(|k| same(old - 1 - k, new - 1 - k)).count();
@@ -40,7 +62,9 @@ pub(super) fn common_runs(old: usize, new: usize, same: impl Fn(usize, usize) ->
     let mut runs = Vec::new();
     append(&mut runs, (0, 0, before));
     if rows > 0 && columns > 0 {
-        for run in longest_or_long(rows, columns, |i, j| same(before + i, before + j)) {
+        let ends = |x: usize, y: usize| x == rows && y == columns;
+        let found = search((rows, columns), MOST_EDITS, |i, j| same(before + i, before + j), ends);
+        for run in found.unwrap_or_else(|_| far(Middle { before, rows, columns })) {
             append(&mut runs, (before + run.old, before + run.new, run.length));
         }
     }
@@ -48,37 +72,56 @@ pub(super) fn common_runs(old: usize, new: usize, same: impl Fn(usize, usize) ->
     runs
 }
 
+/// Returns the longest common sequence of two lists, like [`common_runs`]. If there are too many edits, items that one list alone has
+/// are left out first, see [`shared`]; its keys have indices of the lists.
+pub(super) fn common_of_shared<K: IntoIterator<Item = u64>>(
+    lengths: [usize; 2],
+    same: impl Fn(usize, usize) -> bool,
+    (key, keys): (impl Fn(usize, usize) -> u64, impl Fn(usize, usize) -> K),
+) -> Vec<EqualRun> {
+    common_or_far((lengths[0], lengths[1]), &same, |Middle { before, rows, columns }| {
+        let key = |side: usize, index: usize| key(side, before + index);
+        let [old, new] =
+            shared([rows, columns], (key, |side: usize, index: usize| keys(side, before + index)));
+        let mut runs = Vec::new();
+        for (i, j) in common(old.len(), new.len(), |i, j| same(before + old[i], before + new[j])) {
+            append(&mut runs, (old[i], new[j], 1));
+        }
+        runs
+    })
+}
+
 /// Returns the longest common sequence of two lists of lines by their hashes, like [`common_runs`]. If there are too many
 /// edits, lines that one list alone has are left out first.
 pub(super) fn common_lines(hashes: [&[u64]; 2], is_equal: impl Fn(usize, usize) -> bool) -> Vec<EqualRun> {
-    let [old, new] = hashes;
-    let same = |i: usize, j: usize| old[i] == new[j] && is_equal(i, j);
-    let ends = |x: usize, y: usize| x == old.len() && y == new.len();
-    if let Ok(runs) = search((old.len(), new.len()), MOST_EDITS, same, ends) {
-        return runs;
-    }
-    let [in_old, in_new] = shared_lines(hashes);
-    let mut runs = Vec::new();
-    for (i, j) in common(in_old.len(), in_new.len(), |i, j| same(in_old[i], in_new[j])) {
-        append(&mut runs, (in_old[i], in_new[j], 1));
-    }
-    runs
+    let same = |i: usize, j: usize| hashes[0][i] == hashes[1][j] && is_equal(i, j);
+    let key = |side: usize, line: usize| hashes[side][line];
+    common_of_shared(hashes.map(<[u64]>::len), same, (key, |side, line| [key(side, line)]))
 }
 
-/// Returns the indices of the lines whose hashes both lists have.
-fn shared_lines(hashes: [&[u64]; 2]) -> [Vec<usize>; 2] {
-    let filters = hashes.map(HashFilter::of);
-    let mut candidates = [0, 1].map(|side| {
-        let hashes = hashes[side].iter().copied();
-        hashes.filter(|hash| filters[1 - side].may_contain(*hash)).collect::<Vec<_>>()
+/// Returns the indices of the items that both of two lists may have: one of an item's `keys` is the `key` of an item of the other
+/// list. Both functions take the number of the list and an index.
+pub(super) fn shared<K: IntoIterator<Item = u64>>(
+    lengths: [usize; 2],
+    (key, keys): (impl Fn(usize, usize) -> u64, impl Fn(usize, usize) -> K),
+) -> [Vec<usize>; 2] {
+    let filters = [0, 1].map(|side| HashFilter::of(lengths[side], |index| key(side, index)));
+    let candidates = [0, 1].map(|side| {
+        let may_be_shared =
+            |index: &usize| keys(side, *index).into_iter().any(|key| filters[1 - side].may_contain(key));
+        (0..lengths[side]).filter(may_be_shared).collect::<Vec<_>>()
     });
-    candidates.iter_mut().for_each(|hashes| hashes.sort_unstable());
-    [0, 1].map(|side| {
-        let is_shared = |hash: u64| {
-            filters[1 - side].may_contain(hash) && candidates[1 - side].binary_search(&hash).is_ok()
-        };
-        (0..hashes[side].len()).filter(|line| is_shared(hashes[side][*line])).collect()
-    })
+    let candidate_keys = [0, 1].map(|side| {
+        let mut keys: Vec<u64> = candidates[side].iter().map(|index| key(side, *index)).collect();
+        keys.sort_unstable();
+        keys
+    });
+    let mut shared = candidates;
+    for (side, indices) in shared.iter_mut().enumerate() {
+        let other = &candidate_keys[1 - side];
+        indices.retain(|index| keys(side, *index).into_iter().any(|key| other.binary_search(&key).is_ok()));
+    }
+    shared
 }
 
 /// Set of hashes that may contain others too: one bit for each remainder of a hash.
@@ -87,10 +130,10 @@ struct HashFilter {
 }
 
 impl HashFilter {
-    fn of(hashes: &[u64]) -> Self {
-        let mut filter = Self { bits: vec![0; (hashes.len() / 8).next_power_of_two()] };
-        for hash in hashes {
-            let (index, bit) = filter.place(*hash);
+    fn of(length: usize, hash: impl Fn(usize) -> u64) -> Self {
+        let mut filter = Self { bits: vec![0; (length / 8).next_power_of_two()] };
+        for hash in (0..length).map(hash) {
+            let (index, bit) = filter.place(hash);
             filter.bits[index] |= bit;
         }
         filter
@@ -106,13 +149,11 @@ impl HashFilter {
     }
 }
 
-/// Searches piece by piece if there are too many edits; each piece ends at the farthest point of [`EDITS_AHEAD`]
-/// edits.
-fn longest_or_long(rows: usize, columns: usize, same: impl Fn(usize, usize) -> bool) -> Vec<EqualRun> {
-    let ends = |x: usize, y: usize| x == rows && y == columns;
-    if let Ok(runs) = search((rows, columns), MOST_EDITS, &same, ends) {
-        return runs;
-    }
+/// Searches piece by piece; each piece ends at the farthest point of [`EDITS_AHEAD`] edits.
+pub(super) fn piece_by_piece(
+    (rows, columns): (usize, usize),
+    same: impl Fn(usize, usize) -> bool,
+) -> Vec<EqualRun> {
     let mut all = Vec::new();
     let (mut i, mut j) = (0, 0);
     while i < rows && j < columns {
@@ -255,7 +296,8 @@ mod tests {
                 all.iter().map(|(high, low)| high << 50 | low).collect()
             };
             let lists = [hashes(&old), hashes(&new)];
-            let shared = shared_lines([&lists[0], &lists[1]]);
+            let key = |side: usize, line: usize| lists[side][line];
+            let shared = shared([0, 1].map(|side| lists[side].len()), (key, |side, line| [key(side, line)]));
             for side in 0..2 {
                 let expected: Vec<usize> =
                     (0..lists[side].len()).filter(|k| lists[1 - side].contains(&lists[side][*k])).collect();

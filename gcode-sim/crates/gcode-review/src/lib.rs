@@ -50,6 +50,7 @@ mod modal_conditions;
 mod pass_changes;
 mod passes;
 mod path;
+mod position_cells;
 mod positions;
 mod program_text;
 mod record;
@@ -117,7 +118,7 @@ impl RevisionDiff {
         let mut effects = Effects::new(alignment, &edits);
         differences::differences(&alignment, holes, &cuts, |difference| effects.add(difference));
         let mut changes = entries(effects.finish(), &edits);
-        changes.iter_mut().for_each(|change| anchor::set_anchor(change, &alignment));
+        anchor::set_anchors(&mut changes, &alignment);
         let sides = |side: usize| move |(_, link): (usize, StepPair)| link.sides()[side];
         Self {
             changes,

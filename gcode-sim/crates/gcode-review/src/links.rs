@@ -98,10 +98,6 @@ impl Links {
         self.runs.pop_if(|run| run.length == 0);
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.length
-    }
-
     /// Returns a link by its number; `None` after the last one.
     pub(super) fn get(&self, number: usize) -> Option<StepPair> {
         let run = &self.runs[self.runs.partition_point(|run| run.start <= number).checked_sub(1)?];

@@ -3,14 +3,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::align::Alignment;
 use super::change::{Effect, grouped};
+use super::common_sequence::shared;
 use super::cut_settings::changed_cut_settings;
 use super::descriptions::point;
 use super::kinds;
 use super::links::{Links, StepPair};
+use super::position_cells::PositionCells;
 use super::record::Record;
 use super::step_list::StepList;
-use super::steps::{Step, near};
-use gcode_lang::motion::MAX_AXES;
+use super::steps::{Step, StepKind, near};
+use gcode_lang::motion::{MAX_AXES, Position};
 
 /// Consecutive moves that the other revision makes at another time, as pairs of steps.
 pub(super) struct MoveRun(Vec<(usize, usize)>);
@@ -94,17 +96,38 @@ impl<'a> RevisionMoves<'a> {
         step.kind.rate().is_some() && !near.any(|hole| step.is_on_line_of(&self.steps.at(*hole)))
     }
 
-    fn free_cuts(&self) -> impl Iterator<Item = usize> {
-        (0..self.free.len()).filter(|index| self.is_cut(*index))
+    /// Returns what a free move does, and its end.
+    fn end(&self, index: usize) -> (&'a StepKind, Position) {
+        let step = self.free[index].step;
+        (self.steps.kind(step), self.steps.end(step))
     }
+}
+
+/// Returns the free cuts of both revisions to whose ends the other one may have a free move too.
+fn shared_cuts(revisions: [&RevisionMoves<'_>; 2], tolerance: f64) -> [Vec<usize>; 2] {
+    let cells = PositionCells::new(tolerance);
+    let key = |side: usize, index: usize| {
+        let (kind, end) = revisions[side].end(index);
+        cells.key(kind, &end)
+    };
+    let keys = |side: usize, index: usize| {
+        let (kind, end) = revisions[side].end(index);
+        cells.keys(kind, &end)
+    };
+    let mut cuts = shared(revisions.map(|moves| moves.free.len()), (key, keys));
+    for (side, indices) in cuts.iter_mut().enumerate() {
+        indices.retain(|index| revisions[side].is_cut(*index));
+    }
+    cuts
 }
 
 fn find(old: &RevisionMoves<'_>, new: &RevisionMoves<'_>, tolerance: f64) -> Vec<MoveRun> {
     let mut alike: BTreeMap<[i64; MAX_AXES], Vec<usize>> = BTreeMap::new();
-    new.free_cuts().for_each(|index| alike.entry(about(&new.step(index))).or_default().push(index));
+    let [cuts, cuts_now] = shared_cuts([old, new], tolerance);
+    cuts_now.into_iter().for_each(|index| alike.entry(about(&new.step(index))).or_default().push(index));
     let (mut known, mut known_now) = (BTreeSet::new(), BTreeSet::new());
     let mut runs = Vec::new();
-    for p in old.free_cuts() {
+    for p in cuts {
         if known.contains(&p) {
             continue;
         }

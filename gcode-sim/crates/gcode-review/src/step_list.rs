@@ -96,6 +96,11 @@ impl StepList {
         }
     }
 
+    /// Returns the axis positions after a step without the tool length offset.
+    pub(super) fn end(&self, number: usize) -> Position {
+        difference(&self.at.get(number), self.lengths.get(number))
+    }
+
     /// Returns what a step does.
     pub(super) fn kind(&self, number: usize) -> &StepKind {
         &self.kinds[self.of_step.get(number) as usize]

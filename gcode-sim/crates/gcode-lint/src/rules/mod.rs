@@ -114,12 +114,39 @@ pub(super) fn codes() -> Vec<&'static str> {
 }
 
 /// Returns the findings of all rules except the suppressed ones, by program and block.
+///
+/// Several threads share the rules of a long program, and the short programs.
 pub(super) fn findings(context: &CheckContext<'_>) -> Vec<Diagnostic> {
-    let mut all = Vec::new();
-    for unit in &context.units {
-        all.extend(findings_in_program(context, unit));
-    }
-    all
+    let units = context.units.iter().enumerate();
+    let (long, short): (Vec<_>, Vec<_>) =
+        units.partition(|(_, unit)| MIN_BLOCKS_TO_SHARE <= unit.blocks.len());
+    let of_unit = |(place, unit): (usize, &ProgramUnit<'_>)| (place, findings_in_program(context, unit));
+    let next = AtomicUsize::new(0);
+    let find_next = || short.get(next.fetch_add(1, Ordering::Relaxed)).copied().map(of_unit);
+    let blocks = short.iter().map(|(_, unit)| unit.blocks.len()).sum();
+    let mut found = on_threads(threads_for(blocks).min(short.len()), find_next);
+    found.extend(long.into_iter().map(of_unit));
+    found.sort_by_key(|(place, _)| *place);
+    found.into_iter().flat_map(|(_, findings)| findings).collect()
+}
+
+/// Returns the number of threads that check some blocks.
+///
+/// The system is asked for many blocks alone: the answer takes as long as the work on a few.
+fn threads_for(blocks: usize) -> usize {
+    if blocks < MIN_BLOCKS_TO_SHARE { 1 } else { thread::available_parallelism().map_or(1, usize::from) }
+}
+
+/// Takes results from a function on this thread and on others until it has no more.
+fn on_threads<T: Send>(threads: usize, next: impl Fn() -> Option<T> + Sync) -> Vec<T> {
+    let rest = || std::iter::from_fn(&next).collect::<Vec<_>>();
+    thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(rest)).collect();
+        let own = rest();
+        let joined =
+            others.into_iter().map(|other| other.join().unwrap_or_else(|e| std::panic::resume_unwind(e)));
+        own.into_iter().chain(joined.flatten()).collect()
+    })
 }
 
 /// Returns the findings of all rules in one program except the suppressed ones, by block.
@@ -153,9 +180,6 @@ type Found = (Vec<(usize, Vec<Diagnostic>)>, Option<(usize, Vec<BlockMarks>)>);
 /// Returns the findings in one program, rule by rule.
 pub(super) fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let shares = unit.blocks.len().div_ceil(SHARE);
-    // The system is asked for long programs alone: the answer takes as long as the work on a short one.
-    let cores = || thread::available_parallelism().map_or(1, usize::from);
-    let threads = if unit.blocks.len() < MIN_BLOCKS_TO_SHARE { 1 } else { cores().min(ALL.len()) };
     let next = AtomicUsize::new(0);
     let find_next = || -> Option<Found> {
         let place = next.fetch_add(1, Ordering::Relaxed);
@@ -169,14 +193,7 @@ pub(super) fn findings_in(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) ->
         };
         Some((found, None))
     };
-    let find_rest = || std::iter::from_fn(find_next).collect::<Vec<_>>();
-    let all = thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(find_rest)).collect();
-        let own = find_rest();
-        let joined =
-            others.into_iter().map(|other| other.join().unwrap_or_else(|e| std::panic::resume_unwind(e)));
-        own.into_iter().chain(joined.flatten()).collect::<Vec<_>>()
-    });
+    let all = on_threads(threads_for(unit.blocks.len()).min(ALL.len()), find_next);
     let (mut found, mut marks) = (Vec::new(), vec![0; unit.blocks.len()]);
     for (findings, share) in all {
         found.extend(findings);
