@@ -133,6 +133,7 @@ impl ModalConditions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gcode_lang::program::modes::WorkSystem;
 
     #[test]
     fn an_additional_work_coordinate_system_has_the_name_of_its_dialect() {
