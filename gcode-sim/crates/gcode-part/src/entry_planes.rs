@@ -36,6 +36,8 @@ pub struct Metal {
     pub entries: Option<Arc<EntryPlanes>>,
     /// What feeds may remove of the body besides the holes.
     pub pockets: Vec<Surface>,
+    /// What is empty in the body before the program runs.
+    pub voids: Vec<Surface>,
 }
 
 impl From<Option<Surface>> for Metal {

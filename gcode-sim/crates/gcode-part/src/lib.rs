@@ -86,6 +86,6 @@ pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
 pub use solid::{NearestPoint, Rod, Taper, common, shares_between, shares_within};
-pub use stock::{Pocket, Stock, StockAxis};
+pub use stock::{Stock, StockAxis, StockRegion};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};
