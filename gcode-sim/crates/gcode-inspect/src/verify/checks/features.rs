@@ -113,22 +113,8 @@ fn judge<'c>(
     judged.judge_break_through(surface);
     judged.judge_next_holes(drilled, machine);
     threads::judge(&mut judged);
-    let on_axis = earlier_on_axis(comparison, pair, machine);
-    tool_kinds::judge(&mut judged, surface.is_some(), &on_axis);
+    tool_kinds::judge(&mut judged, surface.is_some());
     Some(judged)
-}
-
-/// Returns the cuts of the first hole on the axis of a pair, if that is another one from the same side, made before it.
-fn earlier_on_axis<'c>(comparison: &'c Comparison<'_>, pair: &HolePair, machine: &Machine) -> Vec<Cut<'c>> {
-    let (nominal, drilled) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
-    if drilled.first_on_line == pair.actual {
-        return Vec::new();
-    }
-    let first = &comparison.actual[drilled.first_on_line];
-    let is_same_way = 0.0 < first.axis.dot(&drilled.axis);
-    let own = drilled.passes().map(|pass| pass.cut.order).min();
-    let is_before = |cut: &Cut<'_>| is_same_way && own.is_some_and(|own| cut.pass.cut.order < own);
-    Cut::all(nominal, first, machine).into_iter().filter(is_before).collect()
 }
 
 impl Judgement<'_> {

@@ -65,9 +65,8 @@ fn cone(judged: &Judgement<'_>) -> Option<Diagnostic> {
 }
 
 /// Adds the findings on the kinds of the tools that cut a hole, and the tools whose hole the program doesn't drill.
-/// The part is solid where its stock or surface is known. `on_axis` are the cuts of another hole of the list on the same axis, which
-/// are made before: a stepped hole may be several holes.
-pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool, on_axis: &[Cut<'_>]) {
+/// The part is solid where its stock or surface is known.
+pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool) {
     let (mut findings, mut gaps) = (Vec::new(), Vec::new());
     for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
         for (index, cut) in cuts.iter().enumerate() {
@@ -76,16 +75,15 @@ pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool, on_axis: &[Cut<'
                 continue;
             }
             let makes_hole = |other: &Cut<'_>| !needs_hole(other.kind) && !other.is_thread();
-            let before: Vec<Cut<'_>> = on_axis.iter().chain(&cuts[..index]).copied().collect();
-            if !cuts.iter().chain(others).chain(on_axis).any(makes_hole) {
+            if !cuts.iter().chain(others).any(makes_hole) {
                 // A tool of unknown kind may as well be a drill.
                 match cut.kind.filter(|_| is_solid) {
                     Some(kind) => findings.push(undrilled(judged.id, cut, kind)),
                     None => gaps.push(ShapeGap::Undrilled(cut.pass.tool)),
                 }
             } else if cut.kind.is_some_and(|kind| kind != ToolKind::Tap) {
-                let finding = too_narrow(judged, cut, &before, others);
-                findings.extend(finding.or_else(|| in_solid(judged, cut, &before, others)));
+                let finding = too_narrow(judged, cut, &cuts[..index], others);
+                findings.extend(finding.or_else(|| in_solid(judged, cut, &cuts[..index], others)));
             }
             findings.extend(torn(judged, cut));
         }
