@@ -161,6 +161,7 @@ fn rapids_in_a_pocket(bencher: divan::Bencher<'_, '_>, count: u32) {
         body: Some(block([0.0, 0.0, -20.0], [120.0, 80.0, 0.0])),
         entries: Some(Arc::new(EntryPlanes::of(&[hole], 0.1))),
         pockets: vec![block([5.0, 5.0, -9.0], [115.0, 80.0, 0.0])],
+        voids: Vec::new(),
     };
     let machine = Machine::parse(MILL).expect("the machine file is valid");
     let request = Request::new("O1.nc", loops(count).into_bytes(), machine);
@@ -217,8 +218,12 @@ fn simulate_in_block(program: String) -> Simulation {
     let entries = Some(Arc::new(EntryPlanes::of(&[hole], 0.1)));
     let machine = Machine::parse(MILL).expect("the machine file is valid");
     let request = Request::new("O1.nc", program.into_bytes(), machine);
-    simulate(&request, &mut NoLibrary, Metal { body: Some(body), entries, pockets: Vec::new() })
-        .expect("there is a program")
+    simulate(
+        &request,
+        &mut NoLibrary,
+        Metal { body: Some(body), entries, pockets: Vec::new(), voids: Vec::new() },
+    )
+    .expect("there is a program")
 }
 
 /// Passes side by side, each 3 mm beside the one before, and rapids among them.
@@ -255,6 +260,7 @@ fn rapids_across_passes(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
         body: Some(Surface::Block { min: [0.0, 0.0, -20.0].into(), max: [400.0, 300.0, 0.0].into() }),
         entries: Some(Arc::new(EntryPlanes::of(&[hole_beside()], 0.1))),
         pockets: vec![Surface::Block { min: [0.0, 0.0, -5.0].into(), max: [400.0, 230.0, 1.0].into() }],
+        voids: Vec::new(),
     };
     let machine = MILL.replace("straight = true", "rates = { X = 24000.0, Y = 24000.0, Z = 18000.0 }");
     let machine = Machine::parse(&machine.replace("diameter = 10.0", "diameter = 3.0"))
@@ -284,6 +290,7 @@ fn chords_across_each_other(bencher: divan::Bencher<'_, '_>, count: u32) {
         body: Some(Surface::Block { min: [0.0, 0.0, -20.0].into(), max: [400.0, 300.0, 0.0].into() }),
         entries: Some(Arc::new(EntryPlanes::of(&[hole_beside()], 0.1))),
         pockets: vec![Surface::Block { min: [0.0, 0.0, -5.0].into(), max: [400.0, 230.0, 1.0].into() }],
+        voids: Vec::new(),
     };
     let machine = Machine::parse(MILL).expect("the machine file is valid");
     let request = Request::new("O1.nc", text.into_bytes(), machine);

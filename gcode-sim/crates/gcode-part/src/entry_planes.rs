@@ -37,6 +37,8 @@ pub struct Metal {
     pub entries: Option<Arc<EntryPlanes>>,
     /// What feeds may remove of the body besides the holes.
     pub pockets: Vec<Surface>,
+    /// What is empty in the body before the program runs.
+    pub voids: Vec<Surface>,
 }
 
 impl From<Option<Surface>> for Metal {
@@ -317,10 +319,17 @@ fn steps(hole: &Hole, radius: f64, tolerance: f64) -> Vec<Step> {
         };
         step(radius, bottom + below)
     };
-    match hole.features[..] {
-        [] => vec![step(radius, hole.depth)],
-        _ => hole.features.iter().map(of_feature).collect(),
+    if hole.features.is_empty() {
+        return vec![step(radius, hole.depth)];
     }
+    let mut all: Vec<Step> = hole.features.iter().map(of_feature).collect();
+    let deepest = hole.features.iter().map(Feature::bottom).fold(0.0, f64::max);
+    if deepest + NOISE < hole.depth {
+        // Below its features a hole is at most as wide as its narrowest one before it is threaded.
+        let before_thread = |feature: &Feature| feature.diameter / 2.0 - feature.pitch.unwrap_or(0.0) / 4.0;
+        all.push(step(hole.features.iter().map(before_thread).fold(radius, f64::min), hole.depth));
+    }
+    all
 }
 
 #[cfg(test)]

@@ -87,7 +87,7 @@ pub use point_tree::PointTree;
 pub use profile::Profile;
 pub use reference::{ProcessLimits, Reference, ToolProcess};
 pub use solid::{NearestPoint, Rod, Taper};
-pub use stock::{Pocket, Stock, StockAxis};
+pub use stock::{Stock, StockAxis, StockRegion};
 pub use surface::{Surface, bisect};
 pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};
 pub use travel_shares::{common_shares, shares_between, shares_within};

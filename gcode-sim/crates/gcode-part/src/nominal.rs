@@ -9,6 +9,7 @@ use crate::reader::FileError;
 
 /// Nominal part, the reference of `verify`.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a program has one part")]
 pub enum NominalPart {
     /// Holes, each with its nominal position.
     Holes(Reference),

@@ -92,6 +92,7 @@ impl Reference {
             body: self.body(of_machine),
             entries: Some(Arc::new(EntryPlanes::of(&self.holes, self.depth_tolerance()))),
             pockets: stock.map(Stock::pockets).unwrap_or_default(),
+            voids: stock.map(Stock::voids).unwrap_or_default(),
         }
     }
 

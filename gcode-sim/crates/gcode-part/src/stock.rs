@@ -1,5 +1,5 @@
-//! `[stock]`: the solid material of the part before the program runs and the pockets that feeds may mill in it, as a
-//! reference or a machine file describes them.
+//! `[stock]`: the solid material of the part before the program runs, its voids and the pockets that feeds may mill in it,
+//! as a reference or a machine file describes them.
 use nalgebra::{Point3, Unit, Vector3};
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::{Deserialize, Serialize};
@@ -27,8 +27,12 @@ pub enum Stock {
         max: [f64; 3],
         /// What feeds may mill besides the holes.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        #[serde(deserialize_with = "<Items<Section<Pocket>> as FileKey>::deserialize")]
-        pocket: Vec<Pocket>,
+        #[serde(deserialize_with = "<Items<Section<StockRegion>> as FileKey>::deserialize")]
+        pocket: Vec<StockRegion>,
+        /// What is empty in it before the program runs: slots, cored holes, cast pockets.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[serde(deserialize_with = "<Items<Section<StockRegion>> as FileKey>::deserialize")]
+        void: Vec<StockRegion>,
     },
     /// A cylinder about one of the part's axes.
     Cylinder {
@@ -48,23 +52,31 @@ pub enum Stock {
         to: f64,
         /// What feeds may mill besides the holes.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        #[serde(deserialize_with = "<Items<Section<Pocket>> as FileKey>::deserialize")]
-        pocket: Vec<Pocket>,
+        #[serde(deserialize_with = "<Items<Section<StockRegion>> as FileKey>::deserialize")]
+        pocket: Vec<StockRegion>,
+        /// What is empty in it before the program runs: slots, cored holes, cast pockets.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[serde(deserialize_with = "<Items<Section<StockRegion>> as FileKey>::deserialize")]
+        void: Vec<StockRegion>,
     },
     /// The reference's own surface.
     Surface {
         /// What feeds may mill besides the holes.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        #[serde(deserialize_with = "<Items<Section<Pocket>> as FileKey>::deserialize")]
-        pocket: Vec<Pocket>,
+        #[serde(deserialize_with = "<Items<Section<StockRegion>> as FileKey>::deserialize")]
+        pocket: Vec<StockRegion>,
+        /// What is empty in it before the program runs: slots, cored holes, cast pockets.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[serde(deserialize_with = "<Items<Section<StockRegion>> as FileKey>::deserialize")]
+        void: Vec<StockRegion>,
     },
 }
 
-/// Material that feeds may mill besides the holes, in the part's frame, mm.
+/// Region of the stock, in the part's frame, mm: a pocket that feeds may mill, or a void that is empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 #[schemars(transform = describe_kind)]
-pub enum Pocket {
+pub enum StockRegion {
     /// A box with edges along the part's axes.
     Box {
         /// Its corner with the least coordinates.
@@ -154,32 +166,41 @@ impl Stock {
 
     /// Returns the bodies that feeds may remove.
     pub fn pockets(&self) -> Vec<Surface> {
-        self.pocket().iter().map(Pocket::body).collect()
+        self.regions().0.iter().map(StockRegion::body).collect()
     }
 
-    fn pocket(&self) -> &[Pocket] {
+    /// Returns the bodies that are empty before the program runs.
+    pub fn voids(&self) -> Vec<Surface> {
+        self.regions().1.iter().map(StockRegion::body).collect()
+    }
+
+    /// Returns the pockets and the voids.
+    fn regions(&self) -> (&[StockRegion], &[StockRegion]) {
         match self {
-            Self::Box { pocket, .. } | Self::Cylinder { pocket, .. } | Self::Surface { pocket } => pocket,
+            Self::Box { pocket, void, .. }
+            | Self::Cylinder { pocket, void, .. }
+            | Self::Surface { pocket, void } => (pocket, void),
         }
     }
 
     /// Returns the stock with all lengths multiplied by a factor.
     #[must_use]
-    pub(super) fn scaled(self, by: f64) -> Self {
-        let all = |pocket: Vec<Pocket>| pocket.into_iter().map(|pocket| pocket.scaled(by)).collect();
-        match self {
-            Self::Box { min, max, pocket } => {
-                Self::Box { min: min.map(|v| v * by), max: max.map(|v| v * by), pocket: all(pocket) }
+    pub(super) fn scaled(mut self, by: f64) -> Self {
+        let scale = |regions: &mut Vec<StockRegion>| {
+            regions.iter_mut().for_each(|region| *region = region.clone().scaled(by));
+        };
+        match &mut self {
+            Self::Box { min, max, pocket, void } => {
+                [min, max].into_iter().flatten().for_each(|value| *value *= by);
+                [pocket, void].into_iter().for_each(scale);
             }
-            Self::Cylinder { axis, diameter, from, to, pocket } => Self::Cylinder {
-                axis,
-                diameter: diameter * by,
-                from: from * by,
-                to: to * by,
-                pocket: all(pocket),
-            },
-            Self::Surface { pocket } => Self::Surface { pocket: all(pocket) },
+            Self::Cylinder { diameter, from, to, pocket, void, .. } => {
+                [diameter, from, to].into_iter().for_each(|value| *value *= by);
+                [pocket, void].into_iter().for_each(scale);
+            }
+            Self::Surface { pocket, void } => [pocket, void].into_iter().for_each(scale),
         }
+        self
     }
 
     /// Returns the reason why no body can have these numbers; `None` if one can.
@@ -189,18 +210,23 @@ impl Stock {
             Self::Cylinder { from, to, .. } => rod_fault(from, to),
             Self::Surface { .. } => None,
         };
-        let of_pocket = |(index, pocket): (usize, &Pocket)| {
-            let fault = match *pocket {
-                Pocket::Box { min, max } => block_fault(min, max),
-                Pocket::Cylinder { from, to, .. } => rod_fault(from, to),
-            };
-            fault.map(|fault| format!("pocket {}: {fault}", index + 1))
-        };
-        own.or_else(|| self.pocket().iter().enumerate().find_map(of_pocket))
+        let (pockets, voids) = self.regions();
+        let all = [("pocket", pockets), ("void", voids)].into_iter();
+        let mut regions =
+            all.flat_map(|(name, all)| all.iter().enumerate().map(move |(index, one)| (name, index, one)));
+        own.or_else(|| {
+            regions.find_map(|(name, index, region)| {
+                let fault = match *region {
+                    StockRegion::Box { min, max } => block_fault(min, max),
+                    StockRegion::Cylinder { from, to, .. } => rod_fault(from, to),
+                };
+                fault.map(|fault| format!("{name} {}: {fault}", index + 1))
+            })
+        })
     }
 }
 
-impl Pocket {
+impl StockRegion {
     fn scaled(self, by: f64) -> Self {
         let point = |point: [f64; 3]| point.map(|value| value * by);
         match self {
@@ -268,12 +294,20 @@ mod tests {
 
     #[test]
     fn a_body_without_volume_is_refused() {
-        let flat = Stock::Box { min: [0.0, 0.0, 0.0], max: [5.0, 5.0, 0.0], pocket: Vec::new() };
+        let flat =
+            Stock::Box { min: [0.0, 0.0, 0.0], max: [5.0, 5.0, 0.0], pocket: Vec::new(), void: Vec::new() };
         assert_eq!(flat.fault().unwrap(), "max is 0 in z, and min is 0: max above min");
-        let upside =
-            Pocket::Cylinder { axis: StockAxis::Z, centre: [0.0; 3], diameter: 5.0, from: 0.0, to: -9.0 };
-        let stock = Stock::Surface { pocket: vec![upside] };
+        let upside = StockRegion::Cylinder {
+            axis: StockAxis::Z,
+            centre: [0.0; 3],
+            diameter: 5.0,
+            from: 0.0,
+            to: -9.0,
+        };
+        let stock = Stock::Surface { pocket: vec![upside.clone()], void: Vec::new() };
         assert_eq!(stock.fault().unwrap(), "pocket 1: to is -9, and from is 0: to above from");
+        let stock = Stock::Surface { pocket: Vec::new(), void: vec![upside] };
+        assert_eq!(stock.fault().unwrap(), "void 1: to is -9, and from is 0: to above from");
         for text in [
             r#"{"kind": "ball"}"#,
             r#"{"kind": "surface", "min": [0, 0, 0]}"#,

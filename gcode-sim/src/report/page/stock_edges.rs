@@ -42,7 +42,8 @@ mod tests {
     /// A box has 12 edges, 4 of each length.
     #[test]
     fn a_box_has_twelve_edges() {
-        let stock = Stock::Box { min: [0.0, 0.0, -3.0], max: [1.0, 2.0, 0.0], pocket: Vec::new() };
+        let stock =
+            Stock::Box { min: [0.0, 0.0, -3.0], max: [1.0, 2.0, 0.0], pocket: Vec::new(), void: Vec::new() };
         let lengths = edges(&stock)
             .iter()
             .map(|edge| (0..3).map(|axis| edge[1][axis] - edge[0][axis]).sum())

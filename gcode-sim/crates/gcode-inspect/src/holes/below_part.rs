@@ -50,7 +50,7 @@ impl HoleExtractor<'_> {
         let point = self.machine.tool_end(self.setup.tool).first().map_or(0.0, |full| full.from);
         let (at, height) = (self.pose.tip + axis.into_inner() * point, height + point);
         let below = underside - height;
-        if !exceeds(below, MAX_BREAK_THROUGH) || self.metal.is_below_hole(&at, &axis) {
+        if !exceeds(below, MAX_BREAK_THROUGH) || self.metal.is_below_hole(&at, &axis, |_| true) {
             return;
         }
         let inside = at + axis.into_inner() * (below + 2.0 * TOUCH_DEPTH);

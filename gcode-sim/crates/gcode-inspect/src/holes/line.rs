@@ -196,15 +196,16 @@ impl CuttingLine {
     pub(super) fn pecks(&self) -> PeckExtent {
         match &self.stroke {
             Some(stroke) if stroke.end.depth > self.deepest.depth + MIN_DEPTH_GAIN => {
-                self.pecks_with_stroke(stroke.end.depth)
+                self.pecks_with_stroke(stroke.from_depth, stroke.end.depth)
             }
             _ => self.pecks,
         }
     }
 
-    fn pecks_with_stroke(&self, reach: f64) -> PeckExtent {
+    fn pecks_with_stroke(&self, from_depth: f64, reach: f64) -> PeckExtent {
         let PeckExtent { strokes, max_fed: fed, max_cut: cut } = self.pecks;
-        let deepest = self.deepest.depth;
+        // A stroke that begins behind a gap cuts from there.
+        let deepest = self.deepest.depth.max(from_depth);
         let solid = deepest.max(self.surface_depth.unwrap_or(deepest));
         PeckExtent {
             strokes: strokes + 1,
@@ -375,7 +376,7 @@ impl CuttingLine {
         let depth = end.depth;
         let is_deeper = depth > self.deepest.depth + MIN_DEPTH_GAIN;
         if is_deeper {
-            self.pecks = self.pecks_with_stroke(depth);
+            self.pecks = self.pecks_with_stroke(from_depth, depth);
             self.deepest = end.clone();
         }
         if self.is_tapping {

@@ -24,7 +24,7 @@ impl HoleExtractor<'_> {
     ) -> Option<Point3<f64>> {
         let Some(mut line) = self.current_line.take() else { return Some(from) };
         let tip = self.pose.tip;
-        if kind == MotionKind::Rapid && line.is_overrun(&tip) {
+        if kind == MotionKind::Rapid && line.is_overrun(&tip) && !self.is_gap_ahead(&line, &from) {
             if line.is_bar_shifted() {
                 self.report_back_boring(&line);
             } else {
@@ -63,8 +63,10 @@ impl HoleExtractor<'_> {
                     MotionKind::Rapid | MotionKind::Probe => {
                         line.is_cycle |= event.block == line.first_block;
                         let is_deeper = line.is_beyond_cut(&tip);
-                        // Through a hole that is finished the tool moves freely, as far as its body fits.
-                        let is_free = is_deeper && self.metal.cuts(&from, &tip) == Some(false);
+                        // Through a hole that is finished, or a gap behind it, the tool moves freely, as far as its body fits.
+                        let is_free = is_deeper
+                            && (self.metal.cuts(&from, &tip) == Some(false)
+                                || self.is_gap_ahead(&line, &from));
                         let again = line.rapid_to(&tip, !is_free);
                         if is_free {
                             free_from = Some(from).filter(|_| kind == MotionKind::Rapid);
@@ -95,6 +97,17 @@ impl HoleExtractor<'_> {
                 Some(free_from)
             }
         }
+    }
+
+    /// Returns true if the tool moves on in a gap between walls, behind a through hole that it has drilled: it meets no metal there.
+    fn is_gap_ahead(&self, line: &CuttingLine, from: &Point3<f64>) -> bool {
+        let Some(axis) = line.tool_axis.filter(|_| line.is_inward() && !line.is_bar_shifted()) else {
+            return false;
+        };
+        let is_open = self.metal.holes.is_some() && self.metal.cuts(from, &self.pose.tip) != Some(true);
+        is_open
+            && line.cuts.last_feed().is_some()
+            && self.metal.is_below_hole(from, &axis, |hole| hole.is_through)
     }
 
     /// Records rate and modal state of a feed inwards from `from` if it cuts; the approach may be faster.

@@ -8,7 +8,7 @@ use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
-use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NOISE, NearestPoint, PARALLEL_COSINE, Surface, Taper};
+use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NOISE, NearestPoint, Surface, Taper};
 
 /// Least length of a piece in metal, mm; a shorter one is rounding.
 const MIN_PIECE: f64 = 1e-3;
@@ -69,7 +69,7 @@ impl KnownMetal {
             body: metal.body,
             holes: metal.entries,
             pockets: metal.pockets,
-            removed: RemovedMetal::new(bounds),
+            removed: RemovedMetal::new(bounds, metal.voids),
         }
     }
 
@@ -157,27 +157,37 @@ impl KnownMetal {
         let mut is_in_other = false;
         holes.around(&up.inf(&down), &up.sup(&down), &mut |hole| {
             let collar = holes.collar(hole);
-            let depth = collar.depth(tip);
-            let is_same_way = PARALLEL_COSINE <= axis.dot(&collar.rod.axis);
-            if is_same_way && collar.from_axis(tip) <= collar.hole_radius {
-                match collar.max_depth() + TOUCH_DEPTH < depth {
-                    true if collar.is_through => beyond = Some((hole, PointInMetal { point: *tip, depth })),
-                    true => {}
-                    false => is_in_other = true,
-                }
+            if !collar.is_parallel(axis) || collar.hole_radius < collar.from_axis(tip) {
+                return;
+            }
+            let (depth, deepest) = (collar.depth(tip), collar.max_depth() + TOUCH_DEPTH);
+            // A hole that is listed from its far side has its room above it and below its entry.
+            let is_from_far_side = axis.dot(&collar.rod.axis) < 0.0;
+            is_in_other |= match is_from_far_side {
+                true => collar.rod.length - deepest <= depth && (collar.is_through || depth <= deepest),
+                false => depth <= deepest,
+            };
+            if !is_from_far_side && deepest < depth && collar.is_through {
+                beyond = Some((hole, PointInMetal { point: *tip, depth }));
             }
         });
         beyond.filter(|_| !is_in_other)
     }
 
-    /// Returns true for a point in the column of a nominal hole.
-    pub(super) fn is_below_hole(&self, p: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> bool {
+    /// Returns true for a point in the column of one of the nominal holes that count.
+    pub(super) fn is_below_hole(
+        &self,
+        p: &Point3<f64>,
+        axis: &Unit<Vector3<f64>>,
+        is_counted: impl Fn(&Collar) -> bool,
+    ) -> bool {
         let Some(holes) = self.holes.as_deref() else { return false };
         let up = p + axis.into_inner() * self.removed.height_of_metal(p, axis);
         let mut is_below = false;
         holes.around(&up.inf(p), &up.sup(p), &mut |hole| {
             let collar = holes.collar(hole);
-            is_below |= collar.is_parallel(axis) && collar.from_axis(p) <= collar.hole_radius + TOUCH_DEPTH;
+            let is_in = collar.is_parallel(axis) && collar.from_axis(p) <= collar.hole_radius + TOUCH_DEPTH;
+            is_below |= is_in && is_counted(collar);
         });
         is_below
     }

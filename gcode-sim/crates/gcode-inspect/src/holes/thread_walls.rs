@@ -3,6 +3,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::rapids::format_point;
+use super::swept_tool::ring;
 use super::{DrilledHole, HoleExtractor};
 use crate::findings::{FEED_BESIDE_HOLE, RAPID_INTO_PART};
 use crate::machine::{PointShape, ToolKind, tool_name};
@@ -19,6 +20,9 @@ const MIN_ASIDE: f64 = 0.1;
 
 /// Largest sine of the angle between the tool and a motion along it.
 const MAX_AXIAL_SINE: f64 = 0.1;
+
+/// Number of points round a thread.
+const FLANK_POINTS: u32 = 8;
 
 /// Angle from which on an arc makes a whole turn, in turns.
 const WHOLE_TURN: f64 = 0.99;
@@ -182,6 +186,15 @@ impl HoleExtractor<'_> {
         });
     }
 
+    /// Returns true if the metal of the flanks is solid half way down to a depth: nothing has cut the thread yet, and a rapid is
+    /// compared with the metal.
+    fn is_unthreaded(&self, hole: &NominalAxis, thread: &NominalThread, depth: f64) -> bool {
+        let middle = hole.entry - hole.out * f64::midpoint(thread.span[0], depth);
+        let out = Unit::new_normalize(hole.out);
+        let offsets = ring(&out, &Vector3::zeros(), thread.major - MAX_FLANK_CUT, FLANK_POINTS);
+        offsets.iter().map(|offset| middle + offset).all(|point| self.metal.uncut(&[point, point]).is_some())
+    }
+
     /// Reports a rapid away from the axis of a threaded hole, or down along it, whose edge enters the flanks; returns true if it
     /// does.
     pub(super) fn check_rapid_into_thread(&mut self, event: &Event<'_>, from: &Point3<f64>) -> bool {
@@ -210,6 +223,7 @@ impl HoleExtractor<'_> {
             || !exceeds(height, MAX_FLANK_CUT)
             || !exceeds(reach - thread.core, MAX_FLANK_CUT)
             || exceeds(reach - thread.major, MAX_FLANK_CUT)
+            || self.is_unthreaded(hole, thread, depth)
         {
             return false;
         }

@@ -23,11 +23,17 @@ pub(super) struct Follower {
 impl Follower {
     /// Returns the hole with its index if it follows another one.
     pub(super) fn of(upper: &Hole, (index, lower): (usize, &Hole), tolerances: Tolerances) -> Option<Self> {
-        let is_opposite = Vector3::from(upper.axis).dot(&Vector3::from(lower.axis)) < 0.0;
-        let hole = if is_opposite && lower.through { lower.from_far_side() } else { lower.clone() };
+        let hole = seen_along(&Vector3::from(upper.axis), lower);
         let far = follows(upper, &hole, tolerances)?;
         Some(Self { index, hole, far })
     }
+}
+
+/// Returns a hole as it is seen along a direction out of the part: from its far side, if it goes through and is listed from
+/// there.
+fn seen_along(out: &Vector3<f64>, hole: &Hole) -> Hole {
+    let is_opposite = out.dot(&Vector3::from(hole.axis)) < 0.0;
+    if is_opposite && hole.through { hole.from_far_side() } else { hole.clone() }
 }
 
 /// Returns the depth of a hole that follows another one on its axis and in its direction, from the entry of the upper one; `None` if
@@ -41,8 +47,8 @@ fn follows(upper: &Hole, lower: &Hole, tolerances: Tolerances) -> Option<f64> {
     (is_alike && is_on_axis && upper.depth + tolerances.depth < begins).then_some(begins + lower.depth)
 }
 
-/// Returns for each missing through hole the first of its candidates, nominal and drilled hole, that leads through it to a hole
-/// farther along its axis. `partners` has the nominal hole of each drilled one that is matched.
+/// Returns for each missing through hole the first of its candidates, nominal and drilled hole, that leads through it and through
+/// another hole on its axis, before or behind it. `partners` has the nominal hole of each drilled one that is matched.
 pub(super) fn shared_passages(
     nominal: &[Hole],
     actual: &[DrilledHole],
@@ -52,11 +58,16 @@ pub(super) fn shared_passages(
 ) -> BTreeMap<usize, usize> {
     let mut shared = BTreeMap::new();
     for (index, drilled_index) in missing {
-        let (hole, drilled) = (&nominal[index], &actual[drilled_index]);
+        let drilled = &actual[drilled_index];
+        let hole = seen_along(&drilled.axis, &nominal[index]);
         let depth = |point: &Point3<f64>| (Point3::from(hole.entry) - point).dot(&Vector3::from(hole.axis));
         let leads_through = depth(&drilled.entry) <= 0.0 && hole.depth <= depth(&drilled.bottom());
         let is_same_size = |other: &Hole| {
-            hole.widest_diameter() == other.widest_diameter() && follows(hole, other, tolerances).is_some()
+            let other = seen_along(&drilled.axis, other);
+            let is_before_or_behind = || {
+                follows(&hole, &other, tolerances).is_some() || follows(&other, &hole, tolerances).is_some()
+            };
+            hole.widest_diameter() == other.widest_diameter() && is_before_or_behind()
         };
         let has_partner = partners.get(&drilled_index).is_some_and(|other| is_same_size(&nominal[*other]));
         if hole.through && leads_through && has_partner {

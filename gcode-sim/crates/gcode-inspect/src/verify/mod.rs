@@ -48,7 +48,7 @@ use crate::machine::Machine;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
-use gcode_part::{Hole, Reference, Stock};
+use gcode_part::{Hole, Reference, Surface};
 use nalgebra::{Point3, Vector3};
 
 /// Tolerance of the diameter of a hole, either way, mm.
@@ -115,8 +115,9 @@ pub fn verify(
         None => Transformation::of(&comparison, machine, &extraction.feeds_in_air),
     };
     let stock = reference.stock.as_ref().or(machine.stock.as_ref());
-    let pockets = stock.map(Stock::pockets).unwrap_or_default();
-    let features = judge_all(&comparison, body, &pockets, machine);
+    let openings: Vec<Surface> =
+        stock.into_iter().flat_map(|stock| stock.pockets().into_iter().chain(stock.voids())).collect();
+    let features = judge_all(&comparison, body, &openings, machine);
     let inspection = HoleInspection {
         comparison,
         rows,

@@ -15,7 +15,7 @@ use super::profile::Profile;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
-use gcode_part::{shares_between, shares_within};
+use gcode_part::{Surface, shares_between, shares_within};
 
 /// Largest number of sweeps that are kept, for the memory.
 const MAX_SWEEPS: usize = 1_000_000;
@@ -47,6 +47,8 @@ struct Sweep {
 pub(super) struct RemovedMetal {
     sweeps: Vec<Sweep>,
     profiles: Vec<Profile>,
+    /// What was empty before the first sweep.
+    voids: Vec<Surface>,
     /// Boxes about groups of sweeps, and about each.
     boxes: BoxTree,
     sweep_boxes: Vec<SweepBox>,
@@ -67,11 +69,12 @@ pub(super) struct RemovedMetal {
 }
 
 impl RemovedMetal {
-    /// Returns no removed metal; `bounds` are corners of a box that holds all metal.
-    pub(super) fn new(bounds: [Point3<f64>; 2]) -> Self {
+    /// Returns metal of which nothing but its voids is removed; `bounds` are corners of a box that holds all of it.
+    pub(super) fn new(bounds: [Point3<f64>; 2], voids: Vec<Surface>) -> Self {
         Self {
             sweeps: Vec::new(),
             profiles: Vec::new(),
+            voids,
             boxes: BoxTree::default(),
             sweep_boxes: Vec::new(),
             slabs: Slabs::default(),
@@ -185,7 +188,8 @@ impl RemovedMetal {
     /// Returns true if what is removed at a height above a tool of this direction is removed wherever it is above that.
     pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
         let is_open = |profile: &Profile| profile.parts.first().is_some_and(|part| part.to == f64::INFINITY);
-        self.common_axis.is_none_or(|common| common == Some(*axis)) && self.profiles.iter().all(is_open)
+        let is_one_way = self.common_axis.is_none_or(|common| common == Some(*axis));
+        self.voids.is_empty() && is_one_way && self.profiles.iter().all(is_open)
     }
 
     /// Keeps later feeds from lengthening the last sweep; returns the number of sweeps.
@@ -203,7 +207,7 @@ impl RemovedMetal {
 /// Number of the sweeps that are tried before all others.
 const MAX_RECENT: usize = 8;
 
-/// The first sweeps.
+/// The first sweeps, and the voids.
 #[derive(Debug)]
 pub(super) struct FirstSweeps<'r> {
     sweeps: &'r [Sweep],
@@ -214,6 +218,9 @@ impl FirstSweeps<'_> {
     /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included. `is_certain` leaves
     /// out tools of unknown diameter.
     pub(super) fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
+        for void in &self.removed.voids {
+            shares.take_away(strip.piece(|[from, to]| void.piece(from, to, -TOUCH_DEPTH)));
+        }
         let profiles = &self.removed.profiles;
         let is_counted = |profile: u32| profiles[profile as usize].is_certain || !is_certain;
         self.removed.slabs.uncover(strip, self.sweeps.len(), is_counted, shares);

@@ -22,7 +22,7 @@ fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f
 /// from −SQRT[5.01² − 9] = −4.0125; at z −5.02 it is below.
 #[test]
 fn a_slot_covers_its_width_and_all_above_it() {
-    let mut removed = RemovedMetal::new([p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)]);
+    let mut removed = RemovedMetal::new([p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)], Vec::new());
     removed.add(p(0.0, 0.0, -5.0), p(40.0, 0.0, -5.0), Vector3::z_axis(), &Profile::flat(5.0, true));
     for is_closed in [false, true] {
         if is_closed {
@@ -40,7 +40,7 @@ fn a_slot_covers_its_width_and_all_above_it() {
 /// Pecks along one line are one sweep, and a feed back adds none.
 #[test]
 fn pecks_are_one_sweep() {
-    let mut removed = RemovedMetal::new([p(-9.0, -9.0, -50.0), p(9.0, 9.0, 0.0)]);
+    let mut removed = RemovedMetal::new([p(-9.0, -9.0, -50.0), p(9.0, 9.0, 0.0)], Vec::new());
     for depth in 1..=1000 {
         let bottom = f64::from(depth) / -50.0;
         let profile = Profile::flat(3.0, true);
@@ -56,7 +56,8 @@ fn pecks_are_one_sweep() {
 fn small_steps_along_a_line_are_one_sweep() {
     let profile = Profile::flat(3.0, true);
     let bounds = [p(-99.0, -99.0, -50.0), p(99.0, 99.0, 0.0)];
-    let (mut line, mut circle) = (RemovedMetal::new(bounds), RemovedMetal::new(bounds));
+    let (mut line, mut circle) =
+        (RemovedMetal::new(bounds, Vec::new()), RemovedMetal::new(bounds, Vec::new()));
     for step in 0..1000 {
         let at = |step: i32| p(f64::from(step) * 0.05, 0.0, -5.0);
         line.add(at(step), at(step + 1), Vector3::z_axis(), &profile);
@@ -83,7 +84,7 @@ proptest! {
         lines in prop::collection::vec(prop::array::uniform6(-45.0..45.0f64), 8),
         first in 0..60usize,
     ) {
-        let mut removed = RemovedMetal::new([p(-50.0, -50.0, -20.0), p(50.0, 50.0, 0.0)]);
+        let mut removed = RemovedMetal::new([p(-50.0, -50.0, -20.0), p(50.0, 50.0, 0.0)], Vec::new());
         let mut at = p(-30.0, -30.0, -5.0);
         for (kind, x, y, depth) in passes {
             let height = -5.0 - f64::from(depth / 2);

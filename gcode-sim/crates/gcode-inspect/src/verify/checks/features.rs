@@ -139,6 +139,10 @@ impl Judgement<'_> {
                 }
             }
         }
+        // The list says how thick the part is, and not which diameter goes through.
+        if self.nominal.through && !self.nominal.features.iter().any(|feature| self.goes_through(feature)) {
+            self.judge_through(None, surface);
+        }
         for feature in &self.nominal.features {
             self.judge_wall(feature);
         }

@@ -155,7 +155,7 @@ impl Judgement<'_> {
     /// Reports a through hole, or a feature of one, that does not break out.
     pub(super) fn judge_through(&mut self, feature: Option<&Feature>, surface: Option<Surface>) {
         let tolerances = self.comparison.tolerances;
-        let own = self.nominal.diameter;
+        let own = self.nominal.diameter.filter(|_| self.nominal.features.is_empty());
         let makes =
             |cut: &&Cut<'_>| match feature {
                 Some(feature) => cut.mismatch(feature, tolerances).is_some(),
@@ -164,7 +164,8 @@ impl Judgement<'_> {
                     !exceeds((diameter - nominal).abs(), tolerances.diameter)
                 }),
             };
-        let diameter = feature.map(|feature| feature.diameter).or(self.nominal.diameter).unwrap_or(0.0);
+        let narrowest = || self.nominal.features.iter().map(|feature| feature.diameter).reduce(f64::min);
+        let diameter = feature.map(|feature| feature.diameter).or(own).or_else(narrowest).unwrap_or(0.0);
         let mut gaps = Vec::new();
         let mut reach = |cuts: &[Cut<'_>]| {
             let depth = |cut: &Cut<'_>| cut.full_depth(diameter).unwrap_or(cut.tip);
