@@ -95,7 +95,7 @@ impl Control {
         // A dynamic work offset that is off is none, as a shift of 0.
         let is_off = |group| group == ModalGroup::DynamicOffset && state.modal.dynamic == DynamicOffset::Off;
         for group in GROUPS.iter().filter(|group| !is_off(**group)) {
-            let code = state.modal.code_in(*group);
+            let code = state.code_in_force(*group);
             push(ResidualKind::Mode, mode_name(group.number()), f64::from(code) / 10.0);
         }
         if let WorkSystem::Additional(number) = state.modal.work {

@@ -30,11 +30,11 @@ pub struct State {
     pub(super) g92_shift: Position,
     /// Active tool length offset of each axis.
     pub(super) length_offset: Position,
+    /// Part of it that is wear, along the tool; negative with G44.
+    pub(super) length_wear: f64,
     /// G28, G30 or G53 has cancelled the length offset, and G43 or G44 is still the modal code: the next H, G43 or
     /// G44 brings the offset back.
     pub(super) is_length_cancelled: bool,
-    /// Part of it that is wear, along the tool; negative with G44.
-    pub(super) length_wear: f64,
     /// Intermediate point of G28 for G29, from the work zero, tool length included.
     pub(super) intermediate_point: Position,
     /// Axes with an intermediate point, as bits.
@@ -93,6 +93,15 @@ impl State {
     /// Returns true if blocks of axis words move on arcs.
     pub(super) fn moves_on_arc(&self) -> bool {
         self.modal.cycle.is_none() && is_circular(self.modal.motion)
+    }
+
+    /// Returns the G code × 10 of a group that is in force: the active one as in #4001…, and G49 where G28, G30 or G53 has
+    /// cancelled the length offset of G43 or G44.
+    pub fn code_in_force(&self, group: ModalGroup) -> u32 {
+        match group {
+            ModalGroup::Length if self.is_length_cancelled => Length::Off.code(),
+            group => self.modal.code_in(group),
+        }
     }
 
     /// Returns the source of the tool length offset.

@@ -367,7 +367,7 @@ mod tests {
     }
 
     /// A drill of 6 through 19 may end 10 mm and its point, 1.803, below the far side; the counterbore of 20 ends at 5.1. The
-    /// cone of Φ16 and 90° is 8 deep and may be 0.1 deeper.
+    /// cone of Φ16 and 90° is 8 deep and may be 0.1 deeper; below it the hole of unknown width goes on to its depth.
     #[test]
     fn each_feature_of_a_hole_has_its_room() {
         let features = |texts: &[&str]| texts.iter().map(|text| Feature::parse(text).unwrap()).collect();
@@ -386,7 +386,7 @@ mod tests {
         assert_eq!(steps(&up(true, &bored)), [[3.0, 30.803], [10.0, 5.1]]);
         assert_eq!(steps(&up(false, &["drill 6 19 to=full"])), [[3.0, 20.903]]);
         let countersunk = up(false, &["countersink 16 angle=90"]);
-        assert_eq!(steps(&countersunk), [[8.1, 8.1]]);
+        assert_eq!(steps(&countersunk), [[8.1, 8.1], [8.0, 19.1]]);
         let cone = Collar::of(&countersunk, 0.1).steps[0];
         assert_eq!(
             [-5.0, 0.0, 3.0, 8.1].map(|depth| (cone.radius(depth) * 1e6).round() / 1e6),

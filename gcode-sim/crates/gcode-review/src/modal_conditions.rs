@@ -7,6 +7,7 @@ use super::kinds;
 use gcode_control::{BlockCommands, State, modal_code};
 use gcode_lang::control::Dialect;
 use gcode_lang::diag::FindingKind;
+use gcode_lang::program::modes::ModalGroup;
 
 /// One kind of modal condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -60,7 +61,7 @@ impl ModalAspect {
 
     fn read(self, state: &State, dialect: Dialect) -> String {
         let modal = &state.modal;
-        let code = modal.code(self.row().0).unwrap_or_default();
+        let code = ModalGroup::of(self.row().0).map_or(0, |group| state.code_in_force(group));
         let group = modal_code(code);
         match (self, modal.work, modal.cycle) {
             (Self::System, ..) => modal.work.name(dialect),
