@@ -2,7 +2,7 @@
 //!
 //! `--> next {"threadId": 1}` sends a request with its arguments, `--! TEXT` a message as it stands. `<-- next {…}` is the next
 //! message and must be the response with this body, `<-- refused next "text"` a failed one whose message contains the text,
-//! `<-- event stopped {…}` an event. [`crate::json`] compares the bodies; a line without one leaves it open. A line that begins with spaces continues the one before; `$DIR` is the folder of the case, `$ROOT` that
+//! `<-- event stopped {…}` an event. `json` compares the bodies; a line without one leaves it open. A line that begins with spaces continues the one before; `$DIR` is the folder of the case, `$ROOT` that
 //! of the workspace.
 use std::io::{Read, Write};
 use std::process::{Child, ChildStdin, Stdio};

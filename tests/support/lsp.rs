@@ -8,7 +8,7 @@
 //! - `change O1.nc VERSION`: then lines `2:0-2:4 "text"` or `all "text"`, each a change. `close O1.nc`.
 //! - `disk O1.nc`: writes the lines behind `|` to the disk and says so; `disk O1.nc silently` says nothing.
 //! - `diagnostics O1.nc [VERSION]`: waits for them; then lines `2:0-2:4 error missing-n`, `~words` of the message behind.
-//! - `-> METHOD {…}` and `<- {…}` or `<- error -32602 ~words`: a request and its answer, which [`crate::json`] compares. `$O1.nc`
+//! - `-> METHOD {…}` and `<- {…}` or `<- error -32602 ~words`: a request and its answer, which `json` compares. `$O1.nc`
 //!   is the URI of a file.
 //! - `notify METHOD {…}`; `server METHOD ~words`: waits for a message of the server; `reply METHOD {…}`: answers its request.
 //! - `eol crlf`: lines behind `|` end with CR LF from here on.

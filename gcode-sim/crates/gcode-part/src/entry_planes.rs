@@ -72,6 +72,8 @@ pub struct Collar {
     pub rod: Rod,
     /// Radius inside which the metal at the entry belongs to the hole, mm.
     pub hole_radius: f64,
+    /// Radius of its narrowest feature before it is threaded, mm.
+    narrowest_radius: f64,
     /// Cylinders and cones that the hole consists of, each from the entry.
     pub steps: Vec<Step>,
     /// The reference states the hole's diameter.
@@ -211,6 +213,7 @@ impl Collar {
         Self {
             rod: Rod { base, axis, length: hole.depth, radius: radius.unwrap_or(0.0) + WALL },
             hole_radius: radius.unwrap_or(WALL),
+            narrowest_radius: narrowest_radius(hole, radius.unwrap_or(WALL)),
             steps: steps(hole, radius.unwrap_or(WALL), depth_tolerance),
             has_diameter: radius.is_some(),
             is_through: hole.through,
@@ -291,6 +294,22 @@ impl Collar {
         (has_edge && 0.0 < slope).then(|| Step { taper, max_depth: MAX_EDGE_BREAK / slope })
     }
 
+    /// Returns the largest radius of a tool of unknown diameter whose stroke on the axis ends at a depth, mm: that of the features
+    /// that end there, else that of the narrowest, for a wider tool would spoil it.
+    pub fn radius_of_stroke(&self, depth: f64) -> f64 {
+        let ends_there = |step: &&Step| (step.max_depth - depth).abs() <= SAME_END;
+        let made = self.steps.iter().filter(ends_there).map(|step| step.taper.radius);
+        made.fold(self.narrowest_radius, f64::max).min(self.hole_radius)
+    }
+
+    /// Returns the radius of the widest cylinder of the hole that ends at a depth, mm; `None` if none does, or if it is the
+    /// narrowest of the hole.
+    pub fn widened_at(&self, depth: f64) -> Option<f64> {
+        let ends_there = |step: &&Step| step.taper.slope == 0.0 && (step.max_depth - depth).abs() <= SAME_END;
+        let radius = self.steps.iter().filter(ends_there).map(|step| step.taper.radius).reduce(f64::max)?;
+        (self.narrowest_radius < radius).then_some(radius)
+    }
+
     /// Returns the largest depth of a feed in the hole, mm.
     pub fn max_depth(&self) -> f64 {
         self.steps.iter().map(|step| step.max_depth).fold(0.0, f64::max)
@@ -325,12 +344,20 @@ fn steps(hole: &Hole, radius: f64, tolerance: f64) -> Vec<Step> {
     let mut all: Vec<Step> = hole.features.iter().map(of_feature).collect();
     let deepest = hole.features.iter().map(Feature::bottom).fold(0.0, f64::max);
     if deepest + NOISE < hole.depth {
-        // Below its features a hole is at most as wide as its narrowest one before it is threaded.
-        let before_thread = |feature: &Feature| feature.diameter / 2.0 - feature.pitch.unwrap_or(0.0) / 4.0;
-        all.push(step(hole.features.iter().map(before_thread).fold(radius, f64::min), hole.depth));
+        // Below its features a hole is at most as wide as its narrowest one.
+        all.push(step(narrowest_radius(hole, radius), hole.depth));
     }
     all
 }
+
+/// Returns the radius of the narrowest feature before it is threaded; `radius` is that of a hole without features.
+fn narrowest_radius(hole: &Hole, radius: f64) -> f64 {
+    let before_thread = |feature: &Feature| feature.diameter / 2.0 - feature.pitch.unwrap_or(0.0) / 4.0;
+    hole.features.iter().map(before_thread).fold(radius, f64::min)
+}
+
+/// Difference in depth up to which a stroke ends where a feature does, its point included, mm.
+const SAME_END: f64 = 1.0;
 
 #[cfg(test)]
 mod tests {

@@ -10,6 +10,7 @@ use super::profile::Profile;
 use super::rapids::PLUNGE_COSINE;
 use super::strip::Line;
 use super::swept_tool::{TipPaths, contact, rim};
+use super::unsized_tool::ON_AXIS;
 use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart};
 use gcode_lang::motion::{Event, Position};
 use gcode_part::Collar;
@@ -33,7 +34,7 @@ const MAX_GOUGES: u32 = 1000;
 const MAX_MEASURED_GOUGES: u32 = 4;
 
 /// Largest excess of a shank or a holder over the hole in which it goes, mm in radius: half the tolerance of the diameter.
-const FIT: f64 = 0.025;
+pub(super) const FIT: f64 = 0.025;
 
 /// Largest distance by which a plunge leads aside, mm.
 const MAX_ASIDE: f64 = 0.2;
@@ -91,7 +92,17 @@ impl HoleExtractor<'_> {
                 rim(&axis, &along, full.radius()).into_iter().any(|offset| is_cut(offset + above))
             })
         };
-        Some(cuts || axis.is_some_and(|axis| cuts_at_rim(axis) || self.cuts_with_side(&[*from, *to], &axis)))
+        let cuts_as_wide_as_its_feature = |axis: Unit<Vector3<f64>>| {
+            let radius = self.radius_of_unsized(&[*from, *to], &axis);
+            radius.is_some_and(|radius| rim(&axis, &along, radius - FIT).into_iter().any(is_cut))
+        };
+        Some(
+            cuts || axis.is_some_and(|axis| {
+                cuts_at_rim(axis)
+                    || self.cuts_with_side(&[*from, *to], &axis)
+                    || cuts_as_wide_as_its_feature(axis)
+            }),
+        )
     }
 
     /// Returns true if the side of the tool cuts metal that is known, deeper than it fits in a hole of its diameter: a countersink in
@@ -237,14 +248,16 @@ impl HoleExtractor<'_> {
             }
             return;
         }
-        // A tool of unknown diameter cuts a nominal hole to its width.
-        let mut room: Option<f64> = None;
+        // A tool of unknown diameter cuts a nominal hole to its width; on the axis to that of the feature it makes.
+        let mut milled: Option<f64> = None;
         self.metal.around(travel, &mut |collar: &Collar| {
             let aside = travel.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
-            if collar.is_parallel(axis) && aside <= collar.hole_radius {
-                room = Some(room.unwrap_or(0.0).max(collar.hole_radius - aside));
+            if collar.is_parallel(axis) && aside <= collar.hole_radius && ON_AXIS < aside {
+                milled = Some(milled.unwrap_or(0.0).max(collar.hole_radius - aside));
             }
         });
+        let drilled = self.radius_of_stroke(travel, axis);
+        let room = drilled.map_or(milled, |radius| Some(radius.max(milled.unwrap_or(0.0))));
         let profile = match room {
             Some(room) => Profile::flat(room, true),
             // Without nominal holes the direction of the tool may be that of the feed.

@@ -463,6 +463,7 @@ impl HoleExtractor<'_> {
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.record_line_feed(event, &mut line, &start);
+            self.check_start_of_unsized(&line);
             line
         });
     }

@@ -57,6 +57,7 @@ mod tool_change;
 mod turned_body;
 mod turning_feed;
 pub(crate) mod unknown_axes;
+mod unsized_tool;
 mod wall_cut;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
