@@ -69,7 +69,7 @@ impl Engagement {
         let (tip, depth) = beyond.reduce(|best, other| if best.1 < other.1 { other } else { best })?;
         let spoke = tip - centre;
         let outwards = Unit::try_new(spoke - out.into_inner() * spoke.dot(out), 1e-9)?.into_inner();
-        (0.0 < depth).then_some(PathExcess { tip, outwards, depth })
+        (0.0 < depth).then_some(PathExcess { centre: *centre, tip, outwards, depth })
     }
 }
 

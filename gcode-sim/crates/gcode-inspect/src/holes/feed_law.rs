@@ -10,7 +10,6 @@ use super::profile::Profile;
 use super::rapids::PLUNGE_COSINE;
 use super::strip::Line;
 use super::swept_tool::{TipPaths, contact, rim};
-use super::unsized_tool::ON_AXIS;
 use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart};
 use gcode_lang::motion::{Event, Position};
 use gcode_part::Collar;
@@ -20,6 +19,9 @@ pub(super) const CHORD_TOLERANCE: f64 = 0.005;
 
 /// Deviation of the chords that show whether an arc is near the metal, mm.
 pub(super) const COARSE_TOLERANCE: f64 = 5.0;
+
+/// Distance from the axis of a hole up to which a stroke drills it, mm; farther off a mill makes it.
+pub(super) const ON_AXIS: f64 = 0.5;
 
 /// Radius up to which a mill of unknown diameter may remove metal, mm.
 pub(super) const MAX_RADIUS: f64 = 25.0;

@@ -23,6 +23,8 @@ pub(super) struct HoleCircles {
 /// Place at which a path leads beyond its circle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PathExcess {
+    /// Centre of the circle.
+    pub centre: Point3<f64>,
     /// Position of the tip.
     pub tip: Point3<f64>,
     /// Direction away from the axis.

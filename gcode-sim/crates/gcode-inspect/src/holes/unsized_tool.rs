@@ -2,15 +2,12 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
-use super::feed_law::FIT;
+use super::feed_law::{FIT, ON_AXIS};
 use super::line::CuttingLine;
 use super::swept_tool::rim;
 use crate::findings::RAPID_INTO_PART;
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Collar;
-
-/// Distance from the axis of a hole up to which a stroke drills it, mm; farther off a mill makes it.
-pub(super) const ON_AXIS: f64 = 0.5;
 
 /// Depth in a hole from which on the start of a feed is inside it, mm.
 const MIN_START_DEPTH: f64 = 0.1;

@@ -15,8 +15,8 @@ use gcode_part::{Collar, exceeds};
 const MAX_WALL_CUT: f64 = 0.05;
 
 impl KnownMetal {
-    /// Returns the id of the nominal hole that a tool at a tip is in, and how far the tool reaches beyond its wall.
-    fn wall_excess(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>, radius: f64) -> Option<(&str, f64)> {
+    /// Returns the index of the nominal hole that a tool at a tip is in, and how far the tool reaches beyond its wall.
+    fn wall_excess(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>, radius: f64) -> Option<(usize, f64)> {
         let holes = self.holes.as_deref()?;
         let mut nearest: Option<(usize, f64)> = None;
         holes.around(tip, tip, &mut |hole| {
@@ -29,7 +29,7 @@ impl KnownMetal {
         });
         let (hole, aside) = nearest?;
         let wall = wall_radius(holes.collar(hole), tip)?;
-        Some((holes.id(hole), aside + radius - wall))
+        Some((hole, aside + radius - wall))
     }
 }
 
@@ -49,18 +49,20 @@ impl HoleExtractor<'_> {
         out: &Unit<Vector3<f64>>,
         backtrace: &Backtrace,
     ) {
-        let PathExcess { tip, outwards, depth } = *excess;
+        let PathExcess { centre, tip, outwards, depth } = *excess;
         if !exceeds(depth, MAX_WALL_CUT) || self.engagement.is_spoilt(self.gouge_count) {
             return;
         }
         let radius = self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0);
         let wall = radius.map(|radius| self.metal.wall_excess(&tip, out, radius));
-        let (id, depth) = match wall {
-            Some(Some((id, beyond))) => (id.to_owned(), depth.min(beyond)),
+        let hole_at = |tip: &Point3<f64>| self.metal.wall_excess(tip, out, 0.0).map(|(hole, _)| hole);
+        let (hole, depth) = match wall {
+            Some(Some((hole, beyond))) => (hole, depth.min(beyond)),
             // Below the hole, or beside it.
             Some(None) => return,
-            None => match self.metal.wall_excess(&tip, out, 0.0) {
-                Some((id, _)) => (id.to_owned(), depth),
+            // A path that goes on to another hole shows nothing of the wall of this one.
+            None => match hole_at(&tip).filter(|hole| hole_at(&centre) == Some(*hole)) {
+                Some(hole) => (hole, depth),
                 None => return,
             },
         };
@@ -69,6 +71,7 @@ impl HoleExtractor<'_> {
         if !exceeds(depth, MAX_WALL_CUT) || self.metal.is_in_pocket(&edge) {
             return;
         }
+        let id = self.metal.holes.as_ref().map_or("", |holes| holes.id(hole)).to_owned();
         self.findings.add(&FEED_BESIDE_HOLE, backtrace, 1, |kind| {
             let place = format_point(&at);
             let message =

@@ -8,7 +8,7 @@ use crate::holes::DrilledHole;
 use gcode_part::Hole;
 
 /// Cosine of the largest angle between the axes of two holes that meet.
-pub(super) const MIN_OPPOSITE_COSINE: f64 = 0.999_999;
+pub(super) const MIN_ALIKE_COSINE: f64 = 0.999_999;
 
 /// Nominal hole that follows a through hole on its axis.
 pub(super) struct Follower {
@@ -42,7 +42,7 @@ fn follows(upper: &Hole, lower: &Hole, tolerances: Tolerances) -> Option<f64> {
     let out = Vector3::from(upper.axis);
     let offset = Point3::from(lower.entry) - Point3::from(upper.entry);
     let begins = -offset.dot(&out);
-    let is_alike = MIN_OPPOSITE_COSINE < out.dot(&Vector3::from(lower.axis));
+    let is_alike = MIN_ALIKE_COSINE < out.dot(&Vector3::from(lower.axis));
     let is_on_axis = offset.cross(&out).norm() <= tolerances.position / 2.0;
     (is_alike && is_on_axis && upper.depth + tolerances.depth < begins).then_some(begins + lower.depth)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
-use super::followers::{Follower, MIN_OPPOSITE_COSINE, shared_passages};
+use super::followers::{MIN_ALIKE_COSINE, shared_passages};
 use super::position::Deviation;
 use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
@@ -27,9 +27,6 @@ const NEARNESS: f64 = 1e-6;
 
 /// Cosine of 30°: between directions that differ by more a hole is another one, not a tilted one.
 const TILTED_HOLE_COSINE: f64 = COS_30;
-
-/// Length of a part within which holes of one axis are looked for, mm.
-const MAX_PART_LENGTH: f64 = 10_000.0;
 
 /// A nominal hole and the drilled one matched with it, by their indices in the lists.
 #[derive(Clone, Copy, Debug)]
@@ -68,29 +65,7 @@ pub struct Comparison<'a> {
     /// The nominal hole matched with a line, by the first drilled hole of the line.
     nominal_by_line: Vec<Option<usize>>,
     /// Entries of the nominal holes, for the first query.
-    entries: OnceCell<PointTree>,
-}
-
-impl Comparison<'_> {
-    /// Returns the nominal holes that follow a through hole on its axis; none of another hole.
-    pub(super) fn followers(&self, hole: &Hole) -> Vec<Follower> {
-        let mut followers = Vec::new();
-        if !hole.through {
-            return followers;
-        }
-        let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
-        let far = entry - out * MAX_PART_LENGTH;
-        let margin = Vector3::repeat(self.tolerances.position);
-        let entries = || PointTree::new(self.nominal.iter().map(|hole| Point3::from(hole.entry)));
-        let (low, high) = (entry.inf(&far) - margin, entry.sup(&far) + margin);
-        self.entries.get_or_init(entries).in_box(&low, &high, &mut |index| {
-            let other = &self.nominal[index];
-            if !std::ptr::eq(other, hole) {
-                followers.extend(Follower::of(hole, (index, other), self.tolerances));
-            }
-        });
-        followers
-    }
+    pub(super) entries: OnceCell<PointTree>,
 }
 
 impl<'a> Comparison<'a> {
@@ -207,14 +182,11 @@ impl<'a> Comparison<'a> {
     pub(super) fn counter_depth(&self, hole: &Hole, diameter: f64) -> f64 {
         let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
         let far = entry - out * (hole.depth + MAX_BREAK_THROUGH);
-        let (low, high) = (entry.inf(&far), entry.sup(&far));
-        let margin = Vector3::repeat(self.tolerances.position);
-        let entries = || PointTree::new(self.nominal.iter().map(|hole| Point3::from(hole.entry)));
         let mut least = f64::INFINITY;
-        self.entries.get_or_init(entries).in_box(&(low - margin), &(high + margin), &mut |index| {
+        self.entries_between(&entry, &far, &mut |index| {
             let other = &self.nominal[index];
             let offset = Point3::from(other.entry) - entry;
-            let is_opposite = out.dot(&Vector3::from(other.axis)) < -MIN_OPPOSITE_COSINE;
+            let is_opposite = out.dot(&Vector3::from(other.axis)) < -MIN_ALIKE_COSINE;
             let is_on_axis = offset.cross(&out).norm() <= self.tolerances.position / 2.0;
             let begins = -offset.dot(&out);
             if is_opposite && is_on_axis && !exceeds(hole.depth - begins, self.tolerances.depth) {

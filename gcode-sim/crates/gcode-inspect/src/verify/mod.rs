@@ -12,6 +12,7 @@ mod hole_finding;
 mod matching;
 mod neighbours;
 mod not_checked;
+mod on_axis;
 mod open_depths;
 mod outline;
 mod position;

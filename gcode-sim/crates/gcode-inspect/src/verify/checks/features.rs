@@ -113,8 +113,21 @@ fn judge<'c>(
     judged.judge_break_through(surface);
     judged.judge_next_holes(drilled, machine);
     threads::judge(&mut judged);
-    tool_kinds::judge(&mut judged, surface.is_some());
+    let on_axis = earlier_on_axis(&judged, drilled, machine);
+    tool_kinds::judge(&mut judged, surface.is_some(), &on_axis);
     Some(judged)
+}
+
+/// Returns the cuts of other holes of the list on the axis of a hole, from the same side, which are made before it; none for a hole
+/// whose tools all make one.
+fn earlier_on_axis<'c>(judged: &Judgement<'c>, drilled: &DrilledHole, machine: &Machine) -> Vec<Cut<'c>> {
+    if !judged.near.iter().any(tool_kinds::needs_earlier_cut) {
+        return Vec::new();
+    }
+    let own = drilled.passes().map(|pass| pass.cut.order).min();
+    let is_before = |cut: &Cut<'_>| own.is_some_and(|own| cut.pass.cut.order < own);
+    let others = judged.comparison.drilled_on_axis(judged.nominal);
+    others.flat_map(|other| Cut::all(judged.nominal, other, machine)).filter(is_before).collect()
 }
 
 impl Judgement<'_> {

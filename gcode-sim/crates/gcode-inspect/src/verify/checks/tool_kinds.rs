@@ -18,6 +18,11 @@ fn needs_hole(kind: Option<ToolKind>) -> bool {
     kind.is_some_and(ToolKind::needs_hole)
 }
 
+/// Returns true for a cut that needs a hole that another one has made: of a reamer, a boring bar or a tap.
+pub(super) fn needs_earlier_cut(cut: &Cut<'_>) -> bool {
+    needs_hole(cut.kind) || cut.is_thread()
+}
+
 /// Returns true if a hole of one diameter and one pass is drilled, or milled by a flat end.
 pub(super) fn is_usual(drilled: &DrilledHole, machine: &Machine) -> bool {
     let tool = || drilled.tool.and_then(|number| machine.find_tool(number));
@@ -65,25 +70,27 @@ fn cone(judged: &Judgement<'_>) -> Option<Diagnostic> {
 }
 
 /// Adds the findings on the kinds of the tools that cut a hole, and the tools whose hole the program doesn't drill.
-/// The part is solid where its stock or surface is known.
-pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool) {
+/// The part is solid where its stock or surface is known. `on_axis` are the cuts of other holes of the list on the same axis that are
+/// made before: a stepped hole may be several holes.
+pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool, on_axis: &[Cut<'_>]) {
     let (mut findings, mut gaps) = (Vec::new(), Vec::new());
     for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
         for (index, cut) in cuts.iter().enumerate() {
             findings.extend(sideways(judged.id, cut));
-            if !(needs_hole(cut.kind) || cut.is_thread()) || cut.is_circle() {
+            if !needs_earlier_cut(cut) || cut.is_circle() {
                 continue;
             }
-            let makes_hole = |other: &Cut<'_>| !needs_hole(other.kind) && !other.is_thread();
-            if !cuts.iter().chain(others).any(makes_hole) {
+            let makes_hole = |other: &Cut<'_>| !needs_earlier_cut(other);
+            let before: Vec<Cut<'_>> = on_axis.iter().chain(&cuts[..index]).copied().collect();
+            if !cuts.iter().chain(others).chain(on_axis).any(makes_hole) {
                 // A tool of unknown kind may as well be a drill.
                 match cut.kind.filter(|_| is_solid) {
                     Some(kind) => findings.push(undrilled(judged.id, cut, kind)),
                     None => gaps.push(ShapeGap::Undrilled(cut.pass.tool)),
                 }
             } else if cut.kind.is_some_and(|kind| kind != ToolKind::Tap) {
-                let finding = too_narrow(judged, cut, &cuts[..index], others);
-                findings.extend(finding.or_else(|| in_solid(judged, cut, &cuts[..index], others)));
+                let finding = too_narrow(judged, cut, &before, others);
+                findings.extend(finding.or_else(|| in_solid(judged, cut, &before, others)));
             }
             findings.extend(torn(judged, cut));
         }
