@@ -297,17 +297,20 @@ impl Collar {
     /// Returns the largest radius of a tool of unknown diameter whose stroke on the axis ends at a depth, mm: that of the features
     /// that end there, else that of the narrowest, for a wider tool would spoil it.
     pub fn radius_of_stroke(&self, depth: f64) -> f64 {
-        let ends_there = |step: &&Step| (step.max_depth - depth).abs() <= SAME_END;
-        let made = self.steps.iter().filter(ends_there).map(|step| step.taper.radius);
+        let made = self.steps_ending_at(depth).map(|step| step.taper.radius);
         made.fold(self.narrowest_radius, f64::max).min(self.hole_radius)
     }
 
     /// Returns the radius of the widest cylinder of the hole that ends at a depth, mm; `None` if none does, or if it is the
     /// narrowest of the hole.
     pub fn widened_at(&self, depth: f64) -> Option<f64> {
-        let ends_there = |step: &&Step| step.taper.slope == 0.0 && (step.max_depth - depth).abs() <= SAME_END;
-        let radius = self.steps.iter().filter(ends_there).map(|step| step.taper.radius).reduce(f64::max)?;
+        let cylinders = self.steps_ending_at(depth).filter(|step| step.taper.slope == 0.0);
+        let radius = cylinders.map(|step| step.taper.radius).reduce(f64::max)?;
         (self.narrowest_radius < radius).then_some(radius)
+    }
+
+    fn steps_ending_at(&self, depth: f64) -> impl Iterator<Item = &Step> {
+        self.steps.iter().filter(move |step| (step.max_depth - depth).abs() <= SAME_END)
     }
 
     /// Returns the largest depth of a feed in the hole, mm.

@@ -43,13 +43,12 @@ impl DrilledHole {
         let is_whole = |pass: ToolPass<'_>| {
             let tip = (entry - pass.cut.bottom).dot(out);
             let tool = pass.tool.and_then(|number| machine.find_tool(number));
-            match (tool.map(Tool::point), pass.diameter) {
-                (Some(PointShape::Pointed(angle)), Some(diameter)) => {
-                    thickness <= tip - diameter / 2.0 / Deg(angle.0 / 2.0).tan()
-                }
-                (Some(PointShape::Flat), _) => true,
-                _ => false,
-            }
+            let end = match (tool.map(Tool::point), pass.diameter) {
+                (Some(PointShape::Flat), _) => Some(0.0),
+                (Some(point), Some(diameter)) => point.length(diameter),
+                _ => None,
+            };
+            end.is_some_and(|end| thickness <= tip - end)
         };
         beyond.peek().is_some() && beyond.all(is_whole)
     }

@@ -13,13 +13,14 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> V
     let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
     // I, J and K of a macro call repeat: argument specification II.
     let arguments = arguments.filter(|word| !matches!(word.letter, b'I'..=b'K'));
-    let mut found = in_words(words.list.iter().filter(|word| !matches!(word.letter, b'G' | b'M')));
-    found.extend(in_words(arguments));
-    let finding = |(lost, kept): (&LoweredWord, &LoweredWord)| {
-        let (letter, alarms) = (char::from(kept.letter), context.settings.alarms_on_repeated_address);
+    let plain = words.list.iter().filter(|word| !matches!(word.letter, b'G' | b'M'));
+    let alarms = context.settings.alarms_on_repeated_address;
+    let of_words = in_words(plain).into_iter().map(|pair| (pair, alarms));
+    let found = of_words.chain(in_words(arguments).into_iter().map(|pair| (pair, false)));
+    let finding = |((lost, kept), alarms): ((&LoweredWord, &LoweredWord), bool)| {
+        let letter = char::from(kept.letter);
         let alarm = Alarm::RepeatedAddress { letter }.located_at(kept.span);
-        let is_argument = !words.list.iter().any(|word| std::ptr::eq(word, kept));
-        let finding = match alarms && !is_argument {
+        let finding = match alarms {
             true => context.alarm_finding(unit, &RULE.kind, block, &alarm).with_severity(Severity::Error),
             false => {
                 let message = format!("{letter} is there twice in the block: the last counts");
@@ -28,7 +29,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> V
         };
         finding.label(lost.span, "without effect").help("correct the letter, or remove one of the two")
     };
-    found.into_iter().map(finding).collect()
+    found.map(finding).collect()
 }
 
 /// Returns the words whose letter a word before them has with another value: the lost one and the one that counts.
