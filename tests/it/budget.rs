@@ -30,6 +30,12 @@ fn found(job: &Job, errors: &str, samples: usize) -> Budget {
     budget(&question, &AtomicUsize::new(0)).unwrap()
 }
 
+/// Pairs the holes of two results, which must have the same number of them, and some.
+fn pairs<'a, A, B>(one: &'a [A], other: &'a [B]) -> impl Iterator<Item = (&'a A, &'a B)> {
+    assert!(!one.is_empty() && one.len() == other.len(), "{} and {} holes", one.len(), other.len());
+    one.iter().zip(other)
+}
+
 /// A machine without errors drills what `verify` finds of the emitted program: rounding is in both.
 #[test]
 fn without_errors_the_budget_agrees_with_verify() {
@@ -38,7 +44,7 @@ fn without_errors_the_budget_agrees_with_verify() {
         let package = families::emit(&job);
         assert_eq!(Machine::from_job(&job).unwrap(), Machine::parse(&package.machine).unwrap(), "{name}");
         let verdict = check(&job, &package).unwrap().verdict.into_holes().unwrap();
-        for (hole, judged) in found(&job, "", 1).holes.iter().zip(&verdict.holes) {
+        for (hole, judged) in pairs(&found(&job, "", 1).holes, &verdict.holes) {
             assert_eq!(hole.id, judged.id);
             assert!(
                 (hole.nominal - judged.position_deviation).abs() < 1e-3,
@@ -70,7 +76,7 @@ fn a_fixed_error_displaces_holes_as_on_a_machine_with_that_error() {
         let verdict = check(&job, &package).unwrap().verdict.into_holes().unwrap();
         let found = found(&job, errors, 1);
         assert!(found.parts.max > least, "{errors}: {found:?}");
-        for (hole, judged) in found.holes.iter().zip(&verdict.holes) {
+        for (hole, judged) in pairs(&found.holes, &verdict.holes) {
             assert!(
                 (hole.statistics.max - judged.position_deviation).abs() < 2e-3,
                 "{errors}: {hole:?} and {}",
@@ -86,7 +92,7 @@ fn after_alignment_every_hole_is_better_than_before() {
     let job = Job::parse(&example("melon-mould/job.toml")).unwrap();
     let [before, after] =
         ["before", "after"].map(|name| found(&job, &example(&format!("error-budget/{name}.toml")), 2000));
-    for (before, after) in before.holes.iter().zip(&after.holes) {
+    for (before, after) in pairs(&before.holes, &after.holes) {
         assert!(4.0 * after.statistics.mean < before.statistics.mean);
     }
     assert!(0.9 < after.parts.share_in_tolerance && before.parts.share_in_tolerance < 0.2);

@@ -134,7 +134,9 @@ impl Ran {
             "time_min" => close(&[self.control.seconds().0 / 60.0], expected, tolerance),
             _ if key.starts_with('#') => return self.variables(key, expected, tolerance),
             _ => match (self.text(key), key.split_once('.')) {
-                (Some(found), _) => (expected.split('|').any(|one| one == found) || expected == found, found),
+                // Manuals may leave a choice of alarms.
+                (Some(found), _) if key == "alarm" => (expected.split('|').any(|one| one == found), found),
+                (Some(found), _) => (expected == found, found),
                 (None, Some((frame, letter))) => {
                     let axis = self.control.settings().axes.find(letter.as_bytes()[0]).unwrap();
                     let position = match frame {

@@ -55,10 +55,11 @@ pub(crate) fn run(case: &Case) {
     let mut common = Setup { job: case.optional("job.toml").unwrap_or_default(), ..Setup::default() };
     let (mut left, mut benches) = (BTreeMap::new(), BTreeMap::new());
     head.filter(|line| is_row(line)).for_each(|line| common.add(line, &left));
-    let (mut wrong, mut count) = (String::new(), 0);
+    let mut wrong = String::new();
     for entry in entries {
         let (name, rows) = entry.split_once('\n').unwrap();
         let mut setup = common.clone();
+        assert!(rows.contains("-- "), "{}: {name}: no row with an expectation", case.name());
         for row in rows.lines().filter(|line| is_row(line)) {
             let Some((words, expected)) = row.split_once("-- ") else {
                 setup.add(row, &left);
@@ -70,7 +71,6 @@ pub(crate) fn run(case: &Case) {
                 .filter(|word| !word.trim().is_empty())
                 .for_each(|word| row.add(word.trim(), &left));
             let ran = row.run(&mut benches);
-            count += 1;
             let mut expected = expected.trim().to_owned();
             if let Some(others) = expected.strip_suffix("; set=kept") {
                 let last: BTreeMap<u32, f64> = row.variables.iter().copied().collect();
@@ -83,7 +83,7 @@ pub(crate) fn run(case: &Case) {
             left.insert(name.to_owned(), kept_variables(&ran.control));
         }
     }
-    assert!(count > 0, "{}: no cases", case.name());
+    assert!(text.contains("\n== "), "{}: no cases", case.name());
     assert!(wrong.is_empty(), "{}:\n{wrong}", case.name());
 }
 
