@@ -72,13 +72,12 @@ mod tests {
 
     use gcode_inspect::machine::Machine;
     use gcode_part::job::Job;
-    use gcode_prove::{Ask, Verdict, Watch, prove};
+    use gcode_prove::{Ask, ClaimVerdict, Watch, prove};
     use gcode_session::Request;
 
     use super::*;
     use crate::families::{ALL, emit};
     use crate::proof::controls::Controls;
-    use crate::proof::report::VerdictName;
     use crate::proof::{ProofRequest, prove_job};
 
     /// The new job whose programs have a macro.
@@ -107,7 +106,7 @@ mod tests {
             let claims = proof.cases.iter().flat_map(|case| &case.claims);
             let mut own = claims.filter(|claim| wanted.iter().any(|wanted| claim.claim.starts_with(wanted)));
             assert!(own.clone().count() >= wanted.len() * proof.cases.len());
-            return own.all(|claim| claim.verdict == VerdictName::Proved);
+            return own.all(|claim| claim.verdict == ClaimVerdict::Proved);
         }
         let start = entry
             .way
@@ -130,7 +129,7 @@ mod tests {
             ..Ask::default()
         };
         let watch = Watch::new(&clock, Duration::from_secs(300));
-        prove(&controls, &ask, &watch).unwrap().verdict == Verdict::Proved
+        prove(&controls, &ask, &watch).unwrap().verdict == ClaimVerdict::Proved
     }
 
     /// A macro that has changed must be proved again before its new digest is entered.

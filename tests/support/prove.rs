@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 use gcode_control::Control;
 use gcode_inspect::machine::Machine;
 use gcode_lang::program::NoLibrary;
-use gcode_prove::{Answer, Ask, Setup, Verdict, Watch, prove};
+use gcode_prove::{Ask, ClaimVerdict, ProofAnswer, Setup, Watch, prove};
 use gcode_session::{Request, set_up};
 
 use crate::Case;
@@ -102,15 +102,15 @@ impl<'t> Rows<'t> {
     }
 
     /// Returns what differs from an answer.
-    fn differences(&self, answer: &Answer, controls: &Controls) -> Vec<String> {
+    fn differences(&self, answer: &ProofAnswer, controls: &Controls) -> Vec<String> {
         assert_eq!(answer.claims.len(), self.verdicts.len(), "each claim has an answer");
         assert_eq!(answer.bounds.len(), self.bounds.len(), "each bounds row has an answer");
         let mut wrong = Vec::new();
         for (claim, expected) in answer.claims.iter().zip(&self.verdicts) {
             let verdict = match claim.verdict {
-                Verdict::Proved => "proved",
-                Verdict::Refuted => "refuted",
-                Verdict::Undecided => "undecided",
+                ClaimVerdict::Proved => "proved",
+                ClaimVerdict::Refuted => "refuted",
+                ClaimVerdict::Undecided => "undecided",
             };
             if verdict != *expected {
                 let (point, share) = (&claim.counterexample, answer.undecided_share);
@@ -123,7 +123,7 @@ impl<'t> Rows<'t> {
                 Some(point) if !self.is_refuted(&claim.claim, point, controls) => {
                     wrong.push(format!("{}: the control doesn't refute it at {point:?}", claim.claim));
                 }
-                None if claim.verdict == Verdict::Refuted => {
+                None if claim.verdict == ClaimVerdict::Refuted => {
                     wrong.push(format!("{} has no counterexample", claim.claim));
                 }
                 _ => {}
@@ -160,7 +160,7 @@ impl<'t> Rows<'t> {
         let is_inside =
             self.ask.ranges.len() == point.len() && self.ask.ranges.iter().zip(point).all(is_within);
         let answer = prove(controls, &ask, &Watch::new(&|| Duration::ZERO, LIMIT)).unwrap();
-        is_inside && answer.verdict == Verdict::Refuted
+        is_inside && answer.verdict == ClaimVerdict::Refuted
     }
 }
 

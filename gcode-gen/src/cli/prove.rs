@@ -8,13 +8,14 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use gcode_lang::program::Library;
 use gcode_part::job::Job;
+use gcode_prove::ClaimVerdict;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::library::Folders;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, progress};
 
 use crate::families;
 use crate::package::Package;
-use crate::proof::report::{JobProof, VerdictName};
+use crate::proof::report::JobProof;
 use crate::proof::{ProofRequest, prove_job};
 
 #[derive(Debug, Args)]
@@ -72,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     };
     let proof = progress::of_work("proving", || prove_job(&request)).map_err(UsageError::new)?;
     output::report(&proof, JobProof::text, arguments.format)?;
-    Ok(if proof.verdict == VerdictName::Proved { ExitStatus::Passed } else { ExitStatus::Failed })
+    Ok(if proof.verdict == ClaimVerdict::Proved { ExitStatus::Passed } else { ExitStatus::Failed })
 }
 
 /// Replaces the macros of a package by those of a folder that has the same numbers.

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use gcode_inspect::machine::Machine;
-use gcode_prove::{Ask, Verdict, Watch, prove};
+use gcode_prove::{Ask, ClaimVerdict, Watch, prove};
 use gcode_session::Request;
 
 use super::ProofRequest;
@@ -121,21 +121,21 @@ fn prove_main(
     let claim = &answer.claims[0];
     let mut reasons = answer.unfollowed.clone();
     let mut verdict = claim.verdict;
-    if verdict == Verdict::Proved && answer.never_ends {
-        verdict = Verdict::Undecided;
+    if verdict == ClaimVerdict::Proved && answer.never_ends {
+        verdict = ClaimVerdict::Undecided;
         reasons
             .push("every run is stopped by an alarm, so that the rest of the macro isn't reached".to_owned());
     }
-    let is_open = verdict == Verdict::Undecided;
+    let is_open = verdict == ClaimVerdict::Undecided;
     let key_of = |variable: u32| {
         let found = ranges.iter().find(|(_, own)| **own == variable);
         found.map_or_else(|| format!("#{variable}"), |(range, _)| range.key())
     };
     let report = ClaimReport {
         claim: format!("no alarms but those of the remarks, {}", ranges_of(&alarms)),
-        verdict: verdict.into(),
+        verdict,
         proved_share: match (verdict, answer.never_ends) {
-            (Verdict::Proved, _) => 1.0,
+            (ClaimVerdict::Proved, _) => 1.0,
             (_, true) => 0.0,
             _ => 1.0 - answer.undecided_share,
         },

@@ -6,7 +6,7 @@ use gcode_inspect::machine::Machine;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::MAX_AXES;
 use gcode_part::job::{AxisDirection, HeadKind, HoleSpec, PinHoles, Tool};
-use gcode_prove::{Ask, Verdict, Watch, prove, trace};
+use gcode_prove::{Ask, ClaimVerdict, Watch, prove, trace};
 use gcode_session::Request;
 
 use super::ProofRequest;
@@ -117,7 +117,7 @@ impl Case<'_> {
             let least = rounded_up(bound.phi);
             claims.push(ClaimReport {
                 claim: format!("position Φ{least}, the least bound"),
-                verdict: Verdict::Proved.into(),
+                verdict: ClaimVerdict::Proved,
                 proved_share: 1.0,
                 bound: Some(bound.phi),
                 worst: Some(self.ranges(domain)),
@@ -128,7 +128,7 @@ impl Case<'_> {
             let depth = depth.fold(0.0, f64::max);
             claims.push(ClaimReport {
                 claim: format!("depth within {}", rounded_up(depth)),
-                verdict: Verdict::Proved.into(),
+                verdict: ClaimVerdict::Proved,
                 proved_share: 1.0,
                 bound: Some(depth),
                 ..ClaimReport::default()
@@ -151,15 +151,9 @@ impl Case<'_> {
                 )
             },
         );
-        let verdict = if away.is_some() { Verdict::Proved } else { Verdict::Undecided };
+        let verdict = if away.is_some() { ClaimVerdict::Proved } else { ClaimVerdict::Undecided };
         let proved_share = if away.is_some() { 1.0 } else { share };
-        ClaimReport {
-            claim: words,
-            verdict: verdict.into(),
-            proved_share,
-            bound: away,
-            ..ClaimReport::default()
-        }
+        ClaimReport { claim: words, verdict, proved_share, bound: away, ..ClaimReport::default() }
     }
 
     /// Bounds the position over all boxes.
@@ -223,14 +217,14 @@ impl Case<'_> {
     fn within(&self, tolerance: f64, bounds: &CaseBounds, holes: &[SampledHole]) -> ClaimReport {
         let broken = holes.iter().find(|hole| hole.phi > tolerance);
         let verdict = match broken {
-            Some(_) => Verdict::Refuted,
-            None if bounds.is_within(tolerance) => Verdict::Proved,
-            None => Verdict::Undecided,
+            Some(_) => ClaimVerdict::Refuted,
+            None if bounds.is_within(tolerance) => ClaimVerdict::Proved,
+            None => ClaimVerdict::Undecided,
         };
-        let is_undecided = verdict == Verdict::Undecided;
+        let is_undecided = verdict == ClaimVerdict::Undecided;
         ClaimReport {
             claim: format!("position Φ{tolerance}"),
-            verdict: verdict.into(),
+            verdict,
             proved_share: bounds.share_within(tolerance),
             counterexample: broken.map(|hole| self.point(&hole.values)),
             found: broken.map(|hole| (hole.phi, self.point(&hole.values))),
@@ -286,12 +280,20 @@ impl Case<'_> {
         };
         let claims = answer.claims.iter().enumerate().map(|(index, claim)| ClaimReport {
             claim: shown(index),
-            verdict: claim.verdict.into(),
-            proved_share: if claim.verdict == Verdict::Proved { 1.0 } else { 1.0 - answer.undecided_share },
+            verdict: claim.verdict,
+            proved_share: if claim.verdict == ClaimVerdict::Proved {
+                1.0
+            } else {
+                1.0 - answer.undecided_share
+            },
             counterexample: claim.counterexample.as_ref().map(|values| {
                 values.iter().map(|(variable, value)| (quantity_of(*variable), *value)).collect()
             }),
-            reasons: if claim.verdict == Verdict::Undecided { answer.unfollowed.clone() } else { Vec::new() },
+            reasons: if claim.verdict == ClaimVerdict::Undecided {
+                answer.unfollowed.clone()
+            } else {
+                Vec::new()
+            },
             ..ClaimReport::default()
         });
         Ok(claims.collect())

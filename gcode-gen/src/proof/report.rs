@@ -2,7 +2,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use gcode_prove::Verdict;
+use gcode_prove::ClaimVerdict;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -18,7 +18,7 @@ pub(super) type RangeReport = BTreeMap<String, [f64; 2]>;
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct JobProof {
     /// `proved`, `refuted` or `undecided`: the worst of the claims'.
-    pub verdict: VerdictName,
+    pub verdict: ClaimVerdict,
     /// Ranges of the quantities left open.
     pub over: BTreeMap<String, [f64; 2]>,
     /// One case for each direction and tool of the job's holes.
@@ -27,29 +27,6 @@ pub struct JobProof {
     pub not_proved: Vec<String>,
     /// Duration, seconds.
     pub seconds: f64,
-}
-
-/// Verdict on a claim.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum VerdictName {
-    /// It holds for all values.
-    Proved,
-    /// Neither is known.
-    #[default]
-    Undecided,
-    /// It fails at a point that was run.
-    Refuted,
-}
-
-impl From<Verdict> for VerdictName {
-    fn from(verdict: Verdict) -> Self {
-        match verdict {
-            Verdict::Proved => Self::Proved,
-            Verdict::Undecided => Self::Undecided,
-            Verdict::Refuted => Self::Refuted,
-        }
-    }
 }
 
 /// Claims of one call of the macro.
@@ -69,7 +46,7 @@ pub struct ClaimReport {
     /// The claim.
     pub claim: String,
     /// Its verdict.
-    pub verdict: VerdictName,
+    pub verdict: ClaimVerdict,
     /// Share of the values for which it is proved.
     pub proved_share: f64,
     /// The bound that is proved, mm; null for a claim without one.
@@ -120,12 +97,12 @@ impl CaseReport {
 impl ClaimReport {
     fn write(&self, text: &mut String) {
         let verdict = match self.verdict {
-            VerdictName::Proved => "proved   ",
-            VerdictName::Undecided => "undecided",
-            VerdictName::Refuted => "REFUTED  ",
+            ClaimVerdict::Proved => "proved   ",
+            ClaimVerdict::Undecided => "undecided",
+            ClaimVerdict::Refuted => "REFUTED  ",
         };
         let _ = write!(text, "  {verdict}  {}", self.claim);
-        if self.verdict == VerdictName::Undecided {
+        if self.verdict == ClaimVerdict::Undecided {
             let _ = write!(text, ": proved for {}", percent(self.proved_share));
         }
         text.push('\n');
@@ -134,7 +111,7 @@ impl ClaimReport {
             ranges.collect::<Vec<_>>().join(", ")
         });
         for ranges in ranges {
-            let word = if self.verdict == VerdictName::Undecided { "left" } else { "worst" };
+            let word = if self.verdict == ClaimVerdict::Undecided { "left" } else { "worst" };
             let _ = writeln!(text, "             {word}: {ranges}");
         }
         if let Some((phi, point)) = &self.found {
@@ -189,8 +166,8 @@ mod tests {
 
     #[test]
     fn the_worst_claim_decides() {
-        let claim = |verdict: Verdict| ClaimReport { verdict: verdict.into(), ..ClaimReport::default() };
-        let case = |verdicts: &[Verdict]| {
+        let claim = |verdict: ClaimVerdict| ClaimReport { verdict, ..ClaimReport::default() };
+        let case = |verdicts: &[ClaimVerdict]| {
             let claims = verdicts.iter().map(|verdict| claim(*verdict)).collect();
             JobProof::new(
                 RangeReport::new(),
@@ -200,9 +177,12 @@ mod tests {
             )
             .verdict
         };
-        assert_eq!(case(&[Verdict::Proved, Verdict::Proved]), VerdictName::Proved);
-        assert_eq!(case(&[Verdict::Proved, Verdict::Undecided]), VerdictName::Undecided);
-        assert_eq!(case(&[Verdict::Undecided, Verdict::Refuted, Verdict::Proved]), VerdictName::Refuted);
+        assert_eq!(case(&[ClaimVerdict::Proved, ClaimVerdict::Proved]), ClaimVerdict::Proved);
+        assert_eq!(case(&[ClaimVerdict::Proved, ClaimVerdict::Undecided]), ClaimVerdict::Undecided);
+        assert_eq!(
+            case(&[ClaimVerdict::Undecided, ClaimVerdict::Refuted, ClaimVerdict::Proved]),
+            ClaimVerdict::Refuted
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Single holes of a case, emitted and verified: the largest deviations that are found, and holes that break a tolerance.
 use gcode_inspect::verify::Ending;
 use gcode_part::job::{HoleSpec, Job, PinHoles};
+use gcode_prove::radical_inverse;
 
 use super::quantity_range::{Quantity, QuantityRange};
 use crate::check::{PackageVerdict, check};
@@ -50,21 +51,12 @@ fn points(overs: &[QuantityRange]) -> Vec<Vec<f64>> {
         Quantity::Azimuth => (value + 0.0005).clamp(over.low, over.high),
         _ => value,
     };
-    let halton = |index: u32, base: u32| {
-        let (mut rest, mut value, mut digit) = (index, 0.0, 1.0 / f64::from(base));
-        while rest > 0 {
-            value += f64::from(rest % base) * digit;
-            rest /= base;
-            digit /= f64::from(base);
-        }
-        value
-    };
     let corner = |bits: u32| {
         let part = |place: usize| f64::from(bits >> place & 1);
         overs.iter().enumerate().map(|(place, over)| within(over, part(place))).collect()
     };
     let spread = |index: u32| {
-        let part = |place: usize| halton(index, PRIMES[place % PRIMES.len()]);
+        let part = |place: usize| radical_inverse(index, PRIMES[place % PRIMES.len()]);
         let value = |(place, over)| halfway(over, within(over, part(place)));
         overs.iter().enumerate().map(value).collect()
     };

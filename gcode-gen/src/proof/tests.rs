@@ -1,5 +1,7 @@
 //! Claims on the macro as it is, and on wrong twins of it that must not pass.
-use super::report::{ClaimReport, VerdictName};
+use gcode_prove::ClaimVerdict;
+
+use super::report::ClaimReport;
 use super::*;
 use crate::families::{ALL, emit};
 
@@ -49,7 +51,7 @@ const PART: [&str; 4] =
 fn every_pin_hole_is_as_near_as_rounding_allows() {
     let claims = proved(&job(), ("", ""), &PART, 0.035);
     let verdicts: Vec<_> = claims.iter().map(|claim| (claim.claim.as_str(), claim.verdict)).collect();
-    assert!(claims.iter().all(|claim| claim.verdict == VerdictName::Proved), "{verdicts:?}");
+    assert!(claims.iter().all(|claim| claim.verdict == ClaimVerdict::Proved), "{verdicts:?}");
     assert_eq!(claims[0].proved_share, 1.0);
     let bound = claims[1].bound.unwrap();
     assert!((0.034_910..0.034_920).contains(&bound), "{bound}");
@@ -70,9 +72,9 @@ fn an_axial_hole_needs_no_angle() {
     let axial = Job::PinHoles(axial);
     let claims = proved(&axial, ("", ""), &PART, 0.035);
     let (rapids, others): (Vec<_>, Vec<_>) = claims.iter().partition(|claim| claim.claim.contains("rapids"));
-    assert!(others.iter().all(|claim| claim.verdict == VerdictName::Proved), "{claims:?}");
+    assert!(others.iter().all(|claim| claim.verdict == ClaimVerdict::Proved), "{claims:?}");
     // Near the equator the edge of the tool isn't followed.
-    assert!(rapids[0].verdict == VerdictName::Undecided && rapids[0].proved_share > 0.5, "{rapids:?}");
+    assert!(rapids[0].verdict == ClaimVerdict::Undecided && rapids[0].proved_share > 0.5, "{rapids:?}");
     let over = ["hole.radius=0..450", PART[1], PART[2], PART[3]];
     let claims = proved(&axial, ("", ""), &over, 0.035);
     // 2 mm, less 1200/√500·√(2·0.0005) = 1.697 by which the surface can rise within half an increment, less 0.0021.
@@ -93,7 +95,7 @@ fn wrong_twins_are_refuted() {
         ("#27=SIN[#141]", "#27=COS[#141]"),
     ] {
         let claims = proved(&job(), (from, to), &PART, 0.035);
-        assert_eq!(claims[0].verdict, VerdictName::Refuted, "{to}: {:?}", claims[0]);
+        assert_eq!(claims[0].verdict, ClaimVerdict::Refuted, "{to}: {:?}", claims[0]);
         assert!(claims[0].counterexample.is_some() && claims[0].proved_share < 1.0, "{to}: {:?}", claims[0]);
     }
 }
@@ -104,10 +106,10 @@ fn wrong_twins_are_refuted() {
 fn a_head_that_is_set_wrong_is_refuted() {
     let over = ["hole.radius=0..100", "hole.azimuth=-180..180", "surface.a=500..2000", "surface.b=300..1200"];
     let claims = proved(&job(), ("", ""), &over, 0.0025);
-    assert_eq!(claims[0].verdict, VerdictName::Proved, "{:?}", claims[0]);
+    assert_eq!(claims[0].verdict, ClaimVerdict::Proved, "{:?}", claims[0]);
     let twin = ("#140=ROUND[#25*1000.]/1000.", "#140=ROUND[#25*1000.]/1000.+0.019");
     let claims = proved(&job(), twin, &over, 0.0025);
-    assert_eq!(claims[0].verdict, VerdictName::Refuted, "{:?}", claims[0]);
+    assert_eq!(claims[0].verdict, ClaimVerdict::Refuted, "{:?}", claims[0]);
 }
 
 /// A rapid to the bottom's side of the surface, and one that goes to the retract point at once, through the part.
@@ -122,7 +124,7 @@ fn rapids_through_the_part_are_not_proved() {
     ] {
         let claims = proved(&job(), (from, to), &PART, 0.035);
         let rapids = claims.iter().find(|claim| claim.claim.starts_with("rapids")).unwrap();
-        assert_eq!(rapids.verdict, VerdictName::Undecided, "{to}: {rapids:?}");
+        assert_eq!(rapids.verdict, ClaimVerdict::Undecided, "{to}: {rapids:?}");
     }
 }
 
@@ -130,7 +132,7 @@ fn rapids_through_the_part_are_not_proved() {
 fn a_missing_guard_is_refuted_by_a_radius_beyond_the_equator() {
     let claims = proved(&job(), ("OR[#18 GT #1]OR", "OR"), &PART, 0.035);
     let alarms = claims.iter().find(|claim| claim.claim.starts_with("no alarms")).unwrap();
-    assert_eq!(alarms.verdict, VerdictName::Refuted);
+    assert_eq!(alarms.verdict, ClaimVerdict::Refuted);
     let point = alarms.counterexample.as_ref().unwrap();
     assert!(point["hole.radius"] > point["surface.a"], "{point:?}");
 }
@@ -141,14 +143,14 @@ fn another_formula_of_the_same_height_is_proved() {
     let twin = ("#24=#2*SQRT[[#1-#18]*[#1+#18]]/#1", "#24=#2*SQRT[1.-#18*#18/#1/#1]");
     let over = ["hole.radius=0..450", "surface.a=500..2000", "surface.b=300..1200"];
     let claims = proved(&job(), twin, &over, 0.01);
-    assert_eq!(claims[0].verdict, VerdictName::Proved, "{:?}", claims[0]);
+    assert_eq!(claims[0].verdict, ClaimVerdict::Proved, "{:?}", claims[0]);
 }
 
 #[test]
 fn a_feed_that_is_not_followed_is_undecided() {
     let twin = ("G01 X[#18+[#17-#7]*#26]", "G01 Z0.1 F#9\nX[#18+[#17-#7]*#26]");
     let claims = proved(&job(), twin, &["hole.radius=100..101"], 10.0);
-    assert_ne!(claims[0].verdict, VerdictName::Proved);
+    assert_ne!(claims[0].verdict, ClaimVerdict::Proved);
     assert!(claims[0].proved_share < 1.0);
 }
 

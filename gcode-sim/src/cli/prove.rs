@@ -15,7 +15,7 @@ use super::rerun::Rerun;
 use super::{ExitStatus, UsageError, common, options, output, progress};
 use crate::report::proof::ProofReport;
 use gcode_control::Control;
-use gcode_prove::{Ask, Setup, Verdict, Watch, prove};
+use gcode_prove::{Ask, ClaimVerdict, Setup, Watch, prove};
 use gcode_session::Request;
 
 /// Part of the time after which the proof ends: the rest is for what is under way, and the report.
@@ -185,5 +185,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let rerun = Rerun::new(&program.program, &arguments.program.conditions, arguments.call.clone());
     let report = ProofReport::new(&answer, start.elapsed().as_secs_f64(), rerun);
     output::report(&report, ProofReport::text, arguments.format)?;
-    Ok(if answer.verdict == Verdict::Proved { ExitStatus::Passed } else { ExitStatus::Failed })
+    Ok(if answer.verdict == ClaimVerdict::Proved { ExitStatus::Passed } else { ExitStatus::Failed })
 }

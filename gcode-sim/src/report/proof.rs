@@ -6,13 +6,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::figures::count;
-use gcode_prove::{Answer, ClaimAnswer, Verdict};
+use gcode_prove::{ClaimAnswer, ClaimVerdict, ProofAnswer};
 
 /// Verdicts on claims for all values of the ranges, and bounds of variables.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct ProofReport {
     /// `proved`, `refuted` or `undecided`: the worst of the claims'.
-    verdict: VerdictName,
+    verdict: ClaimVerdict,
     /// In the order given.
     claims: Vec<ClaimRow>,
     /// Bounds of variables at the end of all runs; null if no run gives one, or something isn't followed.
@@ -44,28 +44,12 @@ pub(crate) trait Counterexample {
     fn command(&self, sets: &[String], settings: &[String]) -> String;
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-enum VerdictName {
-    Proved,
-    Refuted,
-    Undecided,
-}
-
 #[derive(Debug, Serialize, JsonSchema)]
 struct ClaimRow {
     claim: String,
-    verdict: VerdictName,
+    verdict: ClaimVerdict,
     /// Values at which the claim fails, by variable.
     counterexample: Option<BTreeMap<String, f64>>,
-}
-
-fn name_of(verdict: Verdict) -> VerdictName {
-    match verdict {
-        Verdict::Proved => VerdictName::Proved,
-        Verdict::Refuted => VerdictName::Refuted,
-        Verdict::Undecided => VerdictName::Undecided,
-    }
 }
 
 fn row(answer: &ClaimAnswer) -> ClaimRow {
@@ -73,20 +57,20 @@ fn row(answer: &ClaimAnswer) -> ClaimRow {
     let named = |(variable, value): &(u32, f64)| (format!("#{variable}"), *value);
     ClaimRow {
         claim: answer.claim.clone(),
-        verdict: name_of(answer.verdict),
+        verdict: answer.verdict,
         counterexample: values.map(|values| values.iter().map(named).collect()),
     }
 }
 
 impl ProofReport {
     /// Returns the report.
-    pub(crate) fn new(answer: &Answer, seconds: f64, rerun: impl Counterexample) -> Self {
+    pub(crate) fn new(answer: &ProofAnswer, seconds: f64, rerun: impl Counterexample) -> Self {
         let bounds = answer
             .bounds
             .iter()
             .map(|bounds| (format!("#{}", bounds.variable), bounds.range.map(|(low, high)| [low, high])));
         Self {
-            verdict: name_of(answer.verdict),
+            verdict: answer.verdict,
             claims: answer.claims.iter().map(row).collect(),
             bounds: bounds.collect(),
             undecided_share: answer.undecided_share,
@@ -105,9 +89,9 @@ impl ProofReport {
         let mut text = String::new();
         for (row, counterexample) in self.claims.iter().zip(&self.counterexamples) {
             let verdict = match row.verdict {
-                VerdictName::Proved => "proved   ",
-                VerdictName::Refuted => "REFUTED  ",
-                VerdictName::Undecided => "undecided",
+                ClaimVerdict::Proved => "proved   ",
+                ClaimVerdict::Refuted => "REFUTED  ",
+                ClaimVerdict::Undecided => "undecided",
             };
             _ = writeln!(text, "{verdict}  {}", row.claim);
             text.push_str(counterexample);

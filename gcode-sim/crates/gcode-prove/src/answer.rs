@@ -6,6 +6,8 @@ use gcode_control::Control;
 use gcode_control::symbolic::{SymbolicRun, Term};
 use gcode_enclosure::Domain;
 use gcode_lang::program::Library;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::points::Points;
 use crate::region::ClaimSet;
@@ -78,15 +80,17 @@ pub enum ProveError {
     Setup(String),
 }
 
-/// Verdict on a claim, or on all of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+/// Verdict on a claim, or on all of them; the greatest is the worst.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ClaimVerdict {
     /// It holds for all values of the ranges.
     Proved,
+    /// Neither is known.
+    #[default]
+    Undecided,
     /// It fails at a point that the control has run.
     Refuted,
-    /// Neither.
-    Undecided,
 }
 
 /// Answer to one claim.
@@ -95,7 +99,7 @@ pub struct ClaimAnswer {
     /// Claim as written.
     pub claim: String,
     /// Verdict.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
     /// Values of the ranges' variables at which the claim fails.
     pub counterexample: Option<Vec<(u32, f64)>>,
 }
@@ -111,9 +115,9 @@ pub struct VariableBounds {
 
 /// Answer to a request.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
+pub struct ProofAnswer {
     /// Verdict on all claims.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
     /// Answers in the order of the claims.
     pub claims: Vec<ClaimAnswer>,
     /// Bounds in the order asked.
@@ -145,7 +149,7 @@ const MAX_WIDENING: f64 = 1e-3;
 ///
 /// # Errors
 /// [`ProveError`] if the request can't be used.
-pub fn prove<S: Setup>(setup: &S, ask: &Ask, watch: &Watch<'_>) -> Result<Answer, ProveError> {
+pub fn prove<S: Setup>(setup: &S, ask: &Ask, watch: &Watch<'_>) -> Result<ProofAnswer, ProveError> {
     let (question, claims) = read(setup, ask)?;
     let mut prover =
         Prover { setup, watch, threads: ask.threads.get(), question, read_inputs: 0, answer: empty(ask) };
@@ -188,11 +192,14 @@ pub(crate) fn read_ranges<S: Setup>(setup: &S, texts: &[String]) -> Result<Vec<R
     Ok(ranges)
 }
 
-fn empty(ask: &Ask) -> Answer {
-    let claim =
-        |claim: &String| ClaimAnswer { claim: claim.clone(), verdict: Verdict::Proved, counterexample: None };
-    Answer {
-        verdict: Verdict::Proved,
+fn empty(ask: &Ask) -> ProofAnswer {
+    let claim = |claim: &String| ClaimAnswer {
+        claim: claim.clone(),
+        verdict: ClaimVerdict::Proved,
+        counterexample: None,
+    };
+    ProofAnswer {
+        verdict: ClaimVerdict::Proved,
         claims: ask.claims.iter().map(claim).collect(),
         bounds: Vec::new(),
         undecided_share: 0.0,
@@ -260,7 +267,7 @@ struct Prover<'a, S> {
     question: Question,
     /// Inputs that some way reads, as bits.
     read_inputs: u64,
-    answer: Answer,
+    answer: ProofAnswer,
 }
 
 impl<S: Setup> Prover<'_, S> {
@@ -276,7 +283,7 @@ impl<S: Setup> Prover<'_, S> {
             for group in blocks.chunks(MAX_CLAIMS) {
                 self.work_on(claims, group, &[], false)?;
             }
-            others.retain(|index| self.answer.claims[*index].verdict != Verdict::Refuted);
+            others.retain(|index| self.answer.claims[*index].verdict != ClaimVerdict::Refuted);
         }
         for group in others.chunks(MAX_CLAIMS) {
             self.work_on(claims, group, &[], true)?;
@@ -386,9 +393,9 @@ impl<S: Setup> Prover<'_, S> {
                 let point = simplified(&mut witness, question, bit, point.clone(), self.watch);
                 let values = question.ranges.iter().zip(point);
                 answer.counterexample = Some(values.map(|(range, value)| (range.variable, value)).collect());
-                answer.verdict = Verdict::Refuted;
+                answer.verdict = ClaimVerdict::Refuted;
             } else if rest.undecided >> bit & 1 == 1 || rest.disagreement.is_some() {
-                answer.verdict = Verdict::Undecided;
+                answer.verdict = ClaimVerdict::Undecided;
             }
         }
         self.read_inputs |= rest.read_inputs;
@@ -451,26 +458,20 @@ impl<S: Setup> Prover<'_, S> {
             .map_or(Ok(()), |disagreement| Err(ProveError::Setup(disagreement)))
     }
 
-    fn conclude(mut self) -> Answer {
-        let has = |verdict| self.answer.claims.iter().any(|claim| claim.verdict == verdict);
-        self.answer.verdict = if has(Verdict::Refuted) {
-            Verdict::Refuted
-        } else if has(Verdict::Undecided)
-            || (!self.answer.unfollowed.is_empty() && self.answer.claims.is_empty())
-        {
-            Verdict::Undecided
-        } else {
-            Verdict::Proved
-        };
+    fn conclude(mut self) -> ProofAnswer {
+        let without_claims =
+            if self.answer.unfollowed.is_empty() { ClaimVerdict::Proved } else { ClaimVerdict::Undecided };
+        self.answer.verdict =
+            self.answer.claims.iter().map(|claim| claim.verdict).max().unwrap_or(without_claims);
         // Every way of a proof has been followed.
-        if self.answer.verdict == Verdict::Proved && !self.answer.claims.is_empty() {
+        if self.answer.verdict == ClaimVerdict::Proved && !self.answer.claims.is_empty() {
             let ranges = self.question.ranges.iter().enumerate();
             let is_unread = |(index, range): &(usize, &Range)| {
                 range.low < range.high && self.read_inputs.checked_shr(*index as u32).unwrap_or(1) & 1 == 0
             };
             self.answer.unread = ranges.filter(is_unread).map(|(_, range)| range.variable).collect();
         }
-        let has_nothing = self.answer.verdict == Verdict::Undecided && self.watch.ended_before_a_box();
+        let has_nothing = self.answer.verdict == ClaimVerdict::Undecided && self.watch.ended_before_a_box();
         self.answer.boxes = self.watch.boxes();
         self.answer.runs = self.watch.runs();
         let is_unexplained = has_nothing && self.answer.unfollowed.is_empty();

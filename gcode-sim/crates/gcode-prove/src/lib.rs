@@ -1,7 +1,7 @@
 //! Proves or refutes claims on a program for all values of its variables' ranges at once.
 //!
 //! **In:** a [`Setup`] that gives controls, each as before its first block; [`Ask`]: ranges of variables, conditions on them,
-//! claims, variables whose bounds are wanted. **Out:** an [`Answer`]: each claim is proved, refuted by a point that the control
+//! claims, variables whose bounds are wanted. **Out:** a [`ProofAnswer`]: each claim is proved, refuted by a point that the control
 //! has run, or undecided with the part of the volume that is left; bounds that hold every double a run gives.
 //!
 //! ```
@@ -9,7 +9,7 @@
 //! use gcode_control::Control;
 //! use gcode_lang::control::Settings;
 //! use gcode_lang::program::{Memory, NoLibrary};
-//! use gcode_prove::{Ask, Setup, Verdict, Watch, prove};
+//! use gcode_prove::{Ask, Setup, ClaimVerdict, Watch, prove};
 //!
 //! struct OneProgram;
 //! impl Setup for OneProgram {
@@ -32,7 +32,7 @@
 //! };
 //! let answer = prove(&OneProgram, &ask, &Watch::new(&|| Duration::ZERO, Duration::from_secs(5))).unwrap();
 //! let verdicts: Vec<_> = answer.claims.iter().map(|claim| claim.verdict).collect();
-//! assert_eq!(verdicts, [Verdict::Proved, Verdict::Proved, Verdict::Refuted]);
+//! assert_eq!(verdicts, [ClaimVerdict::Proved, ClaimVerdict::Proved, ClaimVerdict::Refuted]);
 //! let point = answer.claims[2].counterexample.as_ref().unwrap();
 //! assert!(point[0].0 == 1 && point[0].1 < 0.0);
 //! ```
@@ -72,8 +72,11 @@ mod arithmetic_tests;
 mod exact;
 mod trace;
 
-pub use answer::{Answer, Ask, ClaimAnswer, ProveError, Setup, VariableBounds, Verdict, prove, sample};
+pub use answer::{
+    Ask, ClaimAnswer, ClaimVerdict, ProofAnswer, ProveError, Setup, VariableBounds, prove, sample,
+};
 pub use exact::{Atom, ExactForm, ExactForms, Polynomial};
 pub use request::RequestError;
+pub use search::radical_inverse;
 pub use trace::{MoveKind, Trace, TracedEnd, TracedMove, TracedStop, TracedWay, trace};
 pub use watch::Watch;

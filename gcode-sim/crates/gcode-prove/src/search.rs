@@ -303,22 +303,26 @@ impl<'s, L: Library> Prober<'s, L> {
     }
 }
 
+/// Returns a number from 0 to 1 whose digits in a base are those of an index, mirrored at the point (Halton 1960, On the
+/// efficiency of certain quasi-random sequences of points): successive indices fill the range evenly.
+pub fn radical_inverse(index: u32, base: u32) -> f64 {
+    let (mut rest, mut value, mut digit) = (index, 0.0, 1.0 / f64::from(base));
+    while rest > 0 {
+        value += f64::from(rest % base) * digit;
+        rest /= base;
+        digit /= f64::from(base);
+    }
+    value
+}
+
 /// Returns a point of a sequence that fills a box evenly, after Halton.
 pub(crate) fn spread_point(domain: &Domain, index: u32) -> Vec<f64> {
     const PRIMES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
-    let coordinate = |base: u32| {
-        let (mut rest, mut value, mut digit) = (index, 0.0, 1.0 / f64::from(base));
-        while rest > 0 {
-            value += f64::from(rest % base) * digit;
-            rest /= base;
-            digit /= f64::from(base);
-        }
-        value
-    };
     let ranges = domain.ranges().iter().zip(PRIMES.iter().cycle());
     ranges
         .map(|(range, base)| {
-            (range.lo() + (range.hi() - range.lo()) * coordinate(*base)).clamp(range.lo(), range.hi())
+            (range.lo() + (range.hi() - range.lo()) * radical_inverse(index, *base))
+                .clamp(range.lo(), range.hi())
         })
         .collect()
 }

@@ -18,7 +18,7 @@ use gcode_control::Control;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
 use gcode_part::job::claims::{ClaimsFile, ProofRequest};
-use gcode_prove::{Answer, Ask, Setup, Verdict, Watch, prove};
+use gcode_prove::{Ask, ClaimVerdict, ProofAnswer, Setup, Watch, prove};
 use gcode_session::Request;
 
 /// Name of the file with the claims.
@@ -151,10 +151,10 @@ pub(super) fn check(
         let controls = Controls { request, call: one.call.as_deref(), library: library()? };
         let answer = prove_one(one, &controls).map_err(|error| UsageError::in_file(file, error))?;
         let number = |verdict| answer.claims.iter().filter(|claim| claim.verdict == verdict).count();
-        counts.proved += number(Verdict::Proved);
-        counts.refuted += number(Verdict::Refuted);
-        counts.undecided += number(Verdict::Undecided);
-        if answer.verdict == Verdict::Proved {
+        counts.proved += number(ClaimVerdict::Proved);
+        counts.refuted += number(ClaimVerdict::Refuted);
+        counts.undecided += number(ClaimVerdict::Undecided);
+        if answer.verdict == ClaimVerdict::Proved {
             let programs = controls.library.seen.lock().unwrap_or_else(PoisonError::into_inner).clone();
             proved.proved.push(ProvedRequest { request: digest, programs });
         } else if failure.is_none() {
@@ -170,7 +170,7 @@ pub(super) fn check(
     Ok(ClaimsResult { counts, failure, lock: text })
 }
 
-fn prove_one(one: &ProofRequest, controls: &Controls<'_>) -> Result<Answer, String> {
+fn prove_one(one: &ProofRequest, controls: &Controls<'_>) -> Result<ProofAnswer, String> {
     let time = one.time.unwrap_or(TIME);
     let ask = Ask {
         ranges: one.range.clone(),
@@ -219,9 +219,9 @@ fn is_unchanged(known: &ProvedRequest, mut library: RecordingLibrary) -> bool {
 }
 
 /// Returns the first claim that isn't proved, as a message.
-fn message(answer: &Answer) -> String {
-    let refuted = answer.claims.iter().find(|claim| claim.verdict == Verdict::Refuted);
-    let first = refuted.or_else(|| answer.claims.iter().find(|claim| claim.verdict != Verdict::Proved));
+fn message(answer: &ProofAnswer) -> String {
+    let refuted = answer.claims.iter().find(|claim| claim.verdict == ClaimVerdict::Refuted);
+    let first = refuted.or_else(|| answer.claims.iter().find(|claim| claim.verdict != ClaimVerdict::Proved));
     let Some(claim) = first else { return "a claim is not proved".to_owned() };
     match &claim.counterexample {
         Some(point) => {
