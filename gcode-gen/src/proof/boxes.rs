@@ -1,7 +1,7 @@
 //! Bounds over all boxes of a case: where none is found, or a tolerance isn't kept, a box is divided.
 use std::collections::BinaryHeap;
 
-use gcode_enclosure::{Domain, Enclosures, Interval, Node};
+use gcode_enclosure::{Domain, Enclosures, Interval, Node, Ranked};
 use gcode_part::job::AxisDirection;
 use gcode_prove::{Trace, TracedEnd, TracedWay};
 
@@ -30,33 +30,6 @@ const LEAST_WIDTH: f64 = 1e-9;
 /// Way that drills, or that isn't followed.
 type Followed<'t> = (&'t TracedWay, Result<HolePath, String>);
 
-/// Box that is to be divided, the worst first.
-struct Pending {
-    order: f64,
-    domain: Domain,
-    found: Option<PositionBound>,
-}
-
-impl PartialEq for Pending {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Pending {}
-
-impl PartialOrd for Pending {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Pending {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.order.total_cmp(&other.order)
-    }
-}
-
 impl CaseBounds {
     /// Finds bounds; boxes are divided until each keeps the tolerance. `divided` are the inputs that may be divided.
     pub(super) fn find(
@@ -78,18 +51,19 @@ impl CaseBounds {
             .collect();
         let whole = trace.domain.clone();
         let mut all = Self { boxes: Vec::new(), unfollowed: Vec::new(), whole: whole.clone() };
+        // The worst box comes first.
         let mut pending = BinaryHeap::new();
         let examine = |domain: Domain, all: &mut Self| {
             let found = all.examine(trace, &followed, hole, &domain);
-            let order = all.share(&domain) * found.map_or(f64::MAX, |found| found.phi);
-            Pending { order, domain, found }
+            let rank = all.share(&domain) * found.map_or(f64::MAX, |found| found.phi);
+            Ranked { rank, item: (domain, found) }
         };
         let mut count = 0;
         for part in at_tool_radius(trace, hole, &whole) {
             count += 1;
             pending.push(examine(part, &mut all));
         }
-        while let Some(Pending { domain, found, .. }) = pending.pop() {
+        while let Some(Ranked { item: (domain, found), .. }) = pending.pop() {
             let is_clear = |found: PositionBound| {
                 found.clearance.is_some_and(|clearance| clearance > 0.0) || count >= MAX_BOXES_FOR_RAPIDS
             };

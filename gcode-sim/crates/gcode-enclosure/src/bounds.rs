@@ -7,6 +7,7 @@ use crate::domain::Domain;
 use crate::enclosures::Enclosures;
 use crate::interval::Interval;
 use crate::node::NodeId;
+use crate::ranked::Ranked;
 
 /// When a search for bounds ends.
 pub struct BoundsSearch<'a> {
@@ -39,32 +40,11 @@ pub struct Bounds {
 
 /// A box with the range of the node over it.
 struct Part {
-    excess: f64,
     range: Interval,
     domain: Domain,
     split: Option<usize>,
     /// True if the node is a polynomial of inputs over the box.
     is_modelled: bool,
-}
-
-impl PartialEq for Part {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Part {}
-
-impl PartialOrd for Part {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Part {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.excess.total_cmp(&other.excess)
-    }
 }
 
 /// Boxes that are divided in one round.
@@ -79,25 +59,25 @@ pub fn bounds(arena: &Arena, node: NodeId, domain: &Domain, search: &BoundsSearc
         closed: Interval::EMPTY,
     };
     state.add(whole);
+    let mut left = Vec::new();
     loop {
         let tolerance = state.tolerance(search);
         let mut round = Vec::new();
         while round.len() < ROUND
-            && let Some(mut part) = state.parts.pop()
+            && let Some(Ranked { item: part, .. }) = state.parts.pop()
         {
             let excess = state.excess(part.range);
             if excess <= tolerance || part.split.is_none() {
                 state.closed = state.closed.hull(part.range);
-            } else if state.parts.peek().is_some_and(|next| next.excess > excess) {
+            } else if state.parts.peek().is_some_and(|next| next.rank > excess) {
                 // Its place was that of values found earlier.
-                part.excess = excess;
-                state.parts.push(part);
+                state.parts.push(Ranked { rank: excess, item: part });
             } else {
                 round.push(part);
             }
         }
         if round.is_empty() || state.found.boxes >= search.max_boxes || (search.is_over)() {
-            state.parts.extend(round);
+            left.extend(round.iter().map(|part| part.range));
             break;
         }
         for examined in divide(arena, node, &round, state.found_range(), search.threads) {
@@ -105,20 +85,22 @@ pub fn bounds(arena: &Arena, node: NodeId, domain: &Domain, search: &BoundsSearc
             state.add(examined);
         }
     }
-    let left = state.parts.iter().fold(state.closed, |range, part| range.hull(part.range));
+    left.extend(state.parts.iter().map(|part| part.item.range));
+    let left = left.into_iter().fold(state.closed, Interval::hull);
     let is_complete = state.excess(left) <= state.tolerance(search);
     Bounds { range: left, is_complete, ..state.found }
 }
 
 struct State {
     found: Bounds,
-    parts: BinaryHeap<Part>,
+    /// Boxes that are left, ranked by how far they reach beyond the values found when they were added.
+    parts: BinaryHeap<Ranked<Part>>,
     /// Range of the boxes that aren't divided further.
     closed: Interval,
 }
 
 impl State {
-    fn add(&mut self, (mut part, samples): Examined) {
+    fn add(&mut self, (part, samples): Examined) {
         for sample in samples {
             if self.found.least.as_ref().is_none_or(|least| sample.0 < least.0) {
                 self.found.least = Some(sample.clone());
@@ -128,8 +110,7 @@ impl State {
             }
         }
         if !part.range.is_empty() {
-            part.excess = self.excess(part.range);
-            self.parts.push(part);
+            self.parts.push(Ranked { rank: self.excess(part.range), item: part });
         }
     }
 
@@ -219,5 +200,5 @@ fn examine(arena: &Arena, node: NodeId, domain: Domain) -> Examined {
     let split = enclosures.widest_effect(arena, node);
     let is_modelled = enclosures.is_modelled(node);
     let domain = enclosures.domain().clone();
-    (Part { excess: f64::INFINITY, range, domain, split, is_modelled }, samples)
+    (Part { range, domain, split, is_modelled }, samples)
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use gcode_enclosure::Domain;
+use gcode_enclosure::{Domain, Ranked};
 
 use crate::region::ClaimSet;
 
@@ -18,26 +18,6 @@ pub(crate) struct Pending {
     pub(crate) volume: f64,
     /// Order: the largest first.
     pub(crate) size: f64,
-}
-
-impl PartialEq for Pending {
-    fn eq(&self, other: &Self) -> bool {
-        self.size.total_cmp(&other.size).is_eq()
-    }
-}
-
-impl Eq for Pending {}
-
-impl PartialOrd for Pending {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Pending {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.size.total_cmp(&other.size)
-    }
 }
 
 /// Shared state.
@@ -54,7 +34,7 @@ pub(crate) struct Shared {
 
 #[derive(Debug, Default)]
 struct Queue {
-    boxes: BinaryHeap<Pending>,
+    boxes: BinaryHeap<Ranked<Pending>>,
     /// Boxes that no division decides.
     parked: Vec<Pending>,
     in_work: usize,
@@ -124,7 +104,11 @@ impl Shared {
     pub(crate) fn push(&self, boxes: impl IntoIterator<Item = Pending>) {
         let mut queue = self.queue();
         for pending in boxes {
-            if queue.boxes.len() < MAX_BOXES { queue.boxes.push(pending) } else { queue.parked.push(pending) }
+            if queue.boxes.len() < MAX_BOXES {
+                queue.boxes.push(Ranked { rank: pending.size, item: pending });
+            } else {
+                queue.parked.push(pending);
+            }
         }
         drop(queue);
         self.changed.notify_all();
@@ -142,7 +126,7 @@ impl Shared {
             if is_over() || self.open_claims() == 0 {
                 return None;
             }
-            if let Some(pending) = queue.boxes.pop() {
+            if let Some(Ranked { item: pending, .. }) = queue.boxes.pop() {
                 queue.in_work += 1;
                 return Some(pending);
             }
@@ -164,7 +148,8 @@ impl Shared {
     pub(crate) fn into_rest(self) -> Rest {
         let open = self.open_claims();
         let queue = self.queue.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let left = queue.boxes.into_iter().chain(queue.parked).filter(|pending| pending.claims & open != 0);
+        let boxes = queue.boxes.into_iter().map(|ranked| ranked.item);
+        let left = boxes.chain(queue.parked).filter(|pending| pending.claims & open != 0);
         let (mut undecided, mut share, mut boxes) = (0, 0.0, 0);
         for pending in left {
             undecided |= pending.claims & open;

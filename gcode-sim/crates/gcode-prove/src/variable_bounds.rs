@@ -2,7 +2,7 @@
 //! that a run gives.
 use std::collections::BinaryHeap;
 
-use gcode_enclosure::{Condition, Domain, Enclosures, Interval, Relation};
+use gcode_enclosure::{Condition, Domain, Enclosures, Interval, Ranked, Relation};
 use gcode_lang::program::Library;
 
 use crate::division::divide;
@@ -28,31 +28,8 @@ const POINTS: u32 = 3000;
 /// Largest number of rounds over all inputs that improve a value.
 const MAX_CLIMBS: usize = 200;
 
-/// Box with its bound, negated on the lower side.
-struct Bounded {
-    domain: Domain,
-    bound: f64,
-}
-
-impl PartialEq for Bounded {
-    fn eq(&self, other: &Self) -> bool {
-        self.bound.total_cmp(&other.bound).is_eq()
-    }
-}
-
-impl Eq for Bounded {}
-
-impl PartialOrd for Bounded {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Bounded {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.bound.total_cmp(&other.bound)
-    }
-}
+/// Boxes, each ranked by its bound, which is negated on the lower side.
+type RankedBoxes = BinaryHeap<Ranked<Domain>>;
 
 /// Result of one side.
 #[derive(Clone, Debug, PartialEq)]
@@ -168,25 +145,21 @@ impl<L: Library> BoundSearch<'_, L> {
             self.add(&mut boxes, &mut settled, domain.clone(), first, f64::INFINITY, &finding);
         }
         let mut findings_left = 2_000_000_u64;
-        while let Some(worst) = boxes.pop() {
-            if self.is_close(worst.bound)
-                || worst.bound <= settled
-                || self.watch.is_over()
-                || findings_left == 0
-            {
-                settled = settled.max(worst.bound);
+        while let Some(Ranked { rank: of_whole, item: domain }) = boxes.pop() {
+            if self.is_close(of_whole) || of_whole <= settled || self.watch.is_over() || findings_left == 0 {
+                settled = settled.max(of_whole);
                 break;
             }
             findings_left -= 1;
-            let (_, finding) = self.examine(&worst.domain);
-            let parts = self.parts(&worst.domain, &finding);
+            let (_, finding) = self.examine(&domain);
+            let parts = self.parts(&domain, &finding);
             if parts.is_empty() {
-                settled = settled.max(worst.bound);
+                settled = settled.max(of_whole);
                 continue;
             }
             for part in parts {
                 let (range, finding) = self.examine(&part);
-                self.add(&mut boxes, &mut settled, part, range, worst.bound, &finding);
+                self.add(&mut boxes, &mut settled, part, range, of_whole, &finding);
             }
         }
         if let Some(what) = self.unfollowed.take() {
@@ -202,7 +175,7 @@ impl<L: Library> BoundSearch<'_, L> {
     /// Adds a part of a box, whose bound isn't worse than that of the whole.
     fn add(
         &mut self,
-        boxes: &mut BinaryHeap<Bounded>,
+        boxes: &mut RankedBoxes,
         settled: &mut f64,
         domain: Domain,
         range: Interval,
@@ -221,7 +194,7 @@ impl<L: Library> BoundSearch<'_, L> {
         if domain.ranges().iter().all(|range| range.lo() == range.hi()) {
             *settled = settled.max(bound);
         } else {
-            boxes.push(Bounded { domain, bound });
+            boxes.push(Ranked { rank: bound, item: domain });
         }
     }
 
