@@ -224,13 +224,10 @@ fn record_call(builder: &mut ChunkBuilder<'_>, words: &Words, block: &Block) {
     }
     let Some(site) = call_site(0, words, builder.settings) else { return };
     if let Some(span) = site.start_span {
-        let is_own = site.kind == Some(CallCode::Local) || site.target == CalledProgramName::Missing;
-        let kind = if is_own { EntryKind::LocalCall } else { EntryKind::StartAt };
+        let kind = if site.is_of_own_program() { EntryKind::LocalCall } else { EntryKind::StartAt };
         push_jump(builder, kind, site.start, value_range(builder.text, span.into()));
     }
-    if site.kind == Some(CallCode::Local)
-        || site.target == CalledProgramName::Missing && site.start_span.is_some()
-    {
+    if site.is_of_own_program() {
         return;
     }
     let arguments = site.arguments.iter().map(|argument| {

@@ -26,7 +26,7 @@ pub struct CallSite {
     pub target_span: Option<Span>,
     /// Folder of the calling program.
     pub folder: Option<Folder>,
-    /// Sequence number in Q of M98, where the subprogram starts.
+    /// Sequence number at which the called program starts: Q of M98, P of M97; `None` for a computed one.
     pub start: Option<u32>,
     /// All digits of P, if the first ones are repeats.
     pub digits_of_p: Option<u32>,
@@ -36,6 +36,13 @@ pub struct CallSite {
     pub arguments: Vec<Argument>,
     /// Code of the call.
     pub span: Span,
+}
+
+impl CallSite {
+    /// Returns true for a call of a part of the same program: M97 P, or M98 with Q or H alone.
+    pub fn is_of_own_program(&self) -> bool {
+        self.target == CalledProgramName::Missing && self.start_span.is_some()
+    }
 }
 
 /// Program of a call, as far as it is known without a run.

@@ -165,9 +165,9 @@ impl<'a> CheckContext<'a> {
             for site in 0..self.units[caller].calls.len() {
                 let call = &self.units[caller].calls[site];
                 let block = call.block;
-                // M98 Q alone starts in the same program.
-                let is_own = call.target == calls::CalledProgramName::Missing && call.start.is_some();
-                let Some(called) = self.called_unit(call).or(is_own.then_some(caller)) else {
+                let is_own = call.is_of_own_program();
+                let own = (is_own && call.start.is_some()).then_some(caller);
+                let Some(called) = self.called_unit(call).or(own) else {
                     self.units[caller].flow.block_successors[block].jumps_anywhere = true;
                     continue;
                 };

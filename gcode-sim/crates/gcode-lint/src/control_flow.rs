@@ -106,11 +106,15 @@ impl ControlFlowGraph {
         let codes = || words.list.iter().filter(|w| w.letter == b'M').filter_map(literal::word_count);
         let is_end = codes().any(|m| matches!(m, 2 | 30));
         let mut found = if is_end { Successors::exit() } else { Successors::next_or(Vec::new()) };
-        // Haas: M97 calls a subprogram at a sequence number of the same program.
-        if codes().any(|m| m == 97)
-            && let Some(number) = words.list.iter().find(|w| w.letter == b'P').and_then(literal::word_count)
+        let operand = |letter| words.list.iter().find(|word| word.letter == letter);
+        // Haas: M96 P Q jumps if an input is 0.
+        if codes().any(|m| m == 96)
+            && let (Some(number), Some(_)) = (operand(b'P'), operand(b'Q'))
         {
-            found.jumps.extend(program.find_number(number, block + 1));
+            match literal::word_count(number) {
+                Some(number) => found.jumps.extend(program.find_number(number, block + 1)),
+                None => found.jumps_anywhere = true,
+            }
         }
         if let Some(call) = words.call().filter(|call| call.kind == CallCode::Return) {
             found.falls_through = false;

@@ -297,7 +297,7 @@ fn leads_elsewhere(
     };
     let is_computed = unit.flow.block_successors.iter().any(|block| block.jumps_anywhere);
     let calls_long = |call: &super::calls::CallSite| {
-        call.start.is_some()
+        call.start_span.is_some()
             || call.is_modal
             || call.target.find(context.memory, call.folder.as_ref()).is_some_and(|id| long.contains(&id))
     };

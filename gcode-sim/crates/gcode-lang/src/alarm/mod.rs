@@ -10,7 +10,7 @@ mod typos;
 use crate::source::{Span, Spanned};
 pub use code::AlarmCode;
 pub use digit_limit::DigitLimit;
-pub use typos::{missing_macro_help, remedy, repeats_in_p_help};
+pub use typos::{lacking_code_help, missing_macro_help, remedy, repeats_in_p_help};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]

@@ -29,7 +29,7 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         dwell_with_two_times,
         work_offset_range,
         protected_program,
-        other_control,
+        lacking_code,
         vacant_target,
     ];
     rules.into_iter().find_map(|rule| rule(alarm, &line)).or_else(|| alarm.row().help)
@@ -49,10 +49,22 @@ pub fn repeats_in_p_help(digits: u32) -> String {
     )
 }
 
-/// Returns the control that has a code which this one lacks.
-fn other_control(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
-    let Alarm::ImproperGCode { control: Some(control), .. } = alarm else { return None };
-    Some(format!("{control} has it: give --dialect {control} for such a control, or correct the code"))
+/// Returns what to do about a G code that the control lacks; `control` is one that has it.
+pub fn lacking_code_help(code: &str, control: Option<&str>) -> String {
+    match control {
+        Some(control) => {
+            format!("{control} has it: give --dialect {control} for such a control, or correct the code")
+        }
+        None => format!(
+            "correct it; if this machine has it, give what it does: --code G{code}=wait, --code G{code}=nothing, or the number of the macro that it calls"
+        ),
+    }
+}
+
+/// Explains a G code that the control lacks.
+fn lacking_code(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
+    let Alarm::ImproperGCode { code, control } = alarm else { return None };
+    Some(lacking_code_help(code, *control))
 }
 
 /// Detects `GOTO#1` with a vacant #1.
@@ -424,7 +436,10 @@ mod tests {
     fn a_code_of_another_control_names_it() {
         let improper = |control| Alarm::ImproperGCode { code: "187".into(), control };
         assert!(help(improper(Some("haas-ngc")), "G187 P1", "G187").contains("--dialect haas-ngc"));
-        assert!(!help(improper(None), "G187 P1", "G187").contains("--dialect"));
+        assert_eq!(
+            help(improper(None), "G187 P1", "G187"),
+            "correct it; if this machine has it, give what it does: --code G187=wait, --code G187=nothing, or the number of the macro that it calls"
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Rule: a loop that never ends, because no block changes its exit conditions or because it has no exit.
 use std::collections::{BTreeMap, BTreeSet};
 
+use gcode_lang::program::LoweredWord;
 use gcode_lang::syntax::ast::{Condition, Statement};
 
 use crate::control_flow::{Jump, raises_alarm};
@@ -155,6 +156,13 @@ fn waits_for_operator(kind: &OpKind) -> bool {
     }
 }
 
+/// Returns the word of the variable that gets the operator's key: P of M109 on a Haas.
+fn input_variable(kind: &OpKind) -> Option<&LoweredWord> {
+    let words = &kind.words()?.list;
+    let is_input = |word: &LoweredWord| word.letter == b'M' && literal::word_count(word) == Some(109);
+    words.iter().any(is_input).then(|| words.iter().find(|word| word.letter == b'P'))?
+}
+
 /// Variables that some blocks and the programs they call may write.
 #[derive(Default)]
 struct WrittenVariables {
@@ -186,13 +194,22 @@ impl WrittenVariables {
     }
 
     fn add(&mut self, unit: &ProgramUnit<'_>, blocks: impl Iterator<Item = OpIndex>, reach: u32) {
-        for (target, _) in blocks.filter_map(|block| unit.blocks.get(block).and_then(variables::assignment)) {
-            match literal::variable(target) {
-                Some(number) if number >= reach => _ = self.numbers.insert(number),
-                Some(_) => {}
-                // A computed number may be that of any variable.
-                None => self.all_from(reach),
+        for block in blocks {
+            if let Some((target, _)) = unit.blocks.get(block).and_then(variables::assignment) {
+                self.insert(literal::variable(target), reach);
             }
+            if let Some(word) = unit.blocks.get(block).and_then(|_| input_variable(unit.op(block).kind())) {
+                self.insert(literal::word_count(word), reach);
+            }
+        }
+    }
+
+    /// Adds a variable; a computed number may be that of any.
+    fn insert(&mut self, number: Option<u32>, reach: u32) {
+        match number {
+            Some(number) if number >= reach => _ = self.numbers.insert(number),
+            Some(_) => {}
+            None => self.all_from(reach),
         }
     }
 
@@ -227,6 +244,15 @@ mod tests {
             ["this loop never ends: no block in it changes #1 or #2"],
             "a macro has its own #1"
         );
+    }
+
+    /// The manual of a Haas waits for a key so: M109 P501 and a jump back while #501 is 0.
+    #[test]
+    fn the_key_of_the_operator_ends_a_loop() {
+        let text = |variable| format!("O1\nN1 #501=0\nN5 M109 P{variable}\nIF[#501 EQ 0]GOTO5\nM30\n");
+        assert_eq!(lines(&RULE, &text("501")), NOWHERE);
+        assert_eq!(lines(&RULE, &text("#500")), NOWHERE, "it may be any");
+        assert_eq!(lines(&RULE, &text("502")), [4]);
     }
 
     #[test]

@@ -26,8 +26,7 @@ pub(crate) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Di
         let mut severity = RULE.kind.severity;
         let (message, help) = match call.target {
             CalledProgramName::Computed => continue,
-            // M98 Q alone starts in this program.
-            CalledProgramName::Missing if call.start.is_some() => continue,
+            CalledProgramName::Missing if call.is_of_own_program() => continue,
             CalledProgramName::Missing => (
                 format!("{PS0076}: a call without a program number"),
                 "write the program number after P".to_owned(),
@@ -67,7 +66,7 @@ fn count_text(unit: &ProgramUnit<'_>, target: &CalledProgramName) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{lines, messages};
+    use super::super::testing::{NOWHERE, lines, messages};
     use super::RULE;
     use crate::check;
     use gcode_lang::control::Settings;
@@ -92,6 +91,14 @@ mod tests {
         let found = messages(&RULE, "O1\nG65 P9810 X1.\nG65 P9811 Z1.\nG65 P9810 X5.\nM30\n");
         let expected = ["PS0076: program O9810 is not found (2 calls)", "PS0076: program O9811 is not found"];
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn a_part_of_the_same_program_has_no_number() {
+        for call in ["M97 P9", "M97 P#1", "M97 P#1 L2", "M98 Q9", "M98 Q#1", "M98 H9"] {
+            assert_eq!(lines(&RULE, &format!("O1\n#1=9\n{call}\nM30\nN9 G91 X1.\nM99\n")), NOWHERE, "{call}");
+        }
+        assert_eq!(lines(&RULE, "O1\nM98\nM98 L2\nM30\n"), [2, 3]);
     }
 
     #[test]

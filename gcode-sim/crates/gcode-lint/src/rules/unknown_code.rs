@@ -5,6 +5,7 @@
 use std::collections::BTreeSet;
 
 use gcode_lang::alarm::kinds::PS0010;
+use gcode_lang::alarm::lacking_code_help;
 use gcode_lang::control::Dialect;
 use gcode_lang::program::g_codes::{Effect, spelled};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
@@ -47,12 +48,8 @@ fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String,
             match context.g_code_row(word) {
                 None => {
                     let has_code = |(_, dialect): &&(&str, Dialect)| found.row_for(*dialect).is_some();
-                    let help = match Dialect::ALL.iter().find(has_code) {
-                        Some((other, _)) => {
-                            format!("{other} has it: give --dialect {other}, or correct the code")
-                        }
-                        None => "correct it, or name the macro it calls with --code".to_owned(),
-                    };
+                    let other = Dialect::ALL.iter().find(has_code).map(|(other, _)| *other);
+                    let help = lacking_code_help(&spelled(code), other);
                     Some((format!("{PS0010}: {} has no {name}", settings.codes.name()), Some(help)))
                 }
                 Some(row) if row.effect == Effect::NotSimulated => {

@@ -86,6 +86,15 @@ mod tests {
     }
 
     #[test]
+    fn a_part_that_the_program_itself_calls_is_reached() {
+        for jump in ["M97 P9", "M97 P#1", "M98 Q9", "M98 Q#1", "M96 P9 Q5", "M96 P#1 Q5"] {
+            assert_eq!(lines(&RULE, &format!("O1\n#1=9\n{jump}\nM30\nN9 G0 X2.\nM99\n")), NOWHERE, "{jump}");
+        }
+        assert_eq!(lines(&RULE, "O1\nM97 P8\nM30\nN9 G0 X2.\nM99\nN8 M99\n"), [4]);
+        assert_eq!(lines(&RULE, "O1\nM96 P9\nM30\nN9 G0 X2.\nM99\n"), [4], "of a Fanuc: an interrupt");
+    }
+
+    #[test]
     fn an_end_after_an_alarm_is_accepted() {
         assert_eq!(lines(&RULE, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\n#3000=1(NO)\nM00\nM30\n"), NOWHERE);
