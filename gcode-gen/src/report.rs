@@ -82,7 +82,11 @@ impl<'c> EmitReport<'c> {
             let _ = writeln!(text, "proved of {}: {says}", macros.join(", "));
         }
         if !self.not_proved.is_empty() {
-            let _ = writeln!(text, "no proof is recorded of {} in this form", self.not_proved.join(", "));
+            let _ = writeln!(
+                text,
+                "no recorded proof covers {} as written for this job",
+                self.not_proved.join(", ")
+            );
         }
         if !self.proved.is_empty() || !self.not_proved.is_empty() {
             text.push('\n');

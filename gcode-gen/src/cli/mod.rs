@@ -65,8 +65,8 @@ Examples:
   gcode-gen emit job.toml --out nc
   gcode-sim verify nc/O8100.nc --reference job.toml --machine nc/machine.toml
 
-emitted.sha256 in the folder lists the files as they were written. A file with other contents is kept, and nothing is
-written, unless --force is given.")]
+emitted.sha256 in the folder lists the files as they were written. If one of them has other contents,
+nothing is written without --force.")]
     Emit {
         /// The job file; '-' reads standard input
         #[arg(value_name = "JOB.toml")]

@@ -276,10 +276,11 @@ fn machine_file(job: &PatternJob) -> String {
             Operation::Tap => "kind = \"tap\"\n",
             Operation::Bore => "kind = \"boring-bar\"\n",
             Operation::MillCircle => "kind = \"end-mill\"\n",
-            Operation::ThreadMill => "",
+            Operation::ThreadMill => "kind = \"end-mill\"\n",
         };
         let hand = if operation_code(tool) == LEFT_TAP { "hand = \"left\"\n" } else { "" };
-        format!("\n[[tool]]\nnumber = {}\n{kind}{hand}diameter = {:?}\n", tool.number, tool.diameter)
+        let point = tool.point_angle().map(|angle| format!("point_angle = {angle:?}\n")).unwrap_or_default();
+        format!("\n[[tool]]\nnumber = {}\n{kind}{hand}diameter = {:?}\n{point}", tool.number, tool.diameter)
     };
     // Without the axes that the machine lacks, nothing of them is left unchecked.
     let axes = match job.place() {

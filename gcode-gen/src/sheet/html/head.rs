@@ -91,7 +91,7 @@ fn proofs(sheet: &Sheet<'_>) -> Markup {
             p { b { "Proved of " (one.macros.join(", ")) ". " } (one.says) "." }
         }
         @if !without.is_empty() {
-            p.note { "No proof is recorded of " (without.join(", ")) " in this form." }
+            p.note { "No recorded proof covers " (without.join(", ")) " as written for this job." }
         }
         @if !all.is_empty() {
             p.note { "Proofs are about the simulated control and hold for files with these hashes alone." }

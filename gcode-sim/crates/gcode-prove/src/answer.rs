@@ -26,10 +26,7 @@ pub trait Setup: Sync {
     /// Library of called programs.
     type Library: Library;
 
-    /// Returns a control before its first block, with further settings, key and value.
-    ///
-    /// # Errors
-    /// Why there is none.
+    /// Returns a control before its first block, with further settings, key and value, or why there is none.
     fn control(&self, settings: &[(String, String)]) -> Result<Control, String>;
 
     /// Returns the library of called programs.

@@ -104,8 +104,8 @@ impl ProgramSheet<'_> {
             } } }
             p.note {
                 @if self.is_inch() {
-                    "The program is in inches (G20): work zeros and F are in inches, as on the control; lengths and diameters of the "
-                    "machine file, and all else, in mm. "
+                    "The program is in inches (G20): work zeros, F, H and D are in inches, as on the control; lengths and diameters "
+                    "of the machine file, and all else, in mm. "
                 } @else { "Lengths in mm, angles in degrees, feeds in mm/min. " }
                 "Fill in empty lines by hand."
             }

@@ -5,11 +5,14 @@ use serde::Deserialize;
 use super::PatternJob;
 use crate::hand::Hand;
 use crate::job::{FileError, Reader};
-use crate::reader::bounds::{Depth, DrillNumber, FeedRate, Length, SpindleSpeed};
+use crate::reader::bounds::{Depth, DrillNumber, FeedRate, Length, PointAngle, SpindleSpeed};
 use crate::reader::{FileKey, Optional, Word, WordList};
 
 /// Least difference between the diameters of a milled hole and of its mill, mm: O8503 refuses less.
 const WALL: f64 = 0.02;
+
+/// Angle of a drill's point that a job leaves out, degrees: type N of DIN 1414.
+const POINT_ANGLE: f64 = 118.0;
 
 /// Operation of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +42,11 @@ impl Operation {
             Self::MillCircle => "mill-circle",
             Self::ThreadMill => "thread-mill",
         }
+    }
+
+    /// Returns true for an operation that drills.
+    pub fn is_drilling(self) -> bool {
+        matches!(self, Self::Drill | Self::Peck)
     }
 
     /// Returns true for an operation that goes round its hole, which is wider than the tool.
@@ -77,6 +85,9 @@ pub struct PatternTool {
     /// Diameter, mm; of a tap, that of the thread.
     #[serde(with = "Length")]
     pub diameter: f64,
+    /// Angle of the point of `drill` and `peck`, degrees [default: 118].
+    #[serde(default, with = "Optional::<PointAngle>")]
+    point_angle: Option<f64>,
     /// Spindle speed, a whole number of r/min.
     #[serde(with = "SpindleSpeed")]
     pub speed: f64,
@@ -112,7 +123,7 @@ pub struct PatternStep {
     /// Number of the tool.
     #[serde(with = "DrillNumber")]
     pub tool: u32,
-    /// Depth of the tool's deepest point below the surface, mm; of a thread, its length.
+    /// Depth of the tool's deepest point below the surface, mm: of a drill, that of its tip; of a thread, its length.
     #[serde(with = "Depth")]
     pub depth: f64,
     /// Diameter of the milled hole or thread, mm; other holes have that of their tool.
@@ -131,6 +142,11 @@ impl PatternTool {
             Operation::ThreadMill => "THREAD MILL",
         };
         self.name.clone().unwrap_or_else(|| of_operation.to_owned())
+    }
+
+    /// Returns the angle of its point, degrees; `None` for a tool that doesn't drill.
+    pub fn point_angle(&self) -> Option<f64> {
+        self.operation.is_drilling().then(|| self.point_angle.unwrap_or(POINT_ANGLE))
     }
 
     /// Returns the hand of its thread.
@@ -159,6 +175,11 @@ impl PatternTool {
         let threads = operation.is_threading();
         let keys = [
             ("hand", self.hand.is_some(), self.hand.is_some() && threads),
+            (
+                "point_angle",
+                self.point_angle.is_some(),
+                self.point_angle.is_some() && operation.is_drilling(),
+            ),
             ("feed", self.feed.is_some(), operation != Operation::Tap),
             ("peck", self.peck.is_some(), needs_peck),
             ("pitch", self.pitch.is_some(), threads),
@@ -218,11 +239,11 @@ impl PatternStep {
                 reader.check(width + WALL <= core, &format!("{key}.diameter"), diameter, allowed)
             }
             (Some(diameter), true) => {
-                let most = 2.0 * width;
+                let (least, most) = (width + WALL, 2.0 * width);
                 let allowed = format_args!(
-                    "{WALL} mm above the mill's {width} mm, and at most {most} mm, or one circle leaves a core"
+                    "{least} to {most} mm, for a mill of {width} mm: in a wider hole one circle leaves a core"
                 );
-                let is_allowed = width + WALL <= diameter && diameter <= most;
+                let is_allowed = (least..=most).contains(&diameter);
                 reader.check(is_allowed, &format!("{key}.diameter"), diameter, allowed)
             }
         }
