@@ -446,6 +446,7 @@ impl HoleExtractor<'_> {
         start: Point3<f64>,
         last_motion: Option<(MotionKind, Span)>,
     ) {
+        self.end_unsized_stroke();
         let rounding = self.machine.increment.size() / 2.0;
         let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
         let order = self.strokes.begin_pass();
