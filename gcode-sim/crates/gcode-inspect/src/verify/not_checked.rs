@@ -369,11 +369,11 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<NotChecked> {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
         match compensation.number() {
             Some(h) => {
-                NotChecked::gap(whose, format!("not in the machine file, which takes H{h} as its length"))
+                NotChecked::gap(whose, format!("not in the machine file: H{h} counts as its length"))
             }
             None => NotChecked::gap(
                 format!("{whose} (no length offset)"),
-                "not in the machine file, which takes its tip as the programmed point",
+                "not in the machine file: its tip counts as the programmed point",
             ),
         }
     };
