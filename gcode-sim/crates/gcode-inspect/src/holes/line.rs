@@ -464,7 +464,7 @@ impl HoleExtractor<'_> {
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.record_line_feed(event, &mut line, &start);
-            self.check_start_of_unsized(&line);
+            self.check_start_inside(&line);
             line
         });
     }

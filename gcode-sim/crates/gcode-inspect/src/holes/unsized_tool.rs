@@ -121,29 +121,18 @@ impl HoleExtractor<'_> {
         if self.tool_radius().is_some() { None } else { self.radius_of_stroke(travel, axis) }
     }
 
-    /// Reports a tool of unknown diameter that begins its feed inside a hole which it widens: it has come down through the metal
-    /// that it is there to cut.
-    pub(super) fn check_start_of_unsized(&mut self, line: &CuttingLine) {
-        if !line.is_inward() || self.tool_radius().is_some() {
+    /// Reports a tool that begins its feed inside a hole which it widens, where its own diameter or that of the hole is unknown: it has
+    /// come down through the metal that it is there to cut.
+    pub(super) fn check_start_inside(&mut self, line: &CuttingLine) {
+        if !line.is_inward() {
             return;
         }
         let axis = line.tool_axis.unwrap_or(line.out);
-        let (start, tip) = (line.start, self.pose.tip);
-        let mut begun = None;
-        self.metal.around(&[start, tip], &mut |collar| {
-            let (depth, radius) = (collar.depth(&start), collar.widened_at(collar.depth(&tip)));
-            let is_on_axis = collar.is_parallel(&axis) && collar.from_axis(&tip) <= ON_AXIS;
-            if let Some(radius) = radius.filter(|_| is_on_axis && MIN_START_DEPTH < depth) {
-                begun = Some((depth, radius));
-            }
-        });
-        let Some((depth, radius)) = begun else { return };
-        let above = start + axis.into_inner() * depth;
-        let rim = rim(&axis, &Vector3::zeros(), radius - FIT);
-        if !rim.into_iter().any(|offset| self.metal.cuts(&(start + offset), &(above + offset)) == Some(true))
-        {
-            return;
-        }
+        let widened = match self.tool_radius() {
+            Some(_) => self.start_in_open_hole(line, &axis),
+            None => self.start_of_unsized(line, &axis),
+        };
+        let Some((depth, radius)) = widened else { return };
         self.findings.add(&RAPID_INTO_PART, line.backtrace(), 0, |kind| {
             let name = line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
             let message = format!(
@@ -153,5 +142,47 @@ impl HoleExtractor<'_> {
             );
             Diagnostic::new(kind, message).help("begin the feed above the hole: check R or Z of the approach")
         });
+    }
+
+    /// Returns the depth at which a tool of known diameter begins in a hole whose diameter the reference doesn't have, and the tool's
+    /// radius, if no feed has made the hole as wide above it.
+    fn start_in_open_hole(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<(f64, f64)> {
+        let full = *self.machine.tool_end(self.setup.tool).first()?;
+        let wide = line.start + axis.into_inner() * full.from;
+        let mut begun = None;
+        self.metal.around(&[line.start, wide], &mut |collar| {
+            let is_on_axis = collar.is_parallel(axis) && collar.from_axis(&line.start) <= ON_AXIS;
+            let depth = collar.depth(&line.start);
+            if !collar.has_diameter && is_on_axis && MIN_START_DEPTH + full.from < depth {
+                begun = Some(depth);
+            }
+        });
+        let depth = begun?;
+        let above = line.start + axis.into_inner() * depth;
+        let rim = rim(axis, &Vector3::zeros(), full.radius() - FIT);
+        let is_cut = |offset: Vector3<f64>| {
+            self.metal.cuts_open_wall(&[wide + offset, above + offset], axis, full.radius())
+        };
+        rim.into_iter().any(is_cut).then(|| (depth, full.radius()))
+    }
+
+    /// Returns the depth at which a tool of unknown diameter begins in a hole, and the radius to which it widens that, if the metal
+    /// above it is not removed.
+    fn start_of_unsized(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<(f64, f64)> {
+        let (start, tip) = (line.start, self.pose.tip);
+        let mut begun = None;
+        self.metal.around(&[start, tip], &mut |collar| {
+            let (depth, radius) = (collar.depth(&start), collar.widened_at(collar.depth(&tip)));
+            let is_on_axis = collar.is_parallel(axis) && collar.from_axis(&tip) <= ON_AXIS;
+            if let Some(radius) = radius.filter(|_| is_on_axis && MIN_START_DEPTH < depth) {
+                begun = Some((depth, radius));
+            }
+        });
+        let (depth, radius) = begun?;
+        let above = start + axis.into_inner() * depth;
+        let rim = rim(axis, &Vector3::zeros(), radius - FIT);
+        let is_cut =
+            |offset: Vector3<f64>| self.metal.cuts(&(start + offset), &(above + offset)) == Some(true);
+        if rim.into_iter().any(is_cut) { begun } else { None }
     }
 }

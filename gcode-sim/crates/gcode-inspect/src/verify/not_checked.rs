@@ -368,9 +368,7 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<NotChecked> {
     let gap = |(tool, compensation): (Option<u32>, LengthCompensation)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
         match compensation.number() {
-            Some(h) => {
-                NotChecked::gap(whose, format!("not in the machine file: H{h} counts as its length"))
-            }
+            Some(h) => NotChecked::gap(whose, format!("not in the machine file: H{h} counts as its length")),
             None => NotChecked::gap(
                 format!("{whose} (no length offset)"),
                 "not in the machine file: its tip counts as the programmed point",
