@@ -336,7 +336,10 @@ impl Planner<'_> {
                     self.plan_stop(plan, StopKind::M01, speed);
                 }
                 MCodeEffect::OptionalStop | MCodeEffect::NoEffect => {}
-                MCodeEffect::End => plan.flow = BlockFlow::End,
+                MCodeEffect::End => {
+                    plan.notes.extend(compensation_left(plan).map(Note::CompensationAtEnd));
+                    plan.flow = BlockFlow::End;
+                }
                 MCodeEffect::SpindleForward => self.set_spindle(plan, SpindleDirection::Clockwise, speed),
                 MCodeEffect::SpindleReverse => {
                     self.set_spindle(plan, SpindleDirection::Counterclockwise, speed)
@@ -349,6 +352,7 @@ impl Planner<'_> {
                     plan.events_after_motion.push((spindle_event(SpindleDirection::Off, speed), 0.0));
                 }
                 MCodeEffect::ToolChange => {
+                    plan.notes.extend(compensation_left(plan).map(Note::CompensationAtToolChange));
                     if self.data.settings.undocumented.tool_change_homes_z {
                         self.plan_z_home(plan);
                     }
@@ -462,4 +466,10 @@ impl Planner<'_> {
 /// Returns the event of a spindle that an M code or S changes.
 fn spindle_event(direction: SpindleDirection, speed: Rpm) -> EventKind {
     EventKind::Spindle { direction, speed, is_rigid: false }
+}
+
+/// Returns G41 or G42, × 10, if it is in force behind a block.
+fn compensation_left(plan: &BlockPlan) -> Option<u32> {
+    let side = plan.state.modal.cutter;
+    (side != CutterSide::Off).then(|| side.code())
 }

@@ -11,6 +11,7 @@ gcode_lang::finding_kinds! {
     BLOCK_SKIP = "block-skip", Note, "the result holds for one position of the block skip switch";
     BUILDER_CODE = "builder-code", Warning, "a code of some machine builders is taken as an accuracy mode";
     CENTRE_HERE = "centre-here", Note, "a centre at the current point";
+    COMPENSATION_LEFT = "compensation-left", Warning, "G41 or G42 left in force";
     CORNER_IGNORED = "corner-ignored", Warning, ",R or ,C without effect";
     CANCEL_OF_NOTHING = "cancel-of-nothing", Note, "G67 in a block that resets modes, without G66";
     CYCLE_DATA_LOST = "cycle-data-lost", Warning, "P or Q in a block that does not drill";
@@ -132,6 +133,10 @@ pub enum Note {
     LengthOffsetZero(u32),
     /// G41, G42 or G45 to G48, × 10, with offset 0, which is no radius.
     CutterRadiusZero(u32),
+    /// G41 or G42, × 10, is in force at the tool change.
+    CompensationAtToolChange(u32),
+    /// G41 or G42, × 10, is in force at the end of the program.
+    CompensationAtEnd(u32),
     /// G50.1 without an axis ends the mirror images of all axes.
     MirrorEnded,
     /// A value of the machine, such as a setting of a Haas, is read as 0 because nothing states it.
@@ -220,6 +225,8 @@ impl Note {
             Self::LengthOffsetZero(code) => (&LENGTH_OF_NOTHING, format!("G{} with H0 applies no tool length compensation", spelled(code)), "write H with the number of the tool's offset"),
             Self::CutterRadiusZero(code @ 450..=480) => (&RADIUS_OF_NOTHING, format!("G{} with offset 0 moves to the end as written", spelled(code)), "write D with the number of the tool's offset; G43 H compensates a tool length"),
             Self::CutterRadiusZero(code) => (&RADIUS_OF_NOTHING, format!("G{} with D0 applies no cutter compensation", spelled(code)), "write D with the number of the tool's radius offset"),
+            Self::CompensationAtToolChange(code) => (&COMPENSATION_LEFT, format!("G{} is in force at the tool change: the moves after it are beside the path that is written", spelled(code)), "command G40 where the tool leaves the contour"),
+            Self::CompensationAtEnd(code) => (&COMPENSATION_LEFT, format!("G{} is in force at the end of the program: the last moves are beside the path that is written", spelled(code)), "command G40 where the tool leaves the contour"),
             Self::MirrorEnded => (&MIRROR_ENDED, "G50.1 without an axis ends all mirror images".to_owned(), "name the axes: the manuals give G50.1 with axes only"),
             Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as {}: nothing states its value on the machine", assumed_machine_value(number, item.into())), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give it with --input '#20255=12.5', or in the control file"),
             Self::Engraving { characters, height } => (&ENGRAVED_TEXT, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),

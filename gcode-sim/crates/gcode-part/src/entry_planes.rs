@@ -294,6 +294,11 @@ impl Collar {
         (has_edge && 0.0 < slope).then(|| Step { taper, max_depth: MAX_EDGE_BREAK / slope })
     }
 
+    /// Returns the radius of the narrowest feature before it is threaded, mm.
+    pub fn narrowest(&self) -> f64 {
+        self.narrowest_radius.min(self.hole_radius)
+    }
+
     /// Returns the largest radius of a tool of unknown diameter whose stroke on the axis ends at a depth, mm: that of the features
     /// that end there, else that of the narrowest, for a wider tool would spoil it.
     pub fn radius_of_stroke(&self, depth: f64) -> f64 {

@@ -12,7 +12,6 @@ use super::strip::Line;
 use super::swept_tool::{TipPaths, contact, rim};
 use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart};
 use gcode_lang::motion::{Event, Position};
-use gcode_part::Collar;
 
 /// Largest deviation of an arc from the chords by which it removes metal, mm.
 pub(super) const CHORD_TOLERANCE: f64 = 0.005;
@@ -22,9 +21,6 @@ pub(super) const COARSE_TOLERANCE: f64 = 5.0;
 
 /// Distance from the axis of a hole up to which a stroke drills it, mm; farther off a mill makes it.
 pub(super) const ON_AXIS: f64 = 0.5;
-
-/// Radius up to which a mill of unknown diameter may remove metal, mm.
-pub(super) const MAX_RADIUS: f64 = 25.0;
 
 /// Number of chords of an arc beside which the shank and the holder are looked for in the metal first.
 const FEW_CHORDS: usize = 16;
@@ -85,7 +81,11 @@ impl HoleExtractor<'_> {
     pub(super) fn cuts_known_metal(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let cuts = self.metal.cuts(from, to)?;
         let (axis, along) = (self.axis_in_motion(from, to), to - from);
-        let is_cut = |offset: Vector3<f64>| self.metal.cuts(&(from + offset), &(to + offset)) == Some(true);
+        let is_cut = |offset: Vector3<f64>| {
+            let (from, to) = (from + offset, to + offset);
+            self.metal.cuts(&from, &to) == Some(true)
+                || axis.is_some_and(|axis| self.metal.cuts_open_wall(&[from, to], &axis, offset.norm()))
+        };
         let cuts_at_rim = |axis: Unit<Vector3<f64>>| {
             // The full diameter is above the point; a tool that moves sideways cuts with the whole point.
             self.machine.tool_end(self.setup.tool).first().is_some_and(|full| {
@@ -250,28 +250,7 @@ impl HoleExtractor<'_> {
             }
             return;
         }
-        // A tool of unknown diameter cuts a nominal hole to its width; on the axis to that of the feature it makes.
-        let mut milled: Option<f64> = None;
-        self.metal.around(travel, &mut |collar: &Collar| {
-            let aside = travel.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
-            if collar.is_parallel(axis) && aside <= collar.hole_radius && ON_AXIS < aside {
-                milled = Some(milled.unwrap_or(0.0).max(collar.hole_radius - aside));
-            }
-        });
-        let drilled = self.radius_of_stroke(travel, axis);
-        let room = drilled.map_or(milled, |radius| Some(radius.max(milled.unwrap_or(0.0))));
-        let profile = match room {
-            Some(room) => Profile::flat(room, true),
-            // Without nominal holes the direction of the tool may be that of the feed.
-            None if is_along(axis, &(to - from)) || self.metal.holes.is_none() => Profile::flat(0.0, true),
-            None => {
-                if self.surface.is_some() {
-                    self.note_unsized_mill(self.setup.tool);
-                }
-                Profile::flat(MAX_RADIUS, false)
-            }
-        };
-        self.metal.removed.add(from, to, *axis, &profile);
+        self.remove_unsized(travel, axis);
     }
 
     /// Returns the gouge that a feed makes in what is left of the metal by the first sweeps.

@@ -2,8 +2,9 @@
 use nalgebra::Point3;
 
 use super::HoleExtractor;
-use super::feed_law::{Gouge, MAX_RADIUS, ToolRegion};
+use super::feed_law::{Gouge, ToolRegion};
 use super::rapids::format_point;
+use super::unsized_tool::MAX_RADIUS;
 use crate::findings::FEED_BESIDE_HOLE;
 use crate::machine::{TOUCH_DEPTH, tool_name};
 use gcode_lang::diag::Diagnostic;

@@ -446,6 +446,7 @@ impl HoleExtractor<'_> {
         start: Point3<f64>,
         last_motion: Option<(MotionKind, Span)>,
     ) {
+        self.end_unsized_stroke();
         let rounding = self.machine.increment.size() / 2.0;
         let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
         let order = self.strokes.begin_pass();
@@ -463,7 +464,7 @@ impl HoleExtractor<'_> {
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.record_line_feed(event, &mut line, &start);
-            self.check_start_of_unsized(&line);
+            self.check_start_inside(&line);
             line
         });
     }

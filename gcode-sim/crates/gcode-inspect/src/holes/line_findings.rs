@@ -117,7 +117,8 @@ impl HoleExtractor<'_> {
             return;
         }
         let kind = self.cut_kind(&line, is_feeding);
-        if !matches!(kind, CutKind::Oblique) || self.strokes.nominal_of_line(&line).is_some() {
+        if !matches!(kind, CutKind::Oblique | CutKind::Side) || self.strokes.nominal_of_line(&line).is_some()
+        {
             self.report_feed(&line, tilt);
         }
         // A stroke in a hole that was cut before, as of a mill that goes on sideways, has no retract either.

@@ -97,6 +97,7 @@ use self::strokes::Strokes;
 use self::thread_walls::FlankCut;
 use self::tool_change::ChangeRetract;
 use self::unknown_axes::PositionTracker;
+use self::unsized_tool::UnsizedStroke;
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
 use gcode_lang::control::Dialect;
 use gcode_lang::motion::{
@@ -126,6 +127,8 @@ pub struct HoleExtractor<'m> {
     profile: Option<Profile>,
     /// Feeds along the tool on the current line.
     plunge: Option<Plunge>,
+    /// Strokes of a tool of unknown diameter that have not ended.
+    unsized_stroke: Option<UnsizedStroke>,
     /// Number of feeds with a gouge.
     gouge_count: u32,
     /// Ends of the first feeds along the tool that go beside the part.
@@ -217,6 +220,7 @@ impl<'m> HoleExtractor<'m> {
             tool_body: Vec::new(),
             profile: None,
             plunge: None,
+            unsized_stroke: None,
             gouge_count: 0,
             feeds_in_air: Vec::new(),
             cycles_in_air: Findings::default(),

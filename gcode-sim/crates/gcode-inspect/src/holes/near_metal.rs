@@ -83,6 +83,28 @@ impl KnownMetal {
         let line = Strip::line(travel);
         is_in_known.then(|| !NearMetal::new(self, line.bounds(), Judged::Uncut(None)).is_clear(&line))
     }
+
+    /// Returns true if a travel within a radius of the axis of a nominal hole without a diameter, below its entry, leads through what
+    /// no feed has removed: how wide the metal round such a hole is removed, only the feeds show.
+    pub(super) fn cuts_open_wall(&self, travel: &Line, axis: &Unit<Vector3<f64>>, radius: f64) -> bool {
+        if self.body.is_some() {
+            return false;
+        }
+        let line = Strip::line(*travel);
+        let mut shares = Shares::default();
+        let margin = Vector3::repeat(radius);
+        let [low, high] = line.bounds();
+        let Some(holes) = self.holes.as_deref() else { return false };
+        holes.around(&(low - margin), &(high + margin), &mut |hole| {
+            let collar = holes.collar(hole);
+            let is_near = |p: &Point3<f64>| collar.from_axis(p) <= radius + MAX_OFFSET;
+            if !collar.has_diameter && collar.is_parallel(axis) && travel.iter().all(is_near) {
+                shares.extend(collar.piece_below_entry(&travel[0], &travel[1]));
+            }
+        });
+        NearMetal::new(self, line.bounds(), Judged::Uncut(None)).uncover(&line, false, &mut shares);
+        !is_clear(&line, &shares)
+    }
 }
 
 /// A strip on which there may be metal, and its shares outside which there is none.

@@ -50,6 +50,8 @@ pub(super) enum CutKind {
     },
     /// A stroke oblique to the tool.
     Oblique,
+    /// A stroke of a mill square to its known direction: it makes no hole.
+    Side,
 }
 
 /// Passes, and strokes for which later motion decides.
@@ -253,6 +255,7 @@ impl Strokes {
         match kind {
             CutKind::Drilled => self.push_pass(order, pass),
             CutKind::Oblique => self.push_milled(order, pass),
+            CutKind::Side => {}
             CutKind::AlongTool { is_between_rapids } => {
                 self.has_upright_stroke = true;
                 if !self.is_drilled(&pass, is_between_rapids) {
@@ -384,8 +387,14 @@ impl HoleExtractor<'_> {
         }
         let is_between_rapids = !line.is_reached_by_feed && !is_feeding;
         let along_tool = CutKind::AlongTool { is_between_rapids };
-        if line.tool_axis.is_some() {
-            return if line.is_across_tool() { CutKind::Oblique } else { along_tool };
+        if let Some(axis) = line.tool_axis {
+            let kind = self.machine.kind_of(line.cutting_state.tool);
+            let is_square = axis.dot(&line.out).abs() <= MAX_SQUARE_SINE;
+            return match line.is_across_tool() {
+                true if is_square && !kind.is_some_and(ToolKind::cuts_with_end) => CutKind::Side,
+                true => CutKind::Oblique,
+                false => along_tool,
+            };
         }
         let is_mill = self.machine.kind_of(line.cutting_state.tool) == Some(ToolKind::EndMill);
         match line.upright.map(|upright| upright.dot(&line.out)) {

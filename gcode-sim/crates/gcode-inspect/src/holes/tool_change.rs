@@ -50,6 +50,7 @@ impl HoleExtractor<'_> {
         }
         let after = std::mem::replace(&mut self.setup, before);
         self.end_line(None);
+        self.end_unsized_stroke();
         self.end_engagement();
         self.strokes.end_tool();
         self.setup = after;

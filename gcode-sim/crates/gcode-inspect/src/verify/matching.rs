@@ -10,7 +10,8 @@ use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
 use crate::machine::{COS_30, Machine, ToolKind, ToolPart};
 use gcode_part::{
-    FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper, exceeds,
+    EntryPlanes, FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper,
+    exceeds,
 };
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
@@ -66,6 +67,8 @@ pub struct Comparison<'a> {
     nominal_by_line: Vec<Option<usize>>,
     /// Entries of the nominal holes, for the first query.
     pub(super) entries: OnceCell<PointTree>,
+    /// Metal round the nominal holes, for the first query.
+    pub(super) collars: OnceCell<EntryPlanes>,
 }
 
 impl<'a> Comparison<'a> {
@@ -174,6 +177,7 @@ impl<'a> Comparison<'a> {
             in_air: Vec::new(),
             nominal_by_line,
             entries: OnceCell::new(),
+            collars: OnceCell::new(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Comparison of the drilled holes with the nominal ones: matching, deviations, findings and the verdict.
 mod assumption;
+mod bore_at_end;
 mod causes;
 mod checks;
 mod completion;

@@ -7,7 +7,7 @@ use super::hole_cuts::Cut;
 use super::{Comparison, HoleInspection};
 use crate::findings::BACK_BORED;
 use crate::holes::{DrilledHole, HoleExtraction};
-use crate::machine::{HeadKind, Machine, tool_name};
+use crate::machine::{HeadKind, Machine, PointShape, Tool, tool_name};
 use gcode_lang::motion::LengthCompensation;
 use gcode_lang::source::Span;
 use gcode_part::{FeatureKind, Reference, ToolProcess};
@@ -337,7 +337,15 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
                 NotChecked::gap(what, format!("{tool} goes round once, and a comb mill cuts a longer thread"))
             }
             ShapeGap::FullThrough(tool) => {
-                no_angle(format!("the full diameter of {holes} on the far side"), tool)
+                let what = format!("the full diameter of {holes} on the far side");
+                let end = tool.and_then(|number| inspection.machine.find_tool(number)).map(Tool::point);
+                match end.is_some_and(|end| end != PointShape::Unknown) {
+                    true => NotChecked::gap(
+                        what,
+                        format!("the machine file has no diameter of {}", tool_name(tool)),
+                    ),
+                    false => no_angle(what, tool),
+                }
             }
             ShapeGap::FullDepth(tool) => no_angle(format!("the depth of the full diameter of {holes}"), tool),
             ShapeGap::Floor(tool) => {
@@ -360,12 +368,10 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<NotChecked> {
     let gap = |(tool, compensation): (Option<u32>, LengthCompensation)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
         match compensation.number() {
-            Some(h) => {
-                NotChecked::gap(whose, format!("not in the machine file, which takes H{h} as its length"))
-            }
+            Some(h) => NotChecked::gap(whose, format!("not in the machine file: H{h} counts as its length")),
             None => NotChecked::gap(
                 format!("{whose} (no length offset)"),
-                "not in the machine file, which takes its tip as the programmed point",
+                "not in the machine file: its tip counts as the programmed point",
             ),
         }
     };

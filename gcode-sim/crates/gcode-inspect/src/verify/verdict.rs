@@ -12,6 +12,7 @@ use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
 use super::verdict_finding::{Finding, finding_of, limit_per_kind, origin};
 use super::{Comparison, HoleNeighbours, HolePair, Neighbours};
+use crate::findings::{HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::holes::DrilledHole;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::CallChain;
@@ -115,10 +116,11 @@ pub struct HoleVerdict {
 }
 
 impl HoleVerdict {
-    /// Returns true if the depth error is the tolerated breakthrough of a through hole.
+    /// Returns true if a through hole goes through, from one side or from both, and no farther than tolerated.
     pub fn is_breakthrough(&self) -> bool {
-        let is_depth = |code: &&str| code.contains("depth") || code.contains("through");
-        self.is_through && 0.0 <= self.depth_error && !self.error_codes.iter().any(is_depth)
+        let is_of_depth = |code: &&str| [HOLE_DEPTH.code, HOLE_NOT_THROUGH.code].contains(code);
+        let is_drilled_through = 0.0 <= self.depth_error || self.far_side_index.is_some();
+        self.is_through && is_drilled_through && !self.error_codes.iter().any(is_of_depth)
     }
 }
 

@@ -125,7 +125,10 @@ fn wide_cut(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<WideCut> {
     };
     let is_wide = |full: f64| exceeds(excess(full), judged.comparison.tolerances.diameter);
     let full = cut.full_depth(diameter).unwrap_or_else(|| judged.unknown_full_depth(cut, diameter));
-    if !is_wide(full) {
+    // A list that describes no feature may have left out the mouth of the hole.
+    let may_be_mouth =
+        judged.nominal.features.is_empty() && judged.nominal.diameter.is_none() && full < bottom * CORE_SHARE;
+    if may_be_mouth || !is_wide(full) {
         let is_spot_drill = cut.kind.is_none() && cut.point == PointShape::Unknown && is_wide(cut.tip);
         return is_spot_drill.then_some(WideCut::SpotDrill(cut.pass.tool));
     }

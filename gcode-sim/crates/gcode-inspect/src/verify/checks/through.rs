@@ -110,6 +110,7 @@ impl Judgement<'_> {
             return;
         }
         self.judge_behind_pocket(surface);
+        self.judge_behind_bore(surface);
         let thickness = surface.map_or(0.0, |surface| thickness(&surface, nominal)).max(nominal.depth);
         // The part is open between the holes of one axis, as between the ears of a clevis.
         let thickness = self.followers.iter().map(|next| next.far).fold(thickness, f64::max);
@@ -152,6 +153,30 @@ impl Judgement<'_> {
         self.findings.push(finding.help("end the stroke in the pocket"));
     }
 
+    /// Reports a cut that goes on through the bore in which a hole ends, into its opposite wall.
+    fn judge_behind_bore(&mut self, surface: Option<Surface>) {
+        let (nominal, slack) = (self.nominal, self.comparison.tolerances.depth);
+        let out = Vector3::from(nominal.axis);
+        let is_solid = |depth: f64| {
+            let point = Point3::from(nominal.entry) - out * depth;
+            surface.is_some_and(|surface| surface.value(&point) < 0.0)
+        };
+        let deepest = self.near.iter().max_by(|a, b| a.tip.total_cmp(&b.tip)).copied();
+        let Some((cut, bore)) = deepest.zip(self.comparison.bore_at_end(nominal)) else { return };
+        if !exceeds(cut.tip - bore.ends, slack) || !is_solid(bore.ends + slack) {
+            return;
+        }
+        let message = format!(
+            "hole {} ends in hole {}: {} goes {:.3} mm into the opposite wall of that",
+            self.id,
+            self.comparison.id(bore.index),
+            cut.name(),
+            cut.tip - bore.ends
+        );
+        let finding = Diagnostic::new(&HOLE_DEPTH, message).with_backtrace(cut.pass.backtrace.clone());
+        self.findings.push(finding.help("end the stroke in the bore"));
+    }
+
     /// Reports a through hole, or a feature of one, that does not break out.
     pub(super) fn judge_through(&mut self, feature: Option<&Feature>, surface: Option<Surface>) {
         let tolerances = self.comparison.tolerances;
@@ -166,19 +191,25 @@ impl Judgement<'_> {
             };
         let narrowest = || self.nominal.features.iter().map(|feature| feature.diameter).reduce(f64::min);
         let diameter = feature.map(|feature| feature.diameter).or(own).or_else(narrowest).unwrap_or(0.0);
+        let thickness = surface.map_or(0.0, |surface| rim_thickness(&surface, self.nominal, diameter / 2.0));
+        let thickest = thickness.max(self.nominal.depth);
         let mut gaps = Vec::new();
         let mut reach = |cuts: &[Cut<'_>]| {
-            let depth = |cut: &Cut<'_>| cut.full_depth(diameter).unwrap_or(cut.tip);
+            // Without a feature the list doesn't say how wide a tool of unknown diameter is, nor how long its point.
+            let full = |cut: &Cut<'_>| {
+                let is_open = feature.is_none() && own.is_none() && cut.pass.diameter.is_none();
+                cut.full_depth(diameter).filter(|full| !is_open || thickest <= *full)
+            };
+            let depth = |cut: &Cut<'_>| full(cut).unwrap_or(cut.tip);
             let deepest = cuts.iter().filter(makes).max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
-            if deepest.full_depth(diameter).is_none() {
+            if full(deepest).is_none() {
                 gaps.push(ShapeGap::FullThrough(deepest.pass.tool));
             }
             Some((depth(deepest).max(0.0), deepest.pass.backtrace.clone()))
         };
         let sides = [reach(&self.near), reach(&self.far)];
         self.gaps.extend(gaps);
-        let thickness = surface.map_or(0.0, |surface| rim_thickness(&surface, self.nominal, diameter / 2.0));
-        let depth = thickness.max(self.nominal.depth);
+        let depth = thickest;
         let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
         let Some((_, place)) = sides.into_iter().flatten().next() else {
             feature.into_iter().for_each(|feature| self.report_missing(feature));
@@ -191,7 +222,11 @@ impl Judgement<'_> {
         let depth = depth.min(self.comparison.counter_depth(self.nominal, diameter));
         let is_open =
             !self.followers.is_empty() || ends_in_pocket(self.pockets, self.nominal, diameter / 2.0);
-        let depth = if is_open { depth.min(self.nominal.depth) } else { depth };
+        let depth = match self.comparison.bore_at_end(self.nominal) {
+            _ if is_open => depth.min(self.nominal.depth),
+            Some(bore) => depth.min(bore.opens),
+            None => depth,
+        };
         if exceeds(depth, cut) {
             let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
             let message =
