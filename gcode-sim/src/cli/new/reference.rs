@@ -247,10 +247,18 @@ fn length(value: f64, simulation: &Simulation) -> String {
     }
 }
 
-/// Returns the distance from an entry to the opposite side of a block; `None` where the hole runs askew or the body is round, so
-/// that its wall is longer than its axis.
+/// Returns the distance from an entry to the opposite side of a body; `None` where the wall of a hole may be longer than its axis:
+/// it runs askew, or across a rod beside its axis.
 fn thickness(body: &Surface, entry: &Point3<f64>, out: &Vector3<f64>) -> Option<f64> {
-    let is_straight = matches!(body, Surface::Block { .. }) && 1.0 - 1e-9 < out.amax();
+    let is_straight = match body {
+        Surface::Block { .. } => 1.0 - 1e-9 < out.amax(),
+        Surface::Rod(rod) => {
+            let cosine = rod.axis.dot(out).abs();
+            let aside = (entry - rod.base).dot(&rod.axis.cross(out)).abs();
+            1.0 - 1e-9 < cosine || cosine < 1e-9 && aside < SAME_LEVEL
+        }
+        Surface::Ellipsoid { .. } | Surface::Cylinder { .. } => false,
+    };
     let far = body.exit(entry, &-Unit::new_normalize(*out)).filter(|_| is_straight)?;
     Some((entry - far).dot(out)).filter(|thick| 0.0 < *thick)
 }

@@ -67,7 +67,7 @@ impl DrilledHole {
     }
 
     /// Returns the features of a hole that several tools make, depths from `entry`, in the order of the program. Returns none
-    /// of a hole of one tool, nor where kind or diameter of a tool is unknown: a list without features then says less, and
+    /// of a hole of one diameter, nor where kind or diameter of a tool is unknown: a list without features then says less, and
     /// nothing wrong. A pilot that a wider tool drills away is no feature.
     pub fn features(&self, entry: &Point3<f64>, out: &Vector3<f64>, machine: &Machine) -> Vec<Feature> {
         let depth = |pass: &ToolPass<'_>| (entry - pass.cut.bottom).dot(out);
@@ -83,7 +83,13 @@ impl DrilledHole {
         let kept: Vec<bool> = deepest.iter().map(|pass| !is_drilled_away(pass, &deepest, machine)).collect();
         let mut kept = kept.into_iter();
         deepest.retain(|_| kept.next().unwrap_or(true));
-        let is_plain = deepest.len() == 1 && !deepest.iter().any(|pass| pass.cut.is_tapping);
+        let makes_diameter = |pass: &ToolPass<'_>| {
+            let is_cone = machine
+                .kind_of(pass.tool)
+                .is_some_and(|kind| matches!(kind, ToolKind::SpotDrill | ToolKind::Countersink));
+            !pass.cut.is_tapping && !is_cone
+        };
+        let is_plain = deepest.len() == 1 && deepest.iter().all(makes_diameter);
         if is_plain || deepest.iter().any(|pass| pass.axis.dot(out) < 0.0) {
             return Vec::new();
         }
