@@ -102,8 +102,8 @@ impl ProgramSheet<'_> {
             } } }
             p.note {
                 @if self.is_inch() {
-                    "The program is in inches (G20): work zeros and F are in inches, as on the control; lengths and diameters of the "
-                    "machine file, and all else, in mm. "
+                    "The program is in inches (G20): work zeros, F and the values of H and D are in inches, as on the control; lengths "
+                    "and diameters of the machine file, and all else, in mm. "
                 } @else { "Lengths in mm, angles in degrees, feeds in mm/min. " }
                 "Fill in empty lines by hand."
             }

@@ -65,7 +65,9 @@ impl<'a> Cut<'a> {
     pub(super) fn from_behind(self, nominal: &Hole) -> Option<Self> {
         let (entry, out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
         let depth = |point: &Point3<f64>| (entry - point).dot(&out);
-        let end = depth(&self.pass.cut.bottom) + self.point.length(self.pass.diameter?)?;
+        let diameter = self.pass.diameter?;
+        let point = self.point.length(diameter).or(PointShape::DRILL.length(diameter))?;
+        let end = depth(&self.pass.cut.bottom) + point;
         let tip = depth(&self.pass.cut.start);
         (!exceeds(end, 0.0)).then_some(Self { start: end, tip, point: PointShape::Flat, ..self })
     }
