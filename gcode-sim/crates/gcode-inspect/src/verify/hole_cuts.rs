@@ -62,7 +62,7 @@ impl<'a> Cut<'a> {
 
     /// Returns a cut from the opposite direction whose full diameter comes out at the entry of a hole, as one from the entry;
     /// `None` of another one.
-    pub(super) fn from_behind(self, nominal: &Hole) -> Option<Self> {
+    pub(super) fn through_from_behind(self, nominal: &Hole) -> Option<Self> {
         let (entry, out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
         let depth = |point: &Point3<f64>| (entry - point).dot(&out);
         let diameter = self.pass.diameter?;

@@ -130,9 +130,9 @@ fn earlier_on_axis<'c>(judged: &Judgement<'c>, drilled: &DrilledHole, machine: &
     let cuts = others.flat_map(|other| {
         let out = Vector3::from(judged.nominal.axis);
         let cuts = Cut::all(judged.nominal, other, machine).into_iter();
-        cuts.filter_map(
-            move |cut| if 0.0 < other.axis.dot(&out) { Some(cut) } else { cut.from_behind(judged.nominal) },
-        )
+        cuts.filter_map(move |cut| {
+            if 0.0 < other.axis.dot(&out) { Some(cut) } else { cut.through_from_behind(judged.nominal) }
+        })
     });
     cuts.filter(is_before).collect()
 }
