@@ -39,6 +39,7 @@ mod module_circles;
 mod mutations;
 mod neovim;
 mod new_files;
+mod new_reference;
 mod one_verdict;
 #[cfg(feature = "browser")]
 mod page;

@@ -2,7 +2,7 @@
 use std::fmt::Write;
 
 use super::verdict_table::append_assumptions;
-use gcode_part::{Feature, HoleList, STOPPED, Total};
+use gcode_part::{Feature, HoleList, STOPPED, Total, Unit};
 
 /// Point from which the depth of each hole counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +63,8 @@ pub(crate) fn text(list: &HoleList, origin: Origin) -> String {
 /// Formats the columns of a reference in CSV; the last line states that the run stopped.
 pub(crate) fn csv(list: &HoleList) -> String {
     let has_features = list.holes.iter().any(|hole| !hole.features.is_empty());
-    let mut text = String::from("id,x,y,z,i,j,k,depth,diameter");
+    let unit = if list.unit == Unit::Inch { " [inch]" } else { "" };
+    let mut text = format!("id,x{unit},y{unit},z{unit},i,j,k,depth{unit},diameter{unit}");
     let has_through = list.holes.iter().any(|hole| hole.through);
     text.push_str(if has_features { ",features" } else { "" });
     text.push_str(if has_through { ",through\n" } else { "\n" });

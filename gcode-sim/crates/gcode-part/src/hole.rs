@@ -85,13 +85,13 @@ pub enum Unit {
     #[default]
     #[serde(rename = "mm")]
     Mm,
-    /// Inches, in a list that is read; a reader makes millimetres of them.
+    /// Inches; a reader makes millimetres of them.
     #[serde(rename = "inch")]
     Inch,
 }
 
 /// Millimetres in an inch.
-pub(super) const MM_PER_INCH: f64 = 25.4;
+pub const MM_PER_INCH: f64 = 25.4;
 
 /// The document that `holes` and `reference` write and `verify` reads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -115,17 +115,25 @@ pub struct HoleList {
 impl HoleList {
     /// Returns the list in millimetres.
     #[must_use]
-    pub(super) fn in_mm(mut self) -> Self {
-        if self.unit == Unit::Inch {
-            self.unit = Unit::Mm;
-            for hole in &mut self.holes {
-                hole.entry = hole.entry.map(|value| value * MM_PER_INCH);
-                hole.depth *= MM_PER_INCH;
-                hole.diameter = hole.diameter.map(|diameter| diameter * MM_PER_INCH);
-                hole.features.iter_mut().for_each(|feature| feature.scale(MM_PER_INCH));
-            }
-            self.stock = self.stock.map(|stock| stock.scaled(MM_PER_INCH));
+    pub(super) fn in_mm(self) -> Self {
+        if self.unit == Unit::Inch { self.scaled(MM_PER_INCH, Unit::Mm) } else { self }
+    }
+
+    /// Returns the list in inches.
+    #[must_use]
+    pub fn in_inches(self) -> Self {
+        if self.unit == Unit::Mm { self.scaled(1.0 / MM_PER_INCH, Unit::Inch) } else { self }
+    }
+
+    fn scaled(mut self, factor: f64, unit: Unit) -> Self {
+        self.unit = unit;
+        for hole in &mut self.holes {
+            hole.entry = hole.entry.map(|value| value * factor);
+            hole.depth *= factor;
+            hole.diameter = hole.diameter.map(|diameter| diameter * factor);
+            hole.features.iter_mut().for_each(|feature| feature.scale(factor));
         }
+        self.stock = self.stock.map(|stock| stock.scaled(factor));
         self
     }
 

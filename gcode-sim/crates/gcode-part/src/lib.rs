@@ -76,7 +76,7 @@ pub use entry_planes::{
 pub use feature::{DepthTo, Feature, FeatureKind};
 pub use flutes::Flutes;
 pub use hand::Hand;
-pub use hole::{Hole, HoleList, Origin, Unit};
+pub use hole::{Hole, HoleList, MM_PER_INCH, Origin, Unit};
 pub use indicator::tilted_ellipsoid;
 pub use limits::{NOISE, exceeds};
 pub use nominal::{NominalPart, ProbedPart};

@@ -432,6 +432,7 @@ impl Hole {
             earlier_passes: Vec::new(),
             finishing_cut: PassCut::new(entry, entry - axis * self.depth),
             finishing_index: 0,
+            surface: None,
             first_on_line: self.again.unwrap_or(number),
         })
     }

@@ -14,7 +14,7 @@ use crate::report::figures::short;
 use crate::report::work_zeros::zeros;
 use gcode_draw::{HoleStatus, Mark, Pen, Scene, Shape, Stroke};
 use gcode_inspect::machine::{HeadKind, Machine};
-use gcode_part::Hole;
+use gcode_part::{Hole, MM_PER_INCH};
 use gcode_review::{BlockLocation, Leg};
 
 /// Numbers of moves and points drawn; the page must rotate without delay.
@@ -22,7 +22,6 @@ const MOST_MOVES: usize = 40_000;
 const MOST_POINTS: usize = 160_000;
 /// Number of points of the exact path, which the page draws where it is zoomed in.
 const MOST_EXACT_POINTS: usize = 2_000_000;
-const MM_PER_INCH: f64 = 25.4;
 /// Number of holes drawn.
 const MOST_HOLES: usize = 10_000;
 

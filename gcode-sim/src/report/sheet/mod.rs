@@ -14,12 +14,10 @@ use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Conclusion};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, LengthCompensation};
-use gcode_part::{Assumption, Total};
+use gcode_part::{Assumption, MM_PER_INCH, Total};
 use gcode_session::{Request, Simulation};
 use layout::{BASIS, blank, cell, digest, table};
 use recorder::{OffsetObserver, SheetStop, ToolUse, UseRecorder};
-
-const MM_PER_INCH: f64 = 25.4;
 
 /// Largest number of stops and of findings that are listed.
 const MAX_LISTED: usize = 200;
@@ -104,8 +102,8 @@ impl ProgramSheet<'_> {
             } } }
             p.note {
                 @if self.is_inch() {
-                    "The program is in inches (G20): work zeros, F, H and D are in inches, as on the control; lengths and diameters "
-                    "of the machine file, and all else, in mm. "
+                    "The program is in inches (G20): work zeros, F and the values of H and D are in inches, as on the control; lengths "
+                    "and diameters of the machine file, and all else, in mm. "
                 } @else { "Lengths in mm, angles in degrees, feeds in mm/min. " }
                 "Fill in empty lines by hand."
             }

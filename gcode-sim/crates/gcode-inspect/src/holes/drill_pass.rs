@@ -30,6 +30,8 @@ pub struct PassCut {
     pub milled: Option<MilledCut>,
     /// Place among all passes of holes, in the order of the program.
     pub order: usize,
+    /// Number of sweeps that had removed metal before it.
+    pub(crate) sweeps_before: u32,
 }
 
 /// Component of a unit vector below which an axis is square enough to it; the least of three is smaller.
@@ -119,6 +121,7 @@ impl PassCut {
             rigid_run: 0,
             milled: None,
             order: 0,
+            sweeps_before: 0,
         }
     }
 }

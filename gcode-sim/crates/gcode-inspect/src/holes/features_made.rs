@@ -1,6 +1,9 @@
 //! Features that the passes of a drilled hole make, as a reference lists them.
+use std::collections::BTreeSet;
+
 use nalgebra::{Point3, Vector3};
 
+use super::swallowed::CutEnd;
 use super::{DrilledHole, Helix, ToolPass};
 use crate::machine::{Machine, PointShape, Tool, ToolKind};
 use gcode_lang::motion::SpindleDirection;
@@ -53,9 +56,19 @@ impl DrilledHole {
         beyond.peek().is_some() && beyond.all(is_whole)
     }
 
+    /// Returns the tools of a hole of several tools whose kind or diameter the machine file lacks, each once.
+    pub fn tools_of_unknown_shape(&self, machine: &Machine) -> BTreeSet<u32> {
+        let tools: BTreeSet<u32> = self.passes().filter_map(|pass| pass.tool).collect();
+        let is_unknown = |number: &u32| {
+            let tool = machine.find_tool(*number);
+            tool.is_none_or(|tool| tool.kind.is_none()) || machine.diameter_of(Some(*number)).is_none()
+        };
+        if tools.len() == 1 { BTreeSet::new() } else { tools.into_iter().filter(is_unknown).collect() }
+    }
+
     /// Returns the features of a hole that several tools make, depths from `entry`, in the order of the program. Returns none
-    /// of a hole of one tool, nor where kind or diameter of a tool is unknown: a list without features then says less, and
-    /// nothing wrong.
+    /// of a hole of one diameter, nor where kind or diameter of a tool is unknown: a list without features then says less, and
+    /// nothing wrong. A pilot that a wider tool drills away is no feature.
     pub fn features(&self, entry: &Point3<f64>, out: &Vector3<f64>, machine: &Machine) -> Vec<Feature> {
         let depth = |pass: &ToolPass<'_>| (entry - pass.cut.bottom).dot(out);
         let mut deepest: Vec<ToolPass<'_>> = Vec::new();
@@ -67,7 +80,16 @@ impl DrilledHole {
                 None => deepest.push(pass),
             }
         }
-        let is_plain = deepest.len() == 1 && !deepest.iter().any(|pass| pass.cut.is_tapping);
+        let kept: Vec<bool> = deepest.iter().map(|pass| !is_drilled_away(pass, &deepest, machine)).collect();
+        let mut kept = kept.into_iter();
+        deepest.retain(|_| kept.next().unwrap_or(true));
+        let makes_diameter = |pass: &ToolPass<'_>| {
+            let is_cone = machine
+                .kind_of(pass.tool)
+                .is_some_and(|kind| matches!(kind, ToolKind::SpotDrill | ToolKind::Countersink));
+            !pass.cut.is_tapping && !is_cone
+        };
+        let is_plain = deepest.len() == 1 && deepest.iter().all(makes_diameter);
         if is_plain || deepest.iter().any(|pass| pass.axis.dot(out) < 0.0) {
             return Vec::new();
         }
@@ -133,14 +155,14 @@ fn countersink(
     all: &[ToolPass<'_>],
     machine: &Machine,
 ) -> Option<Feature> {
-    let width = width_at_entry(pass, tool, depth)?;
+    let width = width_above_tip(pass, tool, depth)?;
     let PointShape::Pointed(angle) = tool.point() else { return None };
     let is_as_wide = |other: &ToolPass<'_>| {
         let below = depth + (pass.cut.bottom - other.cut.bottom).dot(&pass.axis);
         let other_tool = other.tool.and_then(|number| machine.find_tool(number));
         other.tool != pass.tool
             && other_tool
-                .and_then(|tool| width_at_entry(other, tool, below))
+                .and_then(|tool| width_above_tip(other, tool, below))
                 .is_some_and(|other| width <= other)
     };
     (!all.iter().any(is_as_wide)).then(|| Feature {
@@ -150,13 +172,30 @@ fn countersink(
     })
 }
 
-/// Returns the width that a pass opens at the entry, mm: of a cone no more than its depth gives.
-fn width_at_entry(pass: &ToolPass<'_>, tool: &Tool, depth: f64) -> Option<f64> {
-    let diameter = pass.diameter?;
+/// Returns the width that a pass opens at a height above its tip, mm: of a cone no more than the height gives, besides the
+/// circle on which a mill leads it.
+fn width_above_tip(pass: &ToolPass<'_>, tool: &Tool, height: f64) -> Option<f64> {
+    let (diameter, path) = (pass.diameter?, pass.cut.milled.map_or(0.0, |circle| circle.radius));
     match tool.point() {
-        PointShape::Pointed(angle) => Some((2.0 * depth * Deg(angle.0 / 2.0).tan()).min(diameter)),
+        PointShape::Pointed(angle) => Some((2.0 * (path + height * Deg(angle.0 / 2.0).tan())).min(diameter)),
         PointShape::Flat | PointShape::Unknown => Some(diameter),
     }
+}
+
+/// Returns true for a pass of which a wider tool on its axis leaves nothing. A thread is cut in what is left.
+fn is_drilled_away(pass: &ToolPass<'_>, all: &[ToolPass<'_>], machine: &Machine) -> bool {
+    let end = |pass: &ToolPass<'_>| {
+        let is_tap = machine.kind_of(pass.tool) == Some(ToolKind::Tap);
+        let is_thread = is_tap || pass.cut.is_tapping || pass.cut.thread().is_some();
+        let has_core = pass.cut.milled.is_some_and(|circle| circle.core.is_some());
+        let end = CutEnd::of(pass.tool, pass.diameter, &pass.cut, machine);
+        end.filter(|_| !is_thread && !has_core)
+    };
+    let Some(own) = end(pass) else { return false };
+    all.iter().any(|other| {
+        let above = (pass.cut.bottom - other.cut.bottom).dot(&pass.axis);
+        end(other).is_some_and(|wider| wider.contains(&own, 0.0, above))
+    })
 }
 
 /// Rounds to the places of a list.

@@ -18,9 +18,10 @@ impl HoleExtractor<'_> {
         self.end_engagement();
         self.report_idle_mills();
         self.report_low_places();
-        let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish();
+        let (passes, milled, first_excess) = std::mem::take(&mut self.strokes).finish(self.machine);
         let mut holes = group::group_holes(&passes, self.machine, &self.process_limits.hole_axes);
         self.find_cores(&mut holes);
+        self.find_surfaces(&mut holes);
         self.report_flank_cuts(&holes);
         let assumed_axes = self.positions.untouched_rotary_axes(self.machine);
         unknown_axes::keep_effective(&mut holes, self.machine, assumed_axes);

@@ -63,6 +63,9 @@ pub struct DrilledHole {
     pub finishing_index: usize,
     /// Axes of unknown position on the part in any pass.
     pub unknown_axes: UnknownAxes,
+    /// Point at which the first pass meets metal on the axis, or at the wall where the axis is empty; `None` without a known
+    /// body there.
+    pub surface: Option<Point3<f64>>,
     /// Index in the list of the first hole on this line. A later one with the same index is this hole drilled again by a
     /// tool that has cut it before.
     pub first_on_line: usize,
@@ -153,9 +156,14 @@ pub(super) fn group_holes(
     let place = |index: usize| (hole_of(index), if has_steps { step_of(index) } else { 0 });
     let first: Vec<(usize, usize)> = (0..passes.len()).map(place).collect();
     let is_aside = |index: usize| first[index].0 != on_line[index];
+    // A hole that is widened later is begun by its first pass.
+    let mut begun: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for (index, place) in first.iter().enumerate() {
+        begun.entry(*place).or_insert(index);
+    }
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // The sort is stable: passes of one line keep their order.
-    order.sort_by_key(|index| first[*index]);
+    order.sort_by_key(|index| begun[&first[*index]]);
     let mut holes = Vec::with_capacity(passes.len());
     for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
         let passes_of_hole = line.iter().map(|index| (&passes[*index], is_aside(*index)));
@@ -211,7 +219,7 @@ fn max_offset(one: &DrillPass, other: &DrillPass, machine: &Machine) -> f64 {
 impl DrillPass {
     /// Returns the distance of another pass from the line of this one, at its bottom or at the lower of both starts, whichever
     /// is farther.
-    fn offset_of(&self, other: &Self) -> f64 {
+    pub(super) fn offset_of(&self, other: &Self) -> f64 {
         let height = |point: &Point3<f64>| point.coords.dot(&self.axis);
         let start = height(&self.cut.start).min(height(&other.cut.start));
         let slope = other.axis.dot(&self.axis);
@@ -286,6 +294,7 @@ fn push_holes<'p>(
             finishing_index,
             unknown_axes: pass.unknown_axes,
             earlier_passes,
+            surface: None,
             first_on_line,
         }
     };

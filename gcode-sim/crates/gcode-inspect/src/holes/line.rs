@@ -51,6 +51,8 @@ pub(super) struct CuttingLine {
     pub unknown_axes: UnknownAxes,
     /// Distance of the tip beyond the programmed point; `None` if they agree.
     pub length_excess: Option<f64>,
+    /// Number of sweeps that had removed metal before it.
+    sweeps_before: u32,
     /// Depth at which the part begins; `None` if its surface is unknown.
     pub surface_depth: Option<f64>,
     /// Finished strokes.
@@ -136,6 +138,7 @@ impl CuttingLine {
             cuts: CutStates::default(),
             unknown_axes: UnknownAxes::default(),
             length_excess: None,
+            sweeps_before: 0,
             surface_depth: None,
             pecks: PeckExtent::default(),
             is_tapping: false,
@@ -426,6 +429,7 @@ impl CuttingLine {
                 rigid_run: end.rigid_run,
                 milled: None,
                 order: 0,
+                sweeps_before: self.sweeps_before,
             },
             axis: self.tool_axis.unwrap_or(self.out),
             is_tool_axis_known: self.tool_axis.is_some(),
@@ -461,6 +465,7 @@ impl HoleExtractor<'_> {
             line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
             line.unknown_axes = self.positions.unknown_axes();
             line.length_excess = self.length_excess();
+            line.sweeps_before = self.metal.removed.count();
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.record_line_feed(event, &mut line, &start);

@@ -221,13 +221,14 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Returns true if what a line removes is judged as milling: in a known body a feed across the tool, and one in a pocket.
+    /// Returns true if what a line removes is judged as milling: in a known body a feed across the tool and,
+    /// with a list of holes, one in a pocket.
     /// At an unknown position nothing says what it removes.
     pub(super) fn is_milled(&self, line: &CuttingLine) -> bool {
         self.surface.is_some()
-            && self.metal.holes.is_some()
             && without_assumed(line.unknown_axes, self.machine).is_none()
-            && (line.is_across_tool() || self.is_pocketing(line) && !self.is_nominal_cycle(line))
+            && (line.is_across_tool()
+                || self.metal.holes.is_some() && self.is_pocketing(line) && !self.is_nominal_cycle(line))
     }
 
     /// Returns true if a cycle drills at a nominal hole: it makes the hole, also where a pocket removes it later.
@@ -252,6 +253,10 @@ impl HoleExtractor<'_> {
             self.engagement.uncounted.add_unretracted(line.backtrace(), line.cut_depth());
             return;
         };
+        // Without a list of holes a stated pocket says what its feeds are.
+        if self.metal.holes.is_none() && self.metal.is_in_pocket(&[line.start, line.bottom()]) {
+            return;
+        }
         let is_judged = self.metal.holes.is_some() && line.tool_axis.is_some();
         // A tool that is fed out of the part has left it.
         let has_left = || {

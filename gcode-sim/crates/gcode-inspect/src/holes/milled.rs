@@ -48,6 +48,8 @@ pub(super) struct Engagement {
     pub edges: f64,
     /// Number of feeds before it that removed what has to stay.
     spoilt_before: u32,
+    /// Number of sweeps that had removed metal before it.
+    sweeps_before: u32,
     /// Axes of unknown position on the part during an arc.
     unknown_axes: UnknownAxes,
     /// Feeds that make no hole, unless the engagement does.
@@ -265,6 +267,7 @@ impl HoleExtractor<'_> {
         }
         self.engagement.clear();
         self.engagement.spoilt_before = self.gouge_count;
+        self.engagement.sweeps_before = self.metal.removed.count();
     }
 
     /// Adds a stroke at a nominal hole without a retract: it makes the hole if nothing else does.
@@ -282,7 +285,7 @@ impl HoleExtractor<'_> {
     /// Adds the passes of a hole.
     fn push_circles(&mut self, circles: &HoleCircles) {
         let start = self.engagement.start.unwrap_or(self.pose.tip);
-        let Engagement { approach_level, unknown_axes, .. } = self.engagement;
+        let Engagement { approach_level, unknown_axes, sweeps_before, .. } = self.engagement;
         let tool = self.setup.tool;
         if let Some(excess) = &circles.excess {
             let Ring { out, backtrace, .. } = &circles.widest;
@@ -298,7 +301,7 @@ impl HoleExtractor<'_> {
             let milled = MilledCut { radius, roundness, wall, core: ring.slug, helix };
             let cut = PassCut::new(ring.centre + out.into_inner() * length, ring.centre);
             let pass = DrillPass {
-                cut: PassCut { milled: Some(milled), ..cut },
+                cut: PassCut { milled: Some(milled), sweeps_before, ..cut },
                 axis: out,
                 is_tool_axis_known: self.pose.axis.is_some(),
                 feed_direction: out,

@@ -47,6 +47,7 @@ pub(crate) mod spindle;
 mod start_holes;
 mod strip;
 mod strokes;
+mod surfaces;
 mod swallowed;
 mod sweep;
 mod swept_tool;

@@ -296,7 +296,10 @@ impl Strokes {
     }
 
     /// Returns the passes in their order, the strokes that are milling, and the first pass beyond the limit.
-    pub(super) fn finish(mut self) -> (Vec<DrillPass>, Option<MilledStrokes>, Option<Backtrace>) {
+    pub(super) fn finish(
+        mut self,
+        machine: &Machine,
+    ) -> (Vec<DrillPass>, Option<MilledStrokes>, Option<Backtrace>) {
         self.end_tool();
         for (order, pass) in std::mem::take(&mut self.across) {
             match self.has_upright_stroke {
@@ -305,13 +308,30 @@ impl Strokes {
             }
         }
         self.finish_unretracted();
-        self.passes.retain(|(order, _)| !self.start_holes.is_removed(*order));
+        self.drop_start_holes(machine);
         self.passes.sort_by_key(|(order, _)| *order);
         let numbered = self.passes.into_iter().zip(0..);
         let passes =
             numbered.map(|((_, pass), order)| DrillPass { cut: PassCut { order, ..pass.cut }, ..pass });
         let passes = passes.collect();
         (passes, self.milled, self.first_excess)
+    }
+
+    /// Drops the start holes that feeds have removed whole, but for those of a hole that is milled on their axis.
+    fn drop_start_holes(&mut self, machine: &Machine) {
+        let is_removed = |(order, _): &mut (u32, DrillPass)| self.start_holes.is_removed(*order);
+        let mut removed: Vec<(u32, DrillPass)> = self.passes.extract_if(.., is_removed).collect();
+        removed.retain(|(_, start)| {
+            let bottom = start.cut.bottom.coords.dot(&start.axis);
+            self.passes.iter().any(|(_, wider)| {
+                wider.cut.milled.is_some()
+                    && PARALLEL_COSINE <= wider.axis.dot(&start.axis)
+                    && wider.offset_of(start) <= MAX_LINE_OFFSET
+                    && wider.cut.bottom.coords.dot(&start.axis) <= bottom + LEVEL_TOLERANCE
+                    && start.diameter(machine) <= wider.diameter(machine)
+            })
+        });
+        self.passes.extend(removed);
     }
 
     /// Returns true if a stroke along the tool drills, as far as known: between rapids one that goes deeper than anything

@@ -1,5 +1,5 @@
 //! Passes that a wider tool swallows: all that they cut lies in what it cuts, wherever their axes are.
-use super::drill_pass::DrillPass;
+use super::drill_pass::{DrillPass, PassCut};
 use crate::machine::{Machine, PointShape, Tool};
 use gcode_lang::units::Deg;
 use gcode_part::{NOISE, PARALLEL_COSINE, PointTree};
@@ -7,19 +7,24 @@ use nalgebra::{Point3, Vector3};
 
 /// Cylinder with a conical end that a pass cuts.
 #[derive(Clone, Copy, Debug)]
-struct CutEnd {
+pub(super) struct CutEnd {
     radius: f64,
     /// Height of the cone's edge above its tip per mm of radius; 0 of a flat end.
     rise: f64,
 }
 
 impl CutEnd {
-    /// Returns the end of a pass; `None` if its diameter is unknown.
-    fn of(pass: &DrillPass, machine: &Machine) -> Option<Self> {
-        let radius = pass.diameter(machine)? / 2.0;
-        let tool = pass.tool.and_then(|number| machine.find_tool(number));
+    /// Returns the end of a pass of a tool; `None` if its diameter is unknown.
+    pub(super) fn of(
+        tool: Option<u32>,
+        diameter: Option<f64>,
+        cut: &PassCut,
+        machine: &Machine,
+    ) -> Option<Self> {
+        let radius = diameter? / 2.0;
+        let tool = tool.and_then(|number| machine.find_tool(number));
         let point = match tool.map_or(PointShape::Unknown, Tool::point) {
-            _ if pass.cut.milled.is_some() => PointShape::Flat,
+            _ if cut.milled.is_some() => PointShape::Flat,
             PointShape::Unknown => PointShape::DRILL,
             point => point,
         };
@@ -31,7 +36,7 @@ impl CutEnd {
     }
 
     /// Returns true if a narrower end lies in this one. Its axis is `aside` from this axis, its tip `above` this tip.
-    fn contains(&self, other: &Self, aside: f64, above: f64) -> bool {
+    pub(super) fn contains(&self, other: &Self, aside: f64, above: f64) -> bool {
         let is_within = other.radius < self.radius - NOISE && aside + other.radius <= self.radius + NOISE;
         // Both ends are straight along the radius: their tip and their edge decide.
         let tip = self.rise * aside <= above + NOISE;
@@ -51,7 +56,7 @@ pub(super) fn swallowing_passes(
     let end = |pass: &DrillPass| match last {
         Some((tool, end)) if tool == pass.tool && pass.cut.milled.is_none() => end,
         _ => {
-            let end = CutEnd::of(pass, machine);
+            let end = CutEnd::of(pass.tool, pass.diameter(machine), &pass.cut, machine);
             last = pass.cut.milled.is_none().then_some((pass.tool, end));
             end
         }

@@ -60,6 +60,18 @@ impl<'a> Cut<'a> {
         drilled.passes().map(cut).collect()
     }
 
+    /// Returns a cut from the opposite direction whose full diameter comes out at the entry of a hole, as one from the entry;
+    /// `None` of another one.
+    pub(super) fn through_from_behind(self, nominal: &Hole) -> Option<Self> {
+        let (entry, out) = (Point3::from(nominal.entry), Vector3::from(nominal.axis));
+        let depth = |point: &Point3<f64>| (entry - point).dot(&out);
+        let diameter = self.pass.diameter?;
+        let point = self.point.length(diameter).or(PointShape::DRILL.length(diameter))?;
+        let end = depth(&self.pass.cut.bottom) + point;
+        let tip = depth(&self.pass.cut.start);
+        (!exceeds(end, 0.0)).then_some(Self { start: end, tip, point: PointShape::Flat, ..self })
+    }
+
     /// Returns true if a pass has the same tool and diameter: a mill cuts several diameters.
     pub(super) fn is_same_size(&self, other: &ToolPass<'_>) -> bool {
         (self.pass.tool, self.pass.diameter) == (other.tool, other.diameter)

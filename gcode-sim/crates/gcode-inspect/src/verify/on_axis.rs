@@ -37,7 +37,8 @@ impl Comparison<'_> {
 }
 
 impl<'a> Comparison<'a> {
-    /// Iterates over the drilled holes of other nominal holes on the axis of a hole, with the same direction.
+    /// Iterates over the drilled holes of other nominal holes on the axis of a hole: those with the same direction, and those that go
+    /// through from the opposite one.
     pub(super) fn drilled_on_axis(&self, hole: &Hole) -> impl Iterator<Item = &'a DrilledHole> {
         let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
         let mut found = Vec::new();
@@ -46,8 +47,9 @@ impl<'a> Comparison<'a> {
             let other = &self.nominal[index];
             let to = Point3::from(other.entry) - entry;
             let aside = (to - out * to.dot(&out)).norm();
-            let is_same_way = MIN_ALIKE_COSINE < Vector3::from(other.axis).dot(&out);
-            if !std::ptr::eq(other, hole) && is_same_way && aside <= self.tolerances.position {
+            let cosine = Vector3::from(other.axis).dot(&out);
+            let is_open = MIN_ALIKE_COSINE < cosine || other.through && cosine < -MIN_ALIKE_COSINE;
+            if !std::ptr::eq(other, hole) && is_open && aside <= self.tolerances.position {
                 let pair = self.pairs.binary_search_by_key(&index, |pair| pair.nominal);
                 found.extend(pair.ok().map(|pair| &self.actual[self.pairs[pair].actual]));
             }

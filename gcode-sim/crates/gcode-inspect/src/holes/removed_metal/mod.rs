@@ -192,10 +192,15 @@ impl RemovedMetal {
         self.voids.is_empty() && is_one_way && self.profiles.iter().all(is_open)
     }
 
+    /// Returns the number of sweeps so far.
+    pub(super) fn count(&self) -> u32 {
+        self.sweeps.len() as u32
+    }
+
     /// Keeps later feeds from lengthening the last sweep; returns the number of sweeps.
     pub(super) fn close(&mut self) -> u32 {
         self.is_last_open = false;
-        self.sweeps.len() as u32
+        self.count()
     }
 
     /// Returns the first sweeps, for the strips of one motion.

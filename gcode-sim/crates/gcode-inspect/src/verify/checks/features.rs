@@ -118,8 +118,8 @@ fn judge<'c>(
     Some(judged)
 }
 
-/// Returns the cuts of other holes of the list on the axis of a hole, from the same side, which are made before it; none for a hole
-/// whose tools all make one.
+/// Returns the cuts of other holes of the list on the axis of a hole, from the same side or through from the other one, which are
+/// made before it; none for a hole whose tools all make one.
 fn earlier_on_axis<'c>(judged: &Judgement<'c>, drilled: &DrilledHole, machine: &Machine) -> Vec<Cut<'c>> {
     if !judged.near.iter().any(tool_kinds::needs_earlier_cut) {
         return Vec::new();
@@ -127,7 +127,14 @@ fn earlier_on_axis<'c>(judged: &Judgement<'c>, drilled: &DrilledHole, machine: &
     let own = drilled.passes().map(|pass| pass.cut.order).min();
     let is_before = |cut: &Cut<'_>| own.is_some_and(|own| cut.pass.cut.order < own);
     let others = judged.comparison.drilled_on_axis(judged.nominal);
-    others.flat_map(|other| Cut::all(judged.nominal, other, machine)).filter(is_before).collect()
+    let cuts = others.flat_map(|other| {
+        let out = Vector3::from(judged.nominal.axis);
+        let cuts = Cut::all(judged.nominal, other, machine).into_iter();
+        cuts.filter_map(move |cut| {
+            if 0.0 < other.axis.dot(&out) { Some(cut) } else { cut.through_from_behind(judged.nominal) }
+        })
+    });
+    cuts.filter(is_before).collect()
 }
 
 impl Judgement<'_> {
