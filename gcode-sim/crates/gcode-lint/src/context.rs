@@ -24,6 +24,7 @@ use super::locals::States;
 use super::piece::Piece;
 use super::possible_modes::PossibleModes;
 pub(crate) use super::role::Role;
+use super::units::PossibleUnits;
 use super::variables::{self, VariableRead};
 
 /// Note of a finding that is none on a control with another option.
@@ -65,6 +66,8 @@ pub(crate) struct LoadedProgram {
     pub calls: Vec<CallSite>,
     /// Piece of a longer program.
     pub piece: Option<Piece>,
+    /// Units that blocks of the program command which are not here: those before a piece.
+    pub other_units: PossibleUnits,
 }
 
 impl LoadedProgram {
@@ -80,7 +83,14 @@ impl LoadedProgram {
         let known = if is_first { known } else { &mut none };
         let blocks = memory.lower_with_trees(id, known);
         let marks = blocks.iter().map(|block| known.marks(block.span.start)).collect();
-        Self { id, blocks, marks, calls: calls::call_sites(memory.get(id), settings), piece: None }
+        Self {
+            id,
+            blocks,
+            marks,
+            calls: calls::call_sites(memory.get(id), settings),
+            piece: None,
+            other_units: PossibleUnits::default(),
+        }
     }
 }
 
@@ -120,6 +130,8 @@ pub(crate) struct ProgramUnit<'a> {
     pub left_out_numbers: Vec<LeftOutNumber>,
     /// Piece of a longer program, of which the other blocks are not here.
     pub piece: Option<Piece>,
+    other_units: PossibleUnits,
+    commanded_units: OnceLock<PossibleUnits>,
 }
 
 impl<'a> CheckContext<'a> {
@@ -151,11 +163,14 @@ impl<'a> CheckContext<'a> {
     /// Returns the programs again.
     pub(super) fn into_loaded(self) -> Vec<LoadedProgram> {
         let units = self.units.into_iter();
-        let loaded = |ProgramUnit { id, blocks, mut marks, new_marks, calls, piece, .. }: ProgramUnit<'_>| {
-            let new = new_marks.into_inner().into_iter().flatten();
-            marks.iter_mut().zip(new).for_each(|(marks, new)| *marks |= new);
-            LoadedProgram { id, blocks, marks, calls, piece }
-        };
+        let loaded =
+            |ProgramUnit { id, blocks, mut marks, new_marks, calls, piece, other_units, .. }: ProgramUnit<
+                '_,
+            >| {
+                let new = new_marks.into_inner().into_iter().flatten();
+                marks.iter_mut().zip(new).for_each(|(marks, new)| *marks |= new);
+                LoadedProgram { id, blocks, marks, calls, piece, other_units }
+            };
         units.map(loaded).collect()
     }
 
@@ -299,7 +314,10 @@ fn written_alarm(kind: &OpKind) -> Option<&LocatedAlarm> {
 }
 
 impl<'a> ProgramUnit<'a> {
-    fn new(memory: &'a Memory, LoadedProgram { id, blocks, marks, calls, piece }: LoadedProgram) -> Self {
+    fn new(
+        memory: &'a Memory,
+        LoadedProgram { id, blocks, marks, calls, piece, other_units }: LoadedProgram,
+    ) -> Self {
         let program = memory.get(id);
         let far_jumps = piece.as_ref().map_or(&[][..], |piece| &piece.far_jumps);
         let entries = piece.iter().flat_map(|piece| &piece.entries).map(|entry| entry.block);
@@ -322,6 +340,8 @@ impl<'a> ProgramUnit<'a> {
             states_without_arguments: OnceLock::new(),
             left_out_numbers: Vec::new(),
             piece,
+            other_units,
+            commanded_units: OnceLock::new(),
             program,
         }
     }
@@ -349,6 +369,15 @@ impl<'a> ProgramUnit<'a> {
             return &[];
         }
         self.reads[block].get_or_init(|| variables::block_reads(&self.blocks[block]).into())
+    }
+
+    /// Returns the units that the blocks of the program command, of a piece also the blocks before it.
+    pub(crate) fn commanded_units(&self) -> PossibleUnits {
+        *self.commanded_units.get_or_init(|| {
+            let mut units = PossibleUnits::commanded_in(self.program);
+            units |= self.other_units;
+            units
+        })
     }
 
     /// Returns the component of each node of the control flow, see `components`.

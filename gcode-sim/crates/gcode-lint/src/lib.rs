@@ -46,6 +46,7 @@ mod rule;
 pub mod rules;
 mod suppression;
 mod text_behind_end;
+mod units;
 mod unset_reads;
 mod vacancy;
 mod variables;

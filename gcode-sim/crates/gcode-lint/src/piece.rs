@@ -1,10 +1,12 @@
 //! Piece of a long program: consecutive blocks that control enters at the first and leaves behind the last.
 use gcode_lang::program::OpIndex;
+use gcode_lang::program::modes::Unit;
 use gcode_lang::source::Span;
 
 use super::locals::Locals;
 use super::possible_modes::PossibleModes;
 use super::role::Role;
+use super::units::PossibleUnits;
 
 /// Place of a piece in its program, and what the pieces before it leave.
 #[derive(Clone, Debug)]
@@ -49,8 +51,8 @@ pub(crate) struct PieceStart {
     pub locals: Locals,
     /// Move that may still be in progress.
     pub pending_move: Option<Span>,
-    /// A block before it commands inch.
-    pub is_inch: bool,
+    /// Units that the blocks before it command, and the unit in which they are judged.
+    pub units: (PossibleUnits, Option<Unit>),
 }
 
 impl PieceStart {
@@ -60,6 +62,6 @@ impl PieceStart {
             Role::Main => (PossibleModes::POWER_ON, Locals::UNSET),
             Role::Called | Role::Resident => (PossibleModes::ANYTHING, Locals::ANYTHING),
         };
-        Self { modes, locals, pending_move: None, is_inch: false }
+        Self { modes, locals, pending_move: None, units: (PossibleUnits::default(), None) }
     }
 }

@@ -23,9 +23,10 @@ use super::parameters::has_open_parameter_input;
 use super::piece::{Piece, PieceEntry, PieceStart};
 use super::piece_ends::{PieceSizes, piece_end};
 use super::rules::{
-    self, alarming_cancel, doubled_numbers, is_in_inch, limits_lookahead, pending_moves, sequence_numbers,
+    self, alarming_cancel, doubled_numbers, limits_lookahead, pending_moves, sequence_numbers,
 };
 use super::suppression::{Suppression, suppressions};
+use super::units::{PossibleUnits, unit_in_force};
 use super::unset_reads::entry_locals;
 use super::vacancy::states_without_arguments;
 
@@ -41,6 +42,8 @@ struct WholeProgram {
     jumps: BTreeSet<u32>,
     /// Blocks of calls: of those of the programs that are here one of each form.
     calls: Vec<OpIndex>,
+    /// Units that its blocks command.
+    units: PossibleUnits,
     known_calls: BTreeSet<(ProgramId, bool, Locals)>,
     returns: bool,
     ends: bool,
@@ -87,7 +90,8 @@ fn findings_of_others<L: Library>(
         let short = program.without(&is_left_out);
         whole.push((*id, loader.memory.replace(*id, short)));
         let mut none = KnownBlocks::default();
-        units.push(LoadedProgram::new(loader.memory, *id, &mut none, loader.settings));
+        let calls = LoadedProgram::new(loader.memory, *id, &mut none, loader.settings);
+        units.push(LoadedProgram { other_units: found.units, ..calls });
     }
     let context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
     let of_unit = |unit: &ProgramUnit<'_>| (unit.id, rules::findings_in_program(&context, unit));
@@ -150,6 +154,7 @@ fn findings_as<L: Library>(
         if MAX_FAR_TARGETS < targets.len() || targets.iter().any(|target| whole.is_in_loop(*target)) {
             return Err(NotInPieces);
         }
+        program.other_units = start.units.0;
         program.piece = Some(Piece { role, start, entries, far_jumps, is_first: first == 0, is_last });
         loader.find_called(id, &program.calls);
         loader.load_found(&mut none, usize::MAX);
@@ -196,11 +201,12 @@ impl WholeProgram {
         if findings.iter().any(|finding| rests_on_whole(context, finding)) {
             return Err(NotInPieces);
         }
-        // The blocks before may have been judged in mm.
-        let is_inch = is_in_inch(unit);
-        if is_inch && unit.piece.as_ref().is_some_and(|piece| !piece.is_first && !piece.start.is_inch) {
+        let judged_in = unit_in_force(context, unit);
+        let is_judged_in_another = |piece: &Piece| !piece.is_first && piece.start.units.1 != judged_in;
+        if unit.piece.as_ref().is_some_and(is_judged_in_another) {
             return Err(NotInPieces);
         }
+        self.units = unit.commanded_units();
         let end = blocks.len();
         let (returns, ends) = unit.returns_or_ends();
         self.returns |= returns;
@@ -225,7 +231,7 @@ impl WholeProgram {
         Ok(PieceStart {
             modes: modes_before(context, unit)[end].ok_or(NotInPieces)?,
             locals: states_without_arguments(unit)[end].ok_or(NotInPieces)?,
-            is_inch,
+            units: (self.units, judged_in),
             pending_move: match limits_lookahead(context, unit) {
                 true => None,
                 false => pending_moves(context, unit)[end].flatten(),

@@ -2,6 +2,7 @@
 //!
 //! Programs that count in increments throughout (`X45000`) are exempt: they have no decimal point, and a
 //! number of 1 mm or more.
+use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::control::Settings;
@@ -15,6 +16,7 @@ use gcode_lang::syntax::ast::Decimal;
 use crate::literal::without_point;
 use crate::parameters;
 use crate::prelude::*;
+use crate::units::unit_in_force;
 
 pub(super) static RULE: Rule = Rule::new(
     "missing-point",
@@ -93,7 +95,7 @@ fn programs_of_file<'c, 'a>(
 /// Returns a finding for each number without a point.
 fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let settings = context.settings;
-    let is_inch = is_in_inch(unit);
+    let unit_of_lengths = LazyCell::new(|| unit_in_force(context, unit));
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
     for (block, words) in unit.reached_words().filter(|(block, _)| !parameters[*block]) {
@@ -109,11 +111,12 @@ fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> 
             if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
-            if word.letter == b'F' && codes.value(word, number, settings, is_inch) >= MIN_INTENDED_FEED {
+            let values = codes.values(word, number, settings, *unit_of_lengths);
+            if word.letter == b'F' && values.iter().any(|(value, _)| *value >= MIN_INTENDED_FEED) {
                 continue;
             }
             let written = spelled(word.letter, number);
-            let message = format!("{written} is {}", codes.meaning(word, number, settings, is_inch));
+            let message = format!("{written} is {}", meaning(&values));
             let finding = unit.finding(&RULE.kind, block, message).with_span(word.span);
             found.push(finding.with_severity(severity).help(format!("write {written}.")));
         }
@@ -121,14 +124,12 @@ fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> 
     found
 }
 
-/// Returns true if a block of the program, of a piece also one before it, commands inch.
-pub(crate) fn is_in_inch(unit: &ProgramUnit<'_>) -> bool {
-    let is_begun_in_inch = unit.piece.as_ref().is_some_and(|piece| piece.start.is_inch);
-    let words = unit.program.ops().iter().filter_map(|op| op.kind().words());
-    is_begun_in_inch
-        || words
-            .flat_map(|words| words.g_codes().filter_map(|found| found.row_for_any()))
-            .any(|row| row.effect == Effect::Unit(Unit::Inch))
+/// Spells the values that a number may have, `0.003 mm`.
+fn meaning(values: &[(f64, &str)]) -> String {
+    match values {
+        [(first, unit), (second, other)] if unit == other => format!("{first} or {second} {unit}"),
+        _ => values.iter().map(|(value, unit)| format!("{value} {unit}")).collect::<Vec<_>>().join(" or "),
+    }
 }
 
 /// Iterates over the literals that are lengths, angles or seconds.
@@ -219,25 +220,31 @@ impl<'w> BlockCodes<'w> {
         }
     }
 
-    /// Returns the value of a number with its unit, `0.003 mm`.
-    fn meaning(&self, word: &LoweredWord, number: Decimal, settings: &Settings, inch: bool) -> String {
-        let unit = match () {
-            () if self.words.call().is_some() => "for the macro",
-            () if self.measured == Measured::Seconds => "seconds",
-            () if self.is_angle(word) => "degrees",
-            () if word.letter == b'F' && inch => "inch/min",
-            () if word.letter == b'F' => "mm/min",
-            () if inch => "inch",
-            () => "mm",
+    /// Returns the value of a number with its unit: two of a length if its unit is unknown.
+    fn values(
+        &self,
+        word: &LoweredWord,
+        number: Decimal,
+        settings: &Settings,
+        unit: Option<Unit>,
+    ) -> Vec<(f64, &'static str)> {
+        let is_argument = self.words.call().is_some();
+        let value = number.value() / settings.increment.per_unit();
+        let inches = number.value() / (settings.increment.per_unit() * 10.0);
+        let in_unit = |unit: Unit| match (unit, is_argument, word.letter) {
+            (Unit::Metric, true, _) => (value, "for the macro"),
+            (Unit::Inch, true, _) => (inches, "for the macro"),
+            (Unit::Metric, false, b'F') => (value, "mm/min"),
+            (Unit::Inch, false, b'F') => (inches, "inch/min"),
+            (Unit::Metric, false, _) => (value, "mm"),
+            (Unit::Inch, false, _) => (inches, "inch"),
         };
-        format!("{} {unit}", self.value(word, number, settings, inch))
-    }
-
-    /// Returns the value of a number in its unit.
-    fn value(&self, word: &LoweredWord, number: Decimal, settings: &Settings, inch: bool) -> f64 {
-        let is_dwell = self.measured == Measured::Seconds;
-        let finer = if inch && !self.is_angle(word) && !is_dwell { 10.0 } else { 1.0 };
-        number.value() / (settings.increment.per_unit() * finer)
+        match unit {
+            _ if self.measured == Measured::Seconds => vec![(value, "seconds")],
+            _ if self.is_angle(word) => vec![(value, if is_argument { "for the macro" } else { "degrees" })],
+            Some(unit) => vec![in_unit(unit)],
+            None => vec![in_unit(Unit::Metric), in_unit(Unit::Inch)],
+        }
     }
 
     /// Returns true for a word in degrees; C behind a comma is the length of a chamfer.
@@ -303,6 +310,41 @@ mod tests {
         assert_eq!(messages("O1\nG21\nG1 X1.5 F1000\nX2.5 F10.\nM30\n"), [""; 0]);
         assert_eq!(messages("O1\nG20\nG1 X1.5 F10000\nX2.5 F#1\nM30\n"), [""; 0]);
         assert_eq!(lines(&RULE, "O1\nG1 X1.5 F10\nM30\n"), NOWHERE, "a Fanuc");
+    }
+
+    /// 12 increments are 0.0012 inch where the control, a caller or a called program is in inch, and 0.012 mm otherwise.
+    #[test]
+    fn a_number_counts_in_the_unit_in_force() {
+        let of = |inch: Option<bool>, text: &str| {
+            let settings = Settings { is_inch_at_power_on: inch, ..Settings::default() };
+            let found = check("O1.nc", text.as_bytes(), &settings, &mut NoLibrary).findings;
+            let of_rule = found.into_iter().filter(|finding| finding.code() == "missing-point");
+            of_rule.map(|finding| finding.message).collect::<Vec<_>>().join("; ")
+        };
+        let plain = "O1\nG0 X1.5\nX12\nM30\n";
+        assert_eq!(of(None, plain), "X12 is 0.012 mm");
+        assert_eq!(of(Some(false), plain), "X12 is 0.012 mm");
+        assert_eq!(of(Some(true), plain), "X12 is 0.0012 inch");
+        assert_eq!(of(Some(true), "O1\nG21\nG0 X1.5\nX12\nM30\n"), "X12 is 0.012 mm");
+        let called = |head: &str| format!("O1\n{head}G0 X1.5\nM98 P2\nM30\nO2\nX12\nY3.\nM99\n");
+        assert_eq!(of(None, &called("")), "X12 is 0.012 mm");
+        assert_eq!(of(Some(true), &called("")), "X12 is 0.0012 inch");
+        assert_eq!(of(None, &called("G20\n")), "X12 is 0.0012 inch");
+        assert_eq!(of(Some(true), &called("G21\n")), "X12 is 0.012 mm");
+        assert_eq!(of(None, &called("G20\nM98 P2\nG21\n")), "X12 is 0.012 mm or 0.0012 inch");
+        let sets = "O1\nM98 P2\nG0 X1.5\nX12\nM30\nO2\nG20\nM99\n";
+        assert_eq!(of(None, sets), "X12 is 0.0012 inch");
+        let resident = "O9010\nG0 X1.5\nX12\nG65 P2 X5 Y1.\nM99\n";
+        assert_eq!(
+            of(Some(true), resident),
+            "X12 is 0.012 mm or 0.0012 inch; X5 is 0.005 or 0.0005 for the macro"
+        );
+        let in_circle = "O1\nM98 P2\nM30\nO2\nG0 X1.5\nX12\nIF[#1EQ1]GOTO1\nM98 P3\nN1M99\nO3\nM98 P2\nM99\n";
+        assert_eq!(of(Some(true), in_circle), "X12 is 0.0012 inch");
+        assert_eq!(
+            of(Some(true), "O1\nG0 X1. A5 C7.\nG4 X5\nM30\n"),
+            "A5 is 0.005 degrees; X5 is 0.005 seconds"
+        );
     }
 
     #[test]
