@@ -48,6 +48,17 @@ pub(crate) struct CheckContext<'a> {
     pub planner: Mutex<Option<StaticPlanner>>,
 }
 
+/// What rules want to know of the blocks of a program that are left out of a check.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LeftOutBlocks {
+    /// Their sequence numbers, in the order of the blocks.
+    pub numbers: Vec<LeftOutNumber>,
+    /// How many calls are left out for the one of the block at an offset.
+    pub calls: BTreeMap<u32, usize>,
+    /// Number of their lengths and angles other than 0 that have a decimal point.
+    pub points: usize,
+}
+
 /// Sequence number of a block that is left out of a check.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LeftOutNumber {
@@ -116,8 +127,7 @@ pub(crate) struct ProgramUnit<'a> {
     components: OnceLock<Vec<usize>>,
     /// States without arguments, see `vacancy`.
     pub states_without_arguments: OnceLock<States>,
-    /// Sequence numbers of the blocks that are left out, in the order of the blocks.
-    pub left_out_numbers: Vec<LeftOutNumber>,
+    pub left_out: LeftOutBlocks,
     /// Piece of a longer program, of which the other blocks are not here.
     pub piece: Option<Piece>,
 }
@@ -320,7 +330,7 @@ impl<'a> ProgramUnit<'a> {
             modes: OnceLock::new(),
             components: OnceLock::new(),
             states_without_arguments: OnceLock::new(),
-            left_out_numbers: Vec::new(),
+            left_out: LeftOutBlocks::default(),
             piece,
             program,
         }

@@ -181,7 +181,7 @@ fn check_programs<L: Library>(
     let units = std::mem::take(&mut loader.loaded);
     let mut context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
     for unit in &mut context.units {
-        unit.left_out_numbers = loader.repetitions.take_numbers(unit.id);
+        unit.left_out = loader.repetitions.left_out(unit.id);
     }
     let findings = rules::findings(&context);
     loader.loaded = context.into_loaded();

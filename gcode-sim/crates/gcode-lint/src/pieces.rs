@@ -89,7 +89,10 @@ fn findings_of_others<L: Library>(
         let mut none = KnownBlocks::default();
         units.push(LoadedProgram::new(loader.memory, *id, &mut none, loader.settings));
     }
-    let context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+    let mut context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+    for unit in &mut context.units {
+        unit.left_out = loader.repetitions.left_out(unit.id);
+    }
     let of_unit = |unit: &ProgramUnit<'_>| (unit.id, rules::findings_in_program(&context, unit));
     let of_others = context.units[..others].iter().map(of_unit).collect();
     for ((_, found), calls) in long.iter_mut().zip(&context.units[others..]) {
@@ -365,6 +368,7 @@ mod tests {
             "O1\n#101=1\n#101=2\nIF[#2EQ#0]GOTO90\n#101=#1\n#2=1\n#101=2\nX1.\nIF[#101EQ5.]GOTO90\n#101=2\n#101=2\nM30\n\
              N90#101=#2\n#101=1\n#101=1\n#101=1\nM30\n",
             "O1\nG1\n#101=1\n#101=2\nIF[#102EQ1]GOTO90\n#101=2\nF9.\n#101=2\n#101=2\n#101=2\n#101=2\nN90X5.\n#101=2\nM30\n",
+            "O1\n/2X1.\n#110=#111\n/2X1.\n#3=#5021\n#110=#111\n#110=#111\n#110=#111\nM30\n",
             "O9001\n#101=1\n#101=2\n#101=3\n#101=#1\n#101=2\n#101=2\nX1.\n#101=2\n#101=2\nM99\n",
         ] {
             let found = in_pieces(text);

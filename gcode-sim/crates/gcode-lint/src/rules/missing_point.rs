@@ -74,6 +74,7 @@ fn calculator_files(context: &CheckContext<'_>) -> BTreeSet<SourceId> {
         for number in numbers(unit, context.settings).filter(|number| number.digits > 0) {
             *(if number.places.is_some() { &mut *pointed } else { &mut *without }) += 1;
         }
+        *pointed += unit.left_out.points;
     }
     let hardly_has_points = |(pointed, without): (usize, usize)| {
         without >= MANY_NUMBERS.max(POINTLESS_FOR_EACH_POINTED * pointed)
@@ -329,6 +330,17 @@ mod tests {
         assert_eq!(lines(&RULE, &longer.replace("X1\n", "X1.\n")).len(), 9, "two have one");
         let two = format!("{longer}O2\nG0 X7\nM30\n");
         assert_eq!(lines(&RULE, &two), [2], "the file is one finding");
+    }
+
+    /// Moves and calls that a check leaves out have points too: 9 numbers without one for each with one are hardly any.
+    #[test]
+    fn points_of_repeated_blocks_count() {
+        let found = |blocks: &str, count: usize| {
+            messages(&RULE, &format!("O1\nG90\n{}{}M30\n", blocks.repeat(count), "Z5\n".repeat(54))).len()
+        };
+        assert_eq!((found("X1.\n", 7), found("X1.\n", 6)), (54, 1));
+        assert_eq!((found("G65 P9810 X1. F5.\n", 7), found("G65 P9810 X1. F5.\n", 6)), (54, 1));
+        assert_eq!(found("X0. F5.\n", 100), 1, "0 and feeds are no lengths that need a point");
     }
 
     #[test]
