@@ -253,10 +253,7 @@ impl<'a> CheckContext<'a> {
 
     /// Makes a finding that options of the control may remove a note if the control is assumed.
     pub(crate) fn unless_optional(&self, finding: Diagnostic) -> Diagnostic {
-        match self.knowledge {
-            ControlKnowledge::Stated => finding,
-            ControlKnowledge::Assumed => finding.with_severity(Severity::Note).note(CONTROL_ASSUMED),
-        }
+        self.knowledge.unless_optional(finding)
     }
 
     /// Returns the index of the called program if it is under check.

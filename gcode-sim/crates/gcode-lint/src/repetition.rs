@@ -25,6 +25,8 @@ pub(super) struct Repetitions {
     programs: Vec<(ProgramId, Program)>,
     /// Blocks that stand for others, by text and offset.
     stand_ins: BTreeSet<(SourceId, u32)>,
+    /// One of them has a finding.
+    stand_for_found: bool,
     /// A block within a run has a sequence number.
     has_numbers: bool,
     /// What is left out, by program.
@@ -184,15 +186,19 @@ impl Repetitions {
         self.has_numbers
     }
 
-    /// Returns true if one of the blocks that stand for others has a finding, but for those about all blocks of a program, which
-    /// know of what is left out.
-    pub(super) fn stand_for_found(&self, findings: &[Diagnostic]) -> bool {
-        findings.iter().any(|finding| {
+    /// Returns true if one of the blocks that stand for others has a finding.
+    pub(super) fn stand_for_found(&self) -> bool {
+        self.stand_for_found
+    }
+
+    /// Notes findings; those about all blocks of a program know of what is left out.
+    pub(super) fn note_found(&mut self, findings: &[Diagnostic]) {
+        self.stand_for_found |= findings.iter().any(|finding| {
             let place = finding.backtrace.as_ref().map(|place| (place.block.source, place.block.start));
             finding.kind != rules::DOUBLED_N
                 && finding.kind != rules::MISSING_PROGRAM
                 && place.is_some_and(|place| self.stand_ins.contains(&place))
-        })
+        });
     }
 
     /// Returns what is left out of a program.
