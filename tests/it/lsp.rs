@@ -247,3 +247,20 @@ fn a_diagnostic_links_the_page_of_its_code_for_a_client_that_follows_links() {
         assert!(page.contains("missing-n"), "{page}");
     }
 }
+
+#[test]
+fn the_name_of_a_rule_that_is_turned_off_links_its_page() {
+    let mut client = Client::start();
+    client.initialize();
+    let uri = "file:///nowhere/O0001.nc";
+    let text = "O0001 (CHECK-OFF MISSING-N, NO-SUCH-RULE)\nM30 (NOT MISSING-N)\n";
+    let document = json!({ "uri": uri, "languageId": "nc", "version": 1, "text": text });
+    client.send(json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } }));
+    let answer = client.ask(7, "textDocument/documentLink", json!({ "textDocument": { "uri": uri } }));
+    let links = answer["result"].as_array().unwrap();
+    assert_eq!(links.len(), 1, "{answer}");
+    assert_eq!(links[0]["range"]["start"], json!({ "line": 0, "character": 17 }));
+    assert_eq!(links[0]["range"]["end"], json!({ "line": 0, "character": 26 }));
+    let page = std::fs::read_to_string(links[0]["target"].as_str().unwrap().strip_prefix("file://").unwrap());
+    assert!(page.unwrap().contains("missing-n"));
+}

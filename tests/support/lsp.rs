@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use gcode_lsp::{Ending, serve};
+use gcode_lsp::{SessionEnd, serve};
 use gcode_sim::cli::lsp::EditorHost;
 use lsp_server::{Connection, Message, Notification, Request, Response};
 use serde_json::{Value, json};
@@ -55,7 +55,7 @@ pub(crate) fn run(case: &Case) {
 struct Session<'a> {
     folder: &'a Path,
     client: Connection,
-    server: Option<JoinHandle<Ending>>,
+    server: Option<JoinHandle<SessionEnd>>,
     received: VecDeque<Message>,
     next_id: i32,
     asked: Option<i32>,
@@ -180,7 +180,7 @@ impl<'a> Session<'a> {
         self.ask("shutdown", Value::Null);
         assert_eq!(self.answer().result, Some(Value::Null));
         self.notify("exit", Value::Null);
-        assert_eq!(self.server.take().unwrap().join().unwrap(), Ending::Shutdown);
+        assert_eq!(self.server.take().unwrap().join().unwrap(), SessionEnd::Shutdown);
     }
 
     fn uri(&self, name: &str) -> String {

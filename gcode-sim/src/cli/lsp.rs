@@ -22,7 +22,7 @@ use crate::report::run::{RunReport, StopRecorder};
 use gcode_control::Control;
 use gcode_lang::program::Library;
 use gcode_lang::source::Bytes;
-use gcode_lsp::{Ending, Host, LibrarySource, serve};
+use gcode_lsp::{Host, LibrarySource, SessionEnd, serve};
 use gcode_part::{NominalPart, Total};
 use gcode_prove::{Ask, Setup, Watch, prove};
 use gcode_review::Revision;
@@ -57,8 +57,8 @@ pub(super) fn run(_: &Arguments) -> Result<ExitStatus, UsageError> {
     writer.finish();
     host.remove_pages();
     Ok(match ending {
-        Ending::Shutdown => ExitStatus::Passed,
-        Ending::Exit => ExitStatus::Failed,
+        SessionEnd::Shutdown => ExitStatus::Passed,
+        SessionEnd::Exit => ExitStatus::Failed,
     })
 }
 

@@ -49,6 +49,17 @@ pub(crate) struct CheckContext<'a> {
     pub planner: Mutex<Option<StaticPlanner>>,
 }
 
+/// What rules want to know of the blocks of a program that are left out of a check.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LeftOutBlocks {
+    /// Their sequence numbers, in the order of the blocks.
+    pub numbers: Vec<LeftOutNumber>,
+    /// How many calls are left out for the one of the block at an offset.
+    pub calls: BTreeMap<u32, usize>,
+    /// Number of their lengths and angles other than 0 that have a decimal point.
+    pub points: usize,
+}
+
 /// Sequence number of a block that is left out of a check.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LeftOutNumber {
@@ -126,8 +137,7 @@ pub(crate) struct ProgramUnit<'a> {
     components: OnceLock<Vec<usize>>,
     /// States without arguments, see `vacancy`.
     pub states_without_arguments: OnceLock<States>,
-    /// Sequence numbers of the blocks that are left out, in the order of the blocks.
-    pub left_out_numbers: Vec<LeftOutNumber>,
+    pub left_out: LeftOutBlocks,
     /// Piece of a longer program, of which the other blocks are not here.
     pub piece: Option<Piece>,
     other_units: PossibleUnits,
@@ -258,10 +268,7 @@ impl<'a> CheckContext<'a> {
 
     /// Makes a finding that options of the control may remove a note if the control is assumed.
     pub(crate) fn unless_optional(&self, finding: Diagnostic) -> Diagnostic {
-        match self.knowledge {
-            ControlKnowledge::Stated => finding,
-            ControlKnowledge::Assumed => finding.with_severity(Severity::Note).note(CONTROL_ASSUMED),
-        }
+        self.knowledge.unless_optional(finding)
     }
 
     /// Returns the index of the called program if it is under check.
@@ -338,7 +345,7 @@ impl<'a> ProgramUnit<'a> {
             modes: OnceLock::new(),
             components: OnceLock::new(),
             states_without_arguments: OnceLock::new(),
-            left_out_numbers: Vec::new(),
+            left_out: LeftOutBlocks::default(),
             piece,
             other_units,
             commanded_units: OnceLock::new(),

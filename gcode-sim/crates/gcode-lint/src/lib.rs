@@ -66,6 +66,7 @@ use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::KnownBlocks;
 use loader::Loader;
 use piece_ends::PieceSizes;
+use pieces::PieceRules;
 pub use variables::variables_read;
 
 /// Result of a check: the findings and the texts they refer to.
@@ -77,6 +78,8 @@ pub struct CheckResult {
     pub programs: usize,
     /// Findings in the order of the programs and their blocks.
     pub findings: Vec<Diagnostic>,
+    /// Number of findings beyond the limit.
+    pub left_over: usize,
     /// Blocks of the first text, for [`check_edited`].
     pub blocks: CheckedBlocks,
 }
@@ -88,6 +91,30 @@ pub enum ControlKnowledge {
     Stated,
     /// The settings are the defaults: options and codes of the machine builder may add what they lack.
     Assumed,
+}
+
+impl ControlKnowledge {
+    /// Makes a finding that options of the control may remove a note if the control is assumed.
+    fn unless_optional(self, finding: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Stated => finding,
+            Self::Assumed => finding.with_severity(Severity::Note).note(CONTROL_ASSUMED),
+        }
+    }
+}
+
+/// Limit of the findings that are kept of a program with more than 100,000 blocks: an editor shows no more.
+#[derive(Clone, Copy)]
+pub struct FindingLimit<'a> {
+    /// Largest number of findings of a kind, the first in the text.
+    pub of_kind: usize,
+    /// Returns true for a finding that is shown; no other one is kept.
+    pub is_shown: &'a dyn Fn(&Diagnostic) -> bool,
+}
+
+impl FindingLimit<'_> {
+    /// Keeps all findings.
+    pub const NONE: Self = Self { of_kind: usize::MAX, is_shown: &|_| true };
 }
 
 /// Checks all programs of a file and the programs that they call.
@@ -113,7 +140,7 @@ pub fn check_loaded(
     knowledge: ControlKnowledge,
     library: &mut impl Library,
 ) -> CheckResult {
-    check_known(memory, KnownBlocks::default(), (settings, knowledge), library)
+    check_known((memory, KnownBlocks::default()), (settings, knowledge), FindingLimit::NONE, library)
 }
 
 /// Checks a file as [`check_loaded`] does. Blocks of an earlier state of its text are not read again where it is the same, and
@@ -122,71 +149,76 @@ pub fn check_edited(
     (name, bytes): (String, Bytes),
     before: CheckedBlocks,
     control: (&Settings, ControlKnowledge),
+    limit: FindingLimit<'_>,
     library: &mut impl Library,
 ) -> CheckResult {
     let known = before.moved_to(&bytes, control.0);
     let mut memory = Memory::default();
     memory.load_known(name, bytes, &known);
-    check_known(memory, known, control, library)
+    check_known((memory, known), control, limit, library)
 }
 
 fn check_known(
-    memory: Memory,
-    known: KnownBlocks,
-    control: (&Settings, ControlKnowledge),
+    texts: (Memory, KnownBlocks),
+    (settings, knowledge): (&Settings, ControlKnowledge),
+    limit: FindingLimit<'_>,
     library: &mut impl Library,
 ) -> CheckResult {
-    let mut result = check_sized((memory, known), control, library, PieceSizes::USUAL);
+    let rules = PieceRules { knowledge, sizes: PieceSizes::USUAL, limit };
+    let mut result = check_sized(texts, settings, library, rules);
     text_behind_end::leave_out(&mut result);
     result
 }
 
 fn check_sized(
     (mut memory, mut known): (Memory, KnownBlocks),
-    control: (&Settings, ControlKnowledge),
+    settings: &Settings,
     library: &mut impl Library,
-    sizes: PieceSizes,
+    rules: PieceRules<'_>,
 ) -> CheckResult {
-    let mut loader = Loader::new(&mut memory, control.0, library);
-    loader.load_found(&mut known, sizes.whole);
+    let mut loader = Loader::new(&mut memory, settings, library);
+    loader.load_found(&mut known, rules.sizes.whole);
     if loader.may_numbers_matter() {
-        loader.restore(sizes.whole);
+        loader.restore(rules.sizes.whole);
     }
-    let mut findings = check_programs(&mut loader, &mut known, control.1, sizes);
-    if loader.repetitions.stand_for_found(&findings) {
-        loader.restore(sizes.whole);
-        findings = check_programs(&mut loader, &mut known, control.1, sizes);
+    let mut found = check_programs(&mut loader, &mut known, rules);
+    if loader.repetitions.stand_for_found() {
+        loader.restore(rules.sizes.whole);
+        found = check_programs(&mut loader, &mut known, rules);
     }
+    let (findings, left_over) = found;
     let Loader { loaded, long, .. } = loader;
     let programs = loaded.len() + long.len();
     let blocks = match long.is_empty() {
-        true => CheckedBlocks::new(&memory, control.0, loaded),
+        true => CheckedBlocks::new(&memory, settings, loaded),
         false => CheckedBlocks::default(),
     };
-    CheckResult { programs, memory, findings, blocks }
+    CheckResult { programs, memory, findings, left_over, blocks }
 }
 
-/// Returns the findings of all programs: the long ones in pieces if that is possible, otherwise they are loaded too.
+/// Returns the findings of all programs, and the number of those beyond the limit: the long ones in pieces if that is possible,
+/// otherwise they are loaded too.
 fn check_programs<L: Library>(
     loader: &mut Loader<'_, L>,
     known: &mut KnownBlocks,
-    knowledge: ControlKnowledge,
-    sizes: PieceSizes,
-) -> Vec<Diagnostic> {
+    rules: PieceRules<'_>,
+) -> (Vec<Diagnostic>, usize) {
     if !loader.long.is_empty() {
-        if let Some(findings) = pieces::findings(loader, knowledge, sizes) {
-            return findings;
+        if let Some(found) = pieces::findings(loader, rules) {
+            return found;
         }
         loader.load_long(known);
     }
     let units = std::mem::take(&mut loader.loaded);
-    let mut context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+    let mut context =
+        CheckContext::new(loader.memory, (loader.settings, rules.knowledge), units, rules::codes());
     for unit in &mut context.units {
-        unit.left_out_numbers = loader.repetitions.take_numbers(unit.id);
+        unit.left_out = loader.repetitions.left_out(unit.id);
     }
     let findings = rules::findings(&context);
     loader.loaded = context.into_loaded();
-    findings
+    loader.repetitions.note_found(&findings);
+    (findings, 0)
 }
 
 impl CheckResult {

@@ -6,6 +6,7 @@ use gcode_lang::source::Span;
 use super::locals::Locals;
 use super::possible_modes::PossibleModes;
 use super::role::Role;
+use super::rules;
 use super::units::PossibleUnits;
 
 /// Place of a piece in its program, and what the pieces before it leave.
@@ -40,7 +41,7 @@ impl PieceEntry {
             (Some(mine), Some(others)) => mine.join(others),
             (mine, others) => *mine = mine.or(others),
         }
-        self.pending_move = self.pending_move.or(other.pending_move);
+        self.pending_move = rules::later(self.pending_move, other.pending_move);
     }
 }
 

@@ -12,7 +12,6 @@ use gcode_lang::program::{Library, OpIndex, Program, ProgramId};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::KnownBlocks;
 
-use super::ControlKnowledge;
 use super::context::{CheckContext, LoadedProgram, ProgramUnit, Role};
 use super::control_flow::ControlFlowGraph;
 use super::literal;
@@ -23,20 +22,39 @@ use super::parameters::has_open_parameter_input;
 use super::piece::{Piece, PieceEntry, PieceStart};
 use super::piece_ends::{PieceSizes, piece_end};
 use super::rules::{
-    self, alarming_cancel, doubled_numbers, limits_lookahead, pending_moves, sequence_numbers,
+    self, PointCounts, alarming_cancel, doubled_numbers, limits_lookahead, pending_moves, point_counts,
+    sequence_numbers,
 };
 use super::suppression::{Suppression, suppressions};
 use super::units::{PossibleUnits, unit_in_force};
 use super::unset_reads::entry_locals;
 use super::vacancy::states_without_arguments;
+use super::{ControlKnowledge, FindingLimit};
 
 /// Most blocks behind a piece to which its jumps lead: mostly they are the ends and the alarms of a program.
 const MAX_FAR_TARGETS: usize = 200;
+
+/// How long programs are checked, and what is kept of their findings.
+#[derive(Clone, Copy)]
+pub(super) struct PieceRules<'a> {
+    pub knowledge: ControlKnowledge,
+    pub sizes: PieceSizes,
+    pub limit: FindingLimit<'a>,
+}
 
 /// What the pieces of a program have in common so far.
 #[derive(Default)]
 struct WholeProgram {
     findings: Vec<Diagnostic>,
+    /// Number of findings of each kind that are kept.
+    kept: BTreeMap<&'static str, usize>,
+    /// Number of findings of each kind beyond the limit.
+    left_over: BTreeMap<&'static str, usize>,
+    /// A local is read before it is set.
+    has_unset: bool,
+    points: PointCounts,
+    /// The first finding about a missing point, and the number of all of them.
+    missing_points: Option<(Diagnostic, usize)>,
     suppressions: Vec<Suppression>,
     numbers: Vec<(u32, Span)>,
     jumps: BTreeSet<u32>,
@@ -53,25 +71,26 @@ struct WholeProgram {
 /// The check of a program in pieces is not possible.
 struct NotInPieces;
 
-/// Returns the findings of all programs; `None` if a long one has to be checked as a whole.
+/// Returns the findings of all programs, and the number of those beyond the limit; `None` if a long one has to be checked as a whole.
 pub(super) fn findings<L: Library>(
     loader: &mut Loader<'_, L>,
-    knowledge: ControlKnowledge,
-    sizes: PieceSizes,
-) -> Option<Vec<Diagnostic>> {
+    rules: PieceRules<'_>,
+) -> Option<(Vec<Diagnostic>, usize)> {
     let mut of_long = Vec::new();
     for id in loader.long.clone() {
-        let found = findings_of_program(loader, id, knowledge, sizes).ok()?;
+        let found = findings_of_program(loader, id, rules).ok()?;
         of_long.push((id, found));
     }
-    let mut found = findings_of_others(loader, &mut of_long, knowledge);
+    let mut found = findings_of_others(loader, &mut of_long, rules.knowledge);
+    let mut left_over = 0;
     for (id, mut program) in of_long {
+        left_over += program.left_over.values().sum::<usize>();
         rules::put_pieces_in_order(&mut program.findings, &program.suppressions);
         found.push((id, program.findings));
     }
     let is_called = |id: &ProgramId| loader.is_called(*id);
     found.sort_by_key(|(id, _)| if is_called(id) { ProgramId(u32::MAX) } else { *id });
-    Some(found.into_iter().flat_map(|(_, found)| found).collect())
+    Some((found.into_iter().flat_map(|(_, found)| found).collect(), left_over))
 }
 
 /// Checks the programs that are loaded, with the calls of the long ones. Adds what is found of these calls together.
@@ -93,9 +112,13 @@ fn findings_of_others<L: Library>(
         let calls = LoadedProgram::new(loader.memory, *id, &mut none, loader.settings);
         units.push(LoadedProgram { other_units: found.units, ..calls });
     }
-    let context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+    let mut context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+    for unit in &mut context.units {
+        unit.left_out = loader.repetitions.left_out(unit.id);
+    }
     let of_unit = |unit: &ProgramUnit<'_>| (unit.id, rules::findings_in_program(&context, unit));
-    let of_others = context.units[..others].iter().map(of_unit).collect();
+    let of_others: Vec<_> = context.units[..others].iter().map(of_unit).collect();
+    of_others.iter().for_each(|(_, found)| loader.repetitions.note_found(found));
     for ((_, found), calls) in long.iter_mut().zip(&context.units[others..]) {
         found.findings.extend(rules::missing_programs(&context, calls));
     }
@@ -112,18 +135,17 @@ fn findings_of_others<L: Library>(
 fn findings_of_program<L: Library>(
     loader: &mut Loader<'_, L>,
     id: ProgramId,
-    knowledge: ControlKnowledge,
-    sizes: PieceSizes,
+    rules: PieceRules<'_>,
 ) -> Result<WholeProgram, NotInPieces> {
     let whole = loader.memory.get(id);
     let part = whole.part(0..0);
     let whole = loader.memory.replace(id, part);
     let suggested = Role::of_uncalled(whole.number(), (false, false));
-    let mut result = findings_as(loader, (id, &whole, suggested), knowledge, sizes);
+    let mut result = findings_as(loader, (id, &whole, suggested), rules);
     if let Ok(found) = &result {
         let role = Role::of_uncalled(whole.number(), (found.returns, found.ends));
         if role != suggested {
-            result = findings_as(loader, (id, &whole, role), knowledge, sizes);
+            result = findings_as(loader, (id, &whole, role), rules);
         }
     }
     loader.memory.replace(id, whole);
@@ -134,15 +156,14 @@ fn findings_of_program<L: Library>(
 fn findings_as<L: Library>(
     loader: &mut Loader<'_, L>,
     (id, whole, role): (ProgramId, &Program, Role),
-    knowledge: ControlKnowledge,
-    sizes: PieceSizes,
+    rules: PieceRules<'_>,
 ) -> Result<WholeProgram, NotInPieces> {
     let mut found = WholeProgram::default();
     let mut start = PieceStart::of_program(role);
     let mut first = 0;
     let mut far: BTreeMap<OpIndex, PieceEntry> = BTreeMap::new();
     while first < whole.block_count() {
-        let end = piece_end(loader.memory, (id, whole), first, sizes).ok_or(NotInPieces)?;
+        let end = piece_end(loader.memory, (id, whole), first, rules.sizes).ok_or(NotInPieces)?;
         let is_last = end == whole.block_count();
         loader.memory.replace(id, whole.part(first..end));
         let mut none = KnownBlocks::default();
@@ -161,12 +182,16 @@ fn findings_as<L: Library>(
         // The piece is the last unit.
         let mut units = std::mem::take(&mut loader.loaded);
         units.push(program);
-        let context = CheckContext::new(loader.memory, (loader.settings, knowledge), units, rules::codes());
+        let control = (loader.settings, rules.knowledge);
+        let context = CheckContext::new(loader.memory, control, units, rules::codes());
         let result = match context.units.last() {
-            Some(unit) => found.add(&context, unit, (whole, first..end), &loader.long).inspect(|_| {
+            Some(unit) => found.add(&context, unit, (whole, first..end), &loader.long).map(|(start, new)| {
+                loader.repetitions.note_found(&new);
+                found.keep(new, rules.limit);
                 for (target, entry) in far_entries(&context, unit, &targets) {
                     far.entry(target).and_modify(|known| known.join(entry)).or_insert(entry);
                 }
+                start
             }),
             None => Err(NotInPieces),
         };
@@ -175,29 +200,72 @@ fn findings_as<L: Library>(
         start = result?;
         first = end;
     }
-    let has_unset = |finding: &Diagnostic| finding.kind == rules::UNSET_VARIABLE;
-    if role == Role::Main && !found.has_exit && found.findings.iter().any(has_unset) {
+    if role == Role::Main && !found.has_exit && found.has_unset {
         return Err(NotInPieces);
     }
+    found.points.pointed += loader.repetitions.left_out(id).points;
+    let source = whole.span.source;
+    let is_other = |other: &ProgramId| *other != id && loader.memory.get(*other).span.source == source;
+    // The programs of a file count together.
+    if found.missing_points.is_some() && loader.memory.ids().any(|other| is_other(&other)) {
+        return Err(NotInPieces);
+    }
+    found.judge_missing_points(rules.knowledge);
     let numbers = std::mem::take(&mut found.numbers);
     found.findings.extend(doubled_numbers(loader.memory.sources(), numbers, &found.jumps));
     Ok(found)
 }
 
 impl WholeProgram {
-    /// Adds what is found in a piece. Returns the state behind it.
+    /// Keeps the findings of a piece that are not suppressed, as far as the limit allows.
+    fn keep(&mut self, mut new: Vec<Diagnostic>, limit: FindingLimit<'_>) {
+        self.has_unset |= new.iter().any(|finding| finding.kind == rules::UNSET_VARIABLE);
+        let missing_points = new.iter().filter(|finding| finding.kind == rules::MISSING_POINT);
+        for finding in missing_points {
+            self.missing_points.get_or_insert_with(|| (finding.clone(), 0)).1 += 1;
+        }
+        // A suppression stands in the head of the program or at the block itself.
+        rules::leave_suppressed(&mut new, &self.suppressions);
+        new.retain(|finding| {
+            if !(limit.is_shown)(finding) {
+                return false;
+            }
+            let kept = self.kept.entry(finding.kind.code).or_default();
+            let is_kept = *kept < limit.of_kind;
+            *(if is_kept { kept } else { self.left_over.entry(finding.kind.code).or_default() }) += 1;
+            is_kept
+        });
+        self.findings.extend(new);
+    }
+
+    /// Judges the missing points of all pieces together, as the rule does in a program that is checked as a whole.
+    fn judge_missing_points(&mut self, knowledge: ControlKnowledge) {
+        let is_one = |finding: &Diagnostic| finding.kind == rules::MISSING_POINT;
+        let are_none = self.points.are_increments();
+        if !are_none && !self.points.hardly_have_points() {
+            return;
+        }
+        self.left_over.remove(rules::MISSING_POINT.code);
+        self.findings.retain(|finding| !is_one(finding));
+        let as_whole = self.missing_points.take().filter(|_| !are_none);
+        let as_whole =
+            as_whole.map(|(first, count)| rules::missing_points_as_whole(first, count - 1, knowledge));
+        self.findings.extend(as_whole);
+    }
+
+    /// Adds what a piece knows of the program. Returns the state behind it, and its findings.
     fn add(
         &mut self,
         context: &CheckContext<'_>,
         unit: &ProgramUnit<'_>,
         (whole, blocks): (&Program, Range<OpIndex>),
         long: &[ProgramId],
-    ) -> Result<PieceStart, NotInPieces> {
+    ) -> Result<(PieceStart, Vec<Diagnostic>), NotInPieces> {
         let is_last = blocks.end == whole.block_count();
         if leads_elsewhere(context, unit, (whole, &blocks), long) || !is_last && !unit.reaches_end {
             return Err(NotInPieces);
         }
-        let findings = rules::findings_in(context, unit);
+        let mut findings = rules::findings_in(context, unit);
         if findings.iter().any(|finding| rests_on_whole(context, finding)) {
             return Err(NotInPieces);
         }
@@ -213,7 +281,8 @@ impl WholeProgram {
         self.ends |= ends;
         self.has_exit |= unit.has_exit();
         // A program that is not found is one finding, whatever the number of its calls.
-        self.findings.extend(findings.into_iter().filter(|finding| finding.kind != rules::MISSING_PROGRAM));
+        findings.retain(|finding| finding.kind != rules::MISSING_PROGRAM);
+        self.points.add(point_counts(unit, context.settings));
         self.suppressions.extend(suppressions(unit));
         self.numbers.extend(sequence_numbers(unit));
         self.jumps.extend(unit.flow.jumps.iter().filter(|jump| !jump.is_return).map(|jump| jump.number));
@@ -226,9 +295,9 @@ impl WholeProgram {
             self.calls.extend(is_new.then_some(blocks.start + call.block));
         }
         if is_last {
-            return Ok(PieceStart::of_program(unit.role));
+            return Ok((PieceStart::of_program(unit.role), findings));
         }
-        Ok(PieceStart {
+        let start = PieceStart {
             modes: modes_before(context, unit)[end].ok_or(NotInPieces)?,
             locals: states_without_arguments(unit)[end].ok_or(NotInPieces)?,
             units: (self.units, judged_in),
@@ -236,7 +305,8 @@ impl WholeProgram {
                 true => None,
                 false => pending_moves(context, unit)[end].flatten(),
             },
-        })
+        };
+        Ok((start, findings))
     }
 }
 
@@ -333,6 +403,9 @@ mod tests {
     /// Pieces of two blocks and more.
     const SMALL: PieceSizes = PieceSizes { whole: 3, piece: 2, window: 4 };
 
+    const SMALL_RULES: PieceRules<'_> =
+        PieceRules { knowledge: ControlKnowledge::Stated, sizes: SMALL, limit: FindingLimit::NONE };
+
     fn memory(text: &str) -> Memory {
         let mut memory = Memory::default();
         memory.load("O1.nc", text.as_bytes().to_vec());
@@ -345,7 +418,22 @@ mod tests {
         let mut loader = Loader::new(&mut memory, &settings, &mut library);
         loader.load_found(&mut KnownBlocks::default(), SMALL.whole);
         assert!(!loader.long.is_empty(), "{text}");
-        findings(&mut loader, ControlKnowledge::Stated, SMALL)
+        findings(&mut loader, SMALL_RULES).map(|(findings, _)| findings)
+    }
+
+    #[test]
+    fn findings_beyond_a_limit_are_counted() {
+        let faults = "G0 Y1.\n#34=1\nG0 X2.\n#101=SQRT[-4]\nG0 Z1.\n".repeat(4);
+        let text = format!("O1\n(CHECK-OFF ROUNDED-PI)\n#102=3.14*#101\n{faults}M30\n");
+        let of_kind = |finding: &Diagnostic| finding.kind.code != "constant-alarm";
+        let limit = FindingLimit { of_kind: 3, is_shown: &of_kind };
+        let settings = Settings::default();
+        let texts = (memory(&text), KnownBlocks::default());
+        let rules = PieceRules { limit, ..SMALL_RULES };
+        let found = check_sized(texts, &settings, &mut NoLibrary, rules);
+        let codes: Vec<_> = found.findings.iter().map(|finding| finding.code().into_owned()).collect();
+        assert_eq!(codes, ["no-such-variable"; 3], "the first of a kind that is shown");
+        assert_eq!(found.left_over, 1, "neither those that are not shown nor the suppressed one");
     }
 
     fn shown(findings: &[Diagnostic]) -> Vec<String> {
@@ -371,6 +459,9 @@ mod tests {
             "O1\n#101=1\n#101=2\nIF[#2EQ#0]GOTO90\n#101=#1\n#2=1\n#101=2\nX1.\nIF[#101EQ5.]GOTO90\n#101=2\n#101=2\nM30\n\
              N90#101=#2\n#101=1\n#101=1\n#101=1\nM30\n",
             "O1\nG1\n#101=1\n#101=2\nIF[#102EQ1]GOTO90\n#101=2\nF9.\n#101=2\n#101=2\n#101=2\n#101=2\nN90X5.\n#101=2\nM30\n",
+            "O1\n/2X1.\n#110=#111\n/2X1.\n#3=#5021\n#110=#111\n#110=#111\n#110=#111\nM30\n",
+            "O1\nX1000\n#101=2\nX1.\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nM30\n",
+            "O1\nX1000\n#101=2\nX5000\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nM30\n",
             "O9001\n#101=1\n#101=2\n#101=3\n#101=#1\n#101=2\n#101=2\nX1.\n#101=2\n#101=2\nM99\n",
         ] {
             let found = in_pieces(text);
@@ -385,7 +476,6 @@ mod tests {
             "O1\nN1#101=1\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nGOTO1\n",
             "O1\nN1#101=1\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nGOTO#1\n",
             "O1\nM30\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n",
-            "O1\nX1000\n#101=2\nX1.\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nM30\n",
         ] {
             assert!(in_pieces(text).is_none(), "{text}");
         }
@@ -395,7 +485,7 @@ mod tests {
     const BLOCKS: &str = "(N[1-4]0 ?)?(G0?[0-3] ?)?X[0-9]\\.(Y[0-9]{1,2}\\.)?( F[0-9]0\\.)?|M30|M99|G81Z-1\\.R1\\.|#1=#2|#[1-4]=#[1-4]\\+1\
         |IF\\[#1EQ#0\\]GOTO[1-4]0|M98P2|G65P2A1\\.|WHILE\\[#1LT2\\]DO1|END1|\\(A\\)|O2|IF\\[#1EQ2\\]THEN#3000=1\\(A\\)|G4X#7|/2X1\\.\
         |#34=#[1-4]|#100=#10[0-9]\\+1|#101=#450|#2=#[1-4]\\*3\\.14|#101=SQRT\\[-4\\]|#3=#5021|IF\\[#0EQ#0\\]GOTO20\
-        |\\(CHECK-OFF ROUNDED-PI\\)|X#101|G10L52|G11|N[1-9]0|G80|G66P2|G67|#33=#0";
+        |\\(CHECK-OFF ROUNDED-PI\\)|X#101|G10L52|G11|N[1-9]0|G80|G66P2|G67|#33=#0|X[1-9]0{0,3}";
 
     proptest! {
         #[test]
@@ -408,9 +498,8 @@ mod tests {
             let end = if is_ended { "M30\n" } else { "" };
             let text = format!("O1\n{blocks}{end}(THE END OF THE WHOLE PROGRAM)\n");
             let settings = Settings::default();
-            let control = (&settings, ControlKnowledge::Stated);
-            let CheckResult { findings, programs, .. } =
-                check_sized((memory(&text), KnownBlocks::default()), control, &mut NoLibrary, SMALL);
+            let texts = (memory(&text), KnownBlocks::default());
+            let CheckResult { findings, programs, .. } = check_sized(texts, &settings, &mut NoLibrary, SMALL_RULES);
             let whole = check("O1.nc", text.as_bytes(), &settings, &mut NoLibrary);
             prop_assert_eq!(shown(&findings), shown(&whole.findings), "{}", text);
             prop_assert_eq!(programs, whole.programs);

@@ -35,13 +35,13 @@ proptest! {
         let named = |text: &[u8]| ("O1.nc".to_owned(), Bytes::from(text));
         let (stated, fanuc) = (ControlKnowledge::Stated, Settings::default());
         let mut before =
-            check_edited(named(&text), CheckedBlocks::default(), (&fanuc, stated), &mut NoLibrary);
+            check_edited(named(&text), CheckedBlocks::default(), (&fanuc, stated), FindingLimit::NONE, &mut NoLibrary);
         for (at, length, new, is_haas) in edits {
             let from = at.index(text.len());
             text.splice(from..(from + length).min(text.len()), new.bytes());
             // The editor's settings may name another control.
             let settings = if is_haas { &haas } else { &fanuc };
-            let edited = check_edited(named(&text), before.blocks, (settings, stated), &mut NoLibrary);
+            let edited = check_edited(named(&text), before.blocks, (settings, stated), FindingLimit::NONE, &mut NoLibrary);
             let fresh = check("O1.nc", &text[..], settings, &mut NoLibrary);
             prop_assert_eq!(shown(&edited), shown(&fresh), "{}", String::from_utf8_lossy(&text));
             prop_assert_eq!(edited.programs, fresh.programs);
@@ -64,7 +64,13 @@ fn a_long_program_is_checked_after_an_edit_as_before_it() {
     let control = (&settings, ControlKnowledge::Stated);
     let check_lines = |lines: &[String], before| {
         let text = format!("O1\n{}\nM30\n", lines.join("\n"));
-        check_edited(("O1.nc".to_owned(), text.into_bytes().into()), before, control, &mut NoLibrary)
+        check_edited(
+            ("O1.nc".to_owned(), text.into_bytes().into()),
+            before,
+            control,
+            FindingLimit::NONE,
+            &mut NoLibrary,
+        )
     };
     let places = |checked: &CheckResult| -> Vec<(String, u32)> {
         let line =

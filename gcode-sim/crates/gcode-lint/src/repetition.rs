@@ -1,67 +1,97 @@
-//! Repeated moves, left out of a check: they tell no rule anything that an earlier move of the same form does not.
+//! Repeated moves and macro calls, left out of a check: they tell no rule anything that an earlier block of the same form does not.
 //!
-//! A long file consists of moves of axis words with decimal points. No rule depends on their values and comments, only on the form
-//! of a block (its letters and its code) and the modes in which it stands. In a run of moves one block of each form in each mode
-//! stands for all of them, and the last block for the end of the run. If a rule finds something at such a block, or a jump
-//! may lead to a sequence number that is left out, all blocks are checked. The rule of repeated sequence numbers knows those
-//! that are left out.
+//! A long file consists of moves of axis words, or of calls, with decimal points. No rule depends on their values and comments,
+//! only on the form of a block (its letters, its code, the called program) and the modes in which it stands. In a run of such
+//! blocks one of each form in each mode stands for all of them, and the last move and the last call of each program for the end
+//! of the run. If a rule finds something at such a block, or a jump may lead to a sequence number that is left out, all blocks
+//! are checked. The rule of repeated sequence numbers knows those that are left out.
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::program::{CallOp, CallTarget, Memory, Op, OpIndex, OpKind, Program, ProgramId, WordOperand};
+use gcode_lang::program::{
+    CallOp, CallTarget, LoweredWord, Memory, NumberBlock, OpIndex, OpKind, Program, ProgramId, WordOperand,
+};
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::KnownBlocks;
 
-use super::context::{LeftOutNumber, LoadedProgram};
+use super::context::{LeftOutBlocks, LeftOutNumber, LoadedProgram};
 use super::{literal, rules};
 
-/// Programs under check of which repeated moves are left out.
+/// Programs under check of which repeated blocks are left out.
 #[derive(Debug, Default)]
 pub(super) struct Repetitions {
     /// The whole programs.
     programs: Vec<(ProgramId, Program)>,
     /// Blocks that stand for others, by text and offset.
     stand_ins: BTreeSet<(SourceId, u32)>,
+    /// One of them has a finding.
+    stand_for_found: bool,
     /// A block within a run has a sequence number.
     has_numbers: bool,
-    /// Sequence numbers that are left out, by program.
-    numbers: BTreeMap<ProgramId, Vec<LeftOutNumber>>,
+    /// What is left out, by program.
+    left_out: BTreeMap<ProgramId, LeftOutBlocks>,
 }
 
-/// Form of a move.
+/// What the blocks of a run do with the modes of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct MoveForm {
-    /// G00 to G03 of the block, in tenths.
-    code: Option<u32>,
-    /// Letters of the other words as bits, A the lowest.
+enum ModeSetter {
+    /// G00 to G03, in tenths.
+    Motion(u32),
+    /// G65 of a program, which may set every mode.
+    Call(u32),
+}
+
+/// Form of a move or of a macro call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct BlockForm {
+    setter: Option<ModeSetter>,
+    /// Letters of the words with numbers as bits, A the lowest.
     letters: u32,
     /// Letters whose numbers have a decimal point.
     pointed: u32,
     has_number: bool,
 }
 
-/// What the moves of a run before a block have set.
+/// Most mode setters of a run: another one begins the next run.
+const MAX_SETTERS: usize = 6;
+
+/// What the blocks of a run before a block have set: each setter once, in the order of its last block.
+///
+/// To set a mode twice is to set it the second time: no earlier block of the same setter matters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct MoveModes {
-    code: Option<u32>,
+struct RunModes {
+    setters: [Option<ModeSetter>; MAX_SETTERS],
     has_feed: bool,
 }
 
-/// A run of moves.
+/// A run of moves and calls.
 #[derive(Debug, Default)]
-struct MoveRun {
-    modes: MoveModes,
+struct BlockRun {
+    modes: RunModes,
     /// The last block has a sequence number.
     is_numbered: bool,
     /// The first block of each form in each mode, as its offset.
-    first: BTreeMap<(MoveModes, MoveForm), u32>,
-    /// The last block and its offset, if it is left out.
-    last_left_out: Option<(OpIndex, u32)>,
+    first: BTreeMap<(RunModes, BlockForm), u32>,
+    /// The last move, and the last call of each program: those that are left out.
+    last_left_out: BTreeMap<Option<u32>, LeftOutBlock>,
+    /// How many calls are left out for each that stands for them.
+    calls: BTreeMap<u32, usize>,
+    /// Number of lengths and angles with a decimal point that are left out.
+    points: usize,
+}
+
+/// Block that is left out, and the one that stands for it.
+#[derive(Clone, Copy, Debug)]
+struct LeftOutBlock {
+    index: OpIndex,
+    start: u32,
+    first: u32,
+    points: usize,
 }
 
 impl Repetitions {
-    /// Replaces a program in memory by one without its repeated moves.
+    /// Replaces a program in memory by one without its repeated blocks.
     pub(super) fn leave_out(&mut self, memory: &mut Memory, id: ProgramId, settings: &Settings) {
         // A code or an address that calls a program may make a call of a move.
         if !settings.code_calls.is_empty() {
@@ -70,50 +100,67 @@ impl Repetitions {
         let program = memory.get(id);
         let source = program.span.source;
         let mut is_left_out = vec![false; program.block_count()];
-        let mut run = MoveRun::default();
+        let mut run = BlockRun::default();
         let mut numbers: Vec<(OpIndex, LeftOutNumber)> = Vec::new();
+        let mut left_out = LeftOutBlocks::default();
         program.visit_number_blocks(|block, read| {
-            let op = read.filter(|(_, comment)| !is_read_by_rule(comment)).map(|(op, _)| op);
-            let form = op.and_then(|op| MoveForm::of(op, settings).zip(Some(op)));
-            let Some((form, op)) = form else {
-                self.end_run(&std::mem::take(&mut run), source, &mut is_left_out);
+            let read = read.filter(|read| !is_read_by_rule(read.comment));
+            let form = read.and_then(|read| BlockForm::of(&read, settings).zip(Some(read)));
+            let Some((form, NumberBlock { number, span, words, .. })) = form else {
+                self.end_run(std::mem::take(&mut run), (source, &mut is_left_out, &mut left_out));
                 return;
             };
-            let start = op.span.start;
             // A jump may lead to a number; where all blocks have one, no jump is likely.
-            if form.has_number && !run.is_numbered {
-                self.end_run(&std::mem::take(&mut run), source, &mut is_left_out);
-            }
+            let begins_numbers = form.has_number && !run.is_numbered;
+            let after = run.modes.after(form).filter(|_| !begins_numbers);
+            let after = after.unwrap_or_else(|| {
+                self.end_run(std::mem::take(&mut run), (source, &mut is_left_out, &mut left_out));
+                run.modes.after(form).unwrap_or_default()
+            });
             self.has_numbers |= form.has_number && run.is_numbered;
             run.is_numbered = form.has_number;
-            let first = *run.first.entry((run.modes, form)).or_insert(start);
+            let first = *run.first.entry((run.modes, form)).or_insert(span.start);
             // A block that changes the mode stays: the rest would be judged in another one.
-            let keeps_mode = form.code.is_none() || form.code == run.modes.code;
-            is_left_out[block] = keeps_mode && first != start;
-            run.last_left_out = None;
+            is_left_out[block] = after.setters == run.modes.setters && first != span.start;
+            let called = form.called();
+            run.last_left_out.remove(&called);
             if is_left_out[block] {
                 self.stand_ins.insert((source, first));
-                run.last_left_out = Some((block, start));
-                let numbered = op.number.map(|number| (block, LeftOutNumber { number, block: op.span }));
-                numbers.extend(numbered);
+                let points = form.points(words);
+                run.points += points;
+                let last = LeftOutBlock { index: block, start: span.start, first, points };
+                run.last_left_out.insert(called, last);
+                if called.is_some() {
+                    *run.calls.entry(first).or_default() += 1;
+                }
+                numbers.extend(number.map(|number| (block, LeftOutNumber { number, block: span })));
             }
-            run.modes = run.modes.after(form);
+            run.modes = after;
         });
-        self.end_run(&run, source, &mut is_left_out);
+        self.end_run(run, (source, &mut is_left_out, &mut left_out));
         if is_left_out.contains(&true) {
-            let left_out = numbers.into_iter().filter(|(block, _)| is_left_out[*block]);
-            self.numbers.insert(id, left_out.map(|(_, number)| number).collect());
+            let numbers = numbers.into_iter().filter(|(block, _)| is_left_out[*block]);
+            left_out.numbers = numbers.map(|(_, number)| number).collect();
+            self.left_out.insert(id, left_out);
             let short = program.without(&is_left_out);
             self.programs.push((id, memory.replace(id, short)));
         }
     }
 
-    /// Keeps the last block of a run.
-    fn end_run(&mut self, run: &MoveRun, source: SourceId, is_left_out: &mut [bool]) {
-        if let Some((block, start)) = run.last_left_out {
-            is_left_out[block] = false;
+    /// Keeps the last blocks of a run.
+    fn end_run(
+        &mut self,
+        mut run: BlockRun,
+        (source, is_left_out, left_out): (SourceId, &mut [bool], &mut LeftOutBlocks),
+    ) {
+        for LeftOutBlock { index, start, first, points } in run.last_left_out.into_values() {
+            is_left_out[index] = false;
             self.stand_ins.insert((source, start));
+            run.calls.entry(first).and_modify(|count| *count -= 1);
+            run.points -= points;
         }
+        left_out.calls.append(&mut run.calls);
+        left_out.points += run.points;
     }
 
     /// Puts the programs back that have more than `max_blocks` blocks and that `is_one` accepts. Returns them.
@@ -140,16 +187,23 @@ impl Repetitions {
     }
 
     /// Returns true if one of the blocks that stand for others has a finding.
-    pub(super) fn stand_for_found(&self, findings: &[Diagnostic]) -> bool {
-        findings.iter().any(|finding| {
-            let place = finding.backtrace.as_ref().map(|place| (place.block.source, place.block.start));
-            finding.kind != rules::DOUBLED_N && place.is_some_and(|place| self.stand_ins.contains(&place))
-        })
+    pub(super) fn stand_for_found(&self) -> bool {
+        self.stand_for_found
     }
 
-    /// Returns the sequence numbers that are left out of a program, in the order of the blocks.
-    pub(super) fn take_numbers(&mut self, id: ProgramId) -> Vec<LeftOutNumber> {
-        self.numbers.remove(&id).unwrap_or_default()
+    /// Notes findings; those about all blocks of a program know of what is left out.
+    pub(super) fn note_found(&mut self, findings: &[Diagnostic]) {
+        self.stand_for_found |= findings.iter().any(|finding| {
+            let place = finding.backtrace.as_ref().map(|place| (place.block.source, place.block.start));
+            finding.kind != rules::DOUBLED_N
+                && finding.kind != rules::MISSING_PROGRAM
+                && place.is_some_and(|place| self.stand_ins.contains(&place))
+        });
+    }
+
+    /// Returns what is left out of a program.
+    pub(super) fn left_out(&self, id: ProgramId) -> LeftOutBlocks {
+        self.left_out.get(&id).cloned().unwrap_or_default()
     }
 
     /// Puts the whole programs back.
@@ -171,43 +225,102 @@ fn is_read_by_rule(comment: &[u8]) -> bool {
     READ.iter().any(|word| comment.windows(word.len()).any(|part| part.eq_ignore_ascii_case(word)))
 }
 
-impl MoveForm {
-    /// Returns the form of a block of numbers; `None` if it moves no axis, has more than G00 to G03, axes, the words of an arc
-    /// and F, or has a number that a rule may judge.
-    fn of(op: &Op, settings: &Settings) -> Option<Self> {
-        let OpKind::Words(words) = op.kind() else { return None };
-        let mut form = Self { code: None, letters: 0, pointed: 0, has_number: op.number.is_some() };
+/// Arguments of a macro call that are lengths or angles, and those that a control takes as they are.
+const ARGUMENTS: (&[u8], &[u8]) = (b"ABCIJKQRUVWXYZ", b"DEFHST");
+
+impl BlockForm {
+    /// Returns the form of a block of numbers that a rule does not judge by their values; `None` for any other block.
+    fn of(block: &NumberBlock<'_>, settings: &Settings) -> Option<Self> {
+        let form = Self { setter: None, letters: 0, pointed: 0, has_number: block.number.is_some() };
+        match block.words {
+            [LoweredWord { value: WordOperand::G(650, _), .. }, words @ ..] => form.of_call(words),
+            words => form.of_move(words, settings),
+        }
+    }
+
+    /// Adds the words of a move; `None` if it moves no axis, or has more than G00 to G03, axes, the words of an arc and F.
+    fn of_move(mut self, words: &[LoweredWord], settings: &Settings) -> Option<Self> {
         let mut is_move = false;
-        for word in &words.list {
-            let number = match word.value {
-                WordOperand::G(code @ (0 | 10 | 20 | 30), _) if form.code.is_none() => {
-                    form.code = Some(code);
-                    continue;
-                }
-                WordOperand::Literal(number) => number,
-                _ => return None,
-            };
+        for word in words {
+            if let WordOperand::G(code @ (0 | 10 | 20 | 30), _) = word.value
+                && self.setter.is_none()
+            {
+                self.setter = Some(ModeSetter::Motion(code));
+                continue;
+            }
             let is_axis = settings.axes.find(word.letter).is_some();
             is_move |= is_axis;
             let is_plain = match word.letter {
-                b'F' => number.digits != 0 && !number.negative,
+                b'F' => literal::word_number(word).is_some_and(|feed| 0.0 < feed),
                 letter => (is_axis || b"IJKR".contains(&letter)) && literal::without_point(word).is_none(),
             };
-            let letter = 1 << word.letter.checked_sub(b'A')?;
-            if !is_plain || form.letters & letter != 0 {
-                return None;
-            }
-            form.letters |= letter;
-            form.pointed |= if number.places.is_some() { letter } else { 0 };
+            self.add(word).filter(|()| is_plain)?;
         }
-        is_move.then_some(form)
+        is_move.then_some(self)
+    }
+
+    /// Adds the words of a macro call behind its code; `None` if it has more than the program's number and arguments.
+    fn of_call(mut self, words: &[LoweredWord]) -> Option<Self> {
+        let (measured, others) = ARGUMENTS;
+        for word in words {
+            self.add(word)?;
+            match word.letter {
+                b'P' => self.setter = Some(ModeSetter::Call(literal::word_count(word)?)),
+                letter if measured.contains(&letter) && literal::without_point(word).is_none() => {}
+                letter if others.contains(&letter) => {}
+                _ => return None,
+            }
+        }
+        self.setter.is_some().then_some(self)
+    }
+
+    /// Adds a word with a number; `None` for another one, and for a letter that the block has.
+    fn add(&mut self, word: &LoweredWord) -> Option<()> {
+        let WordOperand::Literal(number) = word.value else { return None };
+        let letter = 1 << word.letter.checked_sub(b'A')?;
+        let is_new = self.letters & letter == 0;
+        self.letters |= letter;
+        self.pointed |= if number.places.is_some() { letter } else { 0 };
+        is_new.then_some(())
+    }
+
+    /// Returns the number of lengths and angles other than 0 with a decimal point among the words.
+    fn points(self, words: &[LoweredWord]) -> usize {
+        let is_measure = |letter: u8| match self.called() {
+            Some(_) => ARGUMENTS.0.contains(&letter),
+            None => letter != b'F',
+        };
+        let is_pointed = |word: &&LoweredWord| match word.value {
+            WordOperand::Literal(number) => number.places.is_some() && number.digits > 0,
+            _ => false,
+        };
+        words.iter().filter(|word| is_measure(word.letter)).filter(is_pointed).count()
+    }
+
+    /// Returns the program that the block calls.
+    fn called(self) -> Option<u32> {
+        match self.setter {
+            Some(ModeSetter::Call(program)) => Some(program),
+            Some(ModeSetter::Motion(_)) | None => None,
+        }
     }
 }
 
-impl MoveModes {
-    fn after(self, form: MoveForm) -> Self {
-        let has_feed = form.letters & 1 << (b'F' - b'A') != 0;
-        Self { code: form.code.or(self.code), has_feed: self.has_feed || has_feed }
+impl RunModes {
+    /// Returns the modes behind a block; `None` if the run has too many setters.
+    fn after(mut self, form: BlockForm) -> Option<Self> {
+        let is_call = form.called().is_some();
+        self.has_feed |= !is_call && form.letters & 1 << (b'F' - b'A') != 0;
+        let Some(new) = form.setter else { return Some(self) };
+        // All codes of motion set the same modes.
+        let is_replaced = |old: ModeSetter| old == new || !is_call && matches!(old, ModeSetter::Motion(_));
+        let kept = self.setters.into_iter().flatten().filter(|old| !is_replaced(*old));
+        let mut setters = [None; MAX_SETTERS];
+        let mut places = setters.iter_mut();
+        for setter in kept.chain([new]) {
+            *places.next()? = Some(setter);
+        }
+        Some(Self { setters, ..self })
     }
 }
 
@@ -275,6 +388,26 @@ mod tests {
         let changes = "O1\nF9.\nG1X1.\nG2X2.R5.\nG1X3.\nG2X4.R5.\nG1X5.\nX6.\nX7.\nX8.\n";
         assert_eq!(left_out(changes), 1);
         assert_eq!(left_out("O1\nX1\nX2\nX3\n"), 0, "without a point");
+        // Behind the first call X1. stands in modes that it may have set. The last call of each program and the last move stay.
+        let calls = "O1\nX1.\nG65P2A1.\nG65P2A2.\nG65 P2A3. (A)\nX2.\nX3.\nG65P2A4.S5\nG65P2A5.\nX4.\nX5.\n";
+        assert_eq!(left_out(calls), 3, "A3., X3. and X4.");
+        let two = "O1\nG65P2A1.\nG65P3\nG65P2A1.\nG65P3\nG65P3\nG65P3\nG65P3\n";
+        assert_eq!(left_out(two), 1, "a call of another program changes the modes");
+        let others = [
+            "G65P2A1",
+            "G65P2L2",
+            "G65P2L2A1.",
+            "G65P2A1.A2.",
+            "G65A1.",
+            "G65P2M98",
+            "G65P#1",
+            "G66P2A1.",
+            "M98P2",
+            "M3G65P2",
+        ];
+        for call in others {
+            assert_eq!(left_out(&format!("O1\n{}", format!("{call}\n").repeat(5))), 0, "{call}");
+        }
         assert_eq!(left_out("O1\nX1.\nX2. (A)\nX3.(B) \nX4.\n"), 2, "comments are none of the form");
         let read = ["(CHECK-OFF MISSING-FEED)", "(IF[#1 EQ 1]goto 5)", "(A)(B)", "(A(B))", "(A", "(A) Y1."];
         for comment in read {
@@ -288,10 +421,18 @@ mod tests {
         let moves = format!(
             "(N[1-4]0 ?)?(G0?[0-3])?(X{number})?(Y{number})?(I{number})?(R{number})?(F[0-9]0\\.?)?( ?\\(A\\) ?)?"
         );
+        let calls = "(N[1-4]0 )?G65 ?P[23](A[0-9]\\.)?(X[0-9]\\.[0-9])?(F[1-9])?( ?\\(A\\))?";
         let others = "N9999 M9|M30|M99|G81Z-1\\.R1\\.|G80|#1=#2|IF\\[#1EQ#0\\]GOTO[1-4]0|GOTO[1-4]0|M98P2|M98P2Q20|WHILE\\[#1LT2\\]DO1|END1\
             |G10L52|G11|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|G40 X1\\.|U5\\.|O2|M3M4|M99P20|X#1";
         let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();
-        prop_oneof![6 => of(&moves), 1 => of(others)]
+        prop_oneof![6 => of(&moves), 3 => of(calls), 1 => of(others)]
+    }
+
+    /// Returns a macro that may set modes, read positions, stop, or not return.
+    fn called() -> impl Strategy<Value = String> {
+        let block = "G0X#24\\.|G1Z[1-2]\\.(F#9)?|G4P10|#101=#5041|M30|M0|G91|G81Z1\\.R1\\.|IF\\[#1EQ#0\\]THEN#3000=1|#2=#1\\*#24|M99P20\
+            |G65P3|IF\\[#0EQ#0\\]GOTO20|N20";
+        vec(proptest::string::string_regex(block).unwrap(), 0..3).prop_map(|blocks| blocks.join("\n"))
     }
 
     proptest! {
@@ -299,10 +440,12 @@ mod tests {
         fn a_check_without_repeated_moves_finds_what_a_check_of_all_blocks_finds(
             blocks in vec((block(), 1_usize..4), 1..25),
             has_feed in any::<bool>(),
+            called in proptest::option::of(called()),
         ) {
             let blocks: String = blocks.iter().map(|(block, times)| format!("{block}\n").repeat(*times)).collect();
             let feed = if has_feed { "F100.\n" } else { "" };
-            let text = format!("O1\n{feed}{blocks}{END}");
+            let called = called.map(|called| format!("M30\nO2\n{called}\nM99\nO3\nX1.\nM99\n")).unwrap_or_default();
+            let text = format!("O1\n{feed}{blocks}{called}{END}");
             let settings = Settings::default();
             let short = check("O1.nc", text.as_bytes(), &settings, &mut NoLibrary).findings;
             let shown = |findings: &[Diagnostic]| {

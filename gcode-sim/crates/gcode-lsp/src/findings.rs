@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use gcode_lang::diag::{Diagnostic as Finding, Severity};
 use gcode_lang::motion::{Backtrace, CallChain};
 use gcode_lang::source::{SourceId, Sources, Span};
-use gcode_lint::{CONTROL_ASSUMED, CheckResult, CheckedBlocks};
+use gcode_lint::{CONTROL_ASSUMED, CheckResult, CheckedBlocks, FindingLimit};
 use lsp_types::{
     CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location,
     NumberOrString, Range, Uri,
@@ -61,11 +61,7 @@ pub(crate) fn check(
     let mut library = setup.library(files);
     let text = (setup.path.display().to_string(), document.bytes().clone());
     let control = (&setup.settings, setup.knowledge);
-    let checked = gcode_lint::check_edited(text, before, control, &mut library);
-    let sources = checked.memory.sources();
-    let context =
-        FindingContext { uri, document, sources, client, host: files.host(), pages: RefCell::default() };
-    let is_of_document = |finding: &&Finding| place(finding).is_none_or(|span| span.source == SourceId(0));
+    let is_of_document = |finding: &Finding| place(finding).is_none_or(|span| span.source == SourceId(0));
     let is_allowed = |finding: &Finding| setup.project.allows(finding.kind.code, &setup.path, files);
     // A note without a remedy states a limit of the simulator, no fault of the program; but the run stops at an alarm that
     // an option of the control would take away.
@@ -73,11 +69,17 @@ pub(crate) fn check(
     let is_fault = |finding: &Finding| {
         Severity::Note < finding.severity || finding.help.is_some() || is_optional(finding)
     };
-    let shown = checked.findings.iter().filter(is_of_document);
-    let shown: Vec<_> = shown.filter(|finding| is_fault(finding) && !is_allowed(finding)).collect();
+    let is_shown = |finding: &Finding| is_of_document(finding) && is_fault(finding) && !is_allowed(finding);
+    let limit = FindingLimit { of_kind: MAX_DIAGNOSTICS, is_shown: &is_shown };
+    let checked = gcode_lint::check_edited(text, before, control, limit, &mut library);
+    let sources = checked.memory.sources();
+    let context =
+        FindingContext { uri, document, sources, client, host: files.host(), pages: RefCell::default() };
+    let shown: Vec<_> = checked.findings.iter().filter(|finding| is_shown(finding)).collect();
     let mut diagnostics: Vec<_> =
         shown.iter().take(MAX_DIAGNOSTICS).map(|finding| context.diagnostic(finding)).collect();
-    if let Some(more) = shown.len().checked_sub(MAX_DIAGNOSTICS).filter(|more| 0 < *more) {
+    let more = (shown.len() + checked.left_over).saturating_sub(MAX_DIAGNOSTICS);
+    if 0 < more {
         let message = format!("{more} more findings are not shown: gcode-sim check lists them");
         let source = Some(SOURCE.to_owned());
         diagnostics.push(Diagnostic { message, source, ..Diagnostic::default() });

@@ -13,7 +13,7 @@
 //!
 //! use gcode_lang::program::Library;
 //! use gcode_lang::source::Bytes;
-//! use gcode_lsp::{Ending, Host, LibrarySource, serve};
+//! use gcode_lsp::{SessionEnd, Host, LibrarySource, serve};
 //! use gcode_session::Request;
 //! use gcode_session::files::FileAccess;
 //! use lsp_server::{Connection, Message, Notification};
@@ -73,7 +73,7 @@
 //!
 //! let (server, client) = Connection::memory();
 //! client.sender.send(Message::Notification(Notification::new("exit".to_owned(), Value::Null)))?;
-//! assert_eq!(serve(&server, Arc::new(NoFiles)), Ending::Exit);
+//! assert_eq!(serve(&server, Arc::new(NoFiles)), SessionEnd::Exit);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![warn(missing_docs)]
@@ -112,4 +112,4 @@ mod text_help;
 mod workspace_scan;
 
 pub use host::{Host, LibrarySource};
-pub use server::{Ending, serve};
+pub use server::{SessionEnd, serve};

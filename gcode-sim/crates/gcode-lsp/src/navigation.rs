@@ -15,6 +15,7 @@ use lsp_types::{
     WorkspaceSymbolResponse,
 };
 
+use crate::document_uri;
 use crate::failure::Failure;
 use crate::snapshot::Snapshot;
 use crate::text_document::TextDocument;
@@ -228,13 +229,23 @@ pub(crate) fn document_links(
 ) -> Result<Option<Vec<DocumentLink>>, Failure> {
     let file = snapshot.file(&params.text_document)?;
     let text = snapshot.text_of(file)?;
-    let links = snapshot.project.document_links(file).into_iter().map(|link| DocumentLink {
-        range: range(&text, link.range),
-        target: link_target(snapshot, &link.target),
-        tooltip: Some(format!("Open {}", link.label)),
+    let programs = snapshot.project.document_links(file).into_iter().map(|link| {
+        let target = link_target(snapshot, &link.target);
+        (link.range, target, format!("Open {}", link.label))
+    });
+    let pages = snapshot.project.page_links(file).into_iter().map(|link| {
+        let page = snapshot.files.host().explanation(link.code);
+        let target = page.and_then(|page| document_uri::of_path(&page));
+        (link.range, target, format!("Explain {}", link.code))
+    });
+    let links = programs.chain(pages).filter(|(_, target, _)| target.is_some());
+    let links = links.map(|(place, target, tooltip)| DocumentLink {
+        range: range(&text, place),
+        target,
+        tooltip: Some(tooltip),
         data: None,
     });
-    Ok(Some(links.filter(|link| link.target.is_some()).collect()))
+    Ok(Some(links.collect()))
 }
 
 /// Returns the URI of a program; with its line, if other programs of the file stand before it.

@@ -52,6 +52,7 @@ pub(crate) fn take(state: &mut ServerState, notification: Notification) {
             let folders = Arc::make_mut(&mut state.snapshot.folders);
             folders.retain(|folder| !removed.contains(folder));
             folders.extend(added);
+            state.forget_folders(&removed);
             state.start_scan();
         }),
         DidChangeConfiguration::METHOD => decode::<DidChangeConfiguration>(params).map(|params| {

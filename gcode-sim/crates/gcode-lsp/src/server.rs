@@ -1,4 +1,5 @@
 //! The server's loop: messages of the client and answers from the background, one after the other.
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -27,9 +28,9 @@ const TICK: Duration = Duration::from_millis(250);
 /// Ticks from one look at the disk to the next.
 const POLL: u64 = 4;
 
-/// How the client ended the server.
+/// How the client ended its session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ending {
+pub enum SessionEnd {
     /// shutdown, then exit.
     Shutdown,
     /// exit alone, or the end of its messages.
@@ -45,7 +46,7 @@ enum Phase {
 }
 
 /// Serves a client until it ends the server.
-pub fn serve(connection: &Connection, host: Arc<dyn Host>) -> Ending {
+pub fn serve(connection: &Connection, host: Arc<dyn Host>) -> SessionEnd {
     let (sender, background) = unbounded();
     let state = ServerState::new(host, connection.sender.clone(), sender);
     let mut server = Server { state, phase: Phase::Starting };
@@ -58,7 +59,7 @@ struct Server {
 }
 
 impl Server {
-    fn run(&mut self, client: &Receiver<Message>, background: &Receiver<BackgroundAnswer>) -> Ending {
+    fn run(&mut self, client: &Receiver<Message>, background: &Receiver<BackgroundAnswer>) -> SessionEnd {
         let clock = tick(TICK);
         let mut ticks = 0;
         loop {
@@ -67,10 +68,10 @@ impl Server {
                     Ok(Message::Request(request)) => self.on_request(request),
                     Ok(Message::Response(response)) => self.on_response(response),
                     Ok(Message::Notification(notification)) if notification.method == Exit::METHOD => {
-                        return if self.phase == Phase::ShutDown { Ending::Shutdown } else { Ending::Exit };
+                        return if self.phase == Phase::ShutDown { SessionEnd::Shutdown } else { SessionEnd::Exit };
                     }
                     Ok(Message::Notification(notification)) => self.on_notification(notification),
-                    Err(_) => return Ending::Exit,
+                    Err(_) => return SessionEnd::Exit,
                 },
                 recv(background) -> answer => answer.into_iter().for_each(|answer| self.on_answer(answer)),
                 recv(clock) -> _ => {
@@ -198,7 +199,10 @@ impl Server {
                 }
             }
             BackgroundAnswer::Scanned(paths) => {
-                paths.iter().for_each(|path| self.state.read_within_budget(path))
+                // A folder may have left the workspace since.
+                let folders = Arc::clone(&self.state.snapshot.folders);
+                let is_in = |path: &&PathBuf| folders.iter().any(|folder| path.starts_with(folder));
+                paths.iter().filter(is_in).for_each(|path| self.state.read_within_budget(path));
             }
         }
     }

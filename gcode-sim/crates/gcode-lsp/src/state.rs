@@ -423,6 +423,30 @@ impl ServerState {
         });
     }
 
+    /// Forgets the programs in folders that left the workspace, but for those that an open document needs.
+    pub(crate) fn forget_folders(&mut self, removed: &[PathBuf]) {
+        let is_left = |path: &Path| {
+            let is_below = |folders: &[PathBuf]| folders.iter().any(|folder| path.starts_with(folder));
+            is_below(removed) && !is_below(&self.snapshot.folders)
+        };
+        let files = self.snapshot.project.files().map(|(file, index)| (file, index.text().len()));
+        let closed = files.filter(|(file, _)| !self.snapshot.documents.contains_key(file));
+        let left: Vec<_> = closed.filter(|(file, _)| is_left(&self.snapshot.path(*file))).collect();
+        for (file, length) in left {
+            self.read_bytes = self.read_bytes.saturating_sub(length);
+            Arc::make_mut(&mut self.snapshot.project).remove_file(file);
+            if self.checked.remove(&file).is_some()
+                && let Some(uri) = self.snapshot.uri(file).cloned()
+            {
+                self.publish(uri, None, Vec::new());
+            }
+        }
+        for file in self.snapshot.documents.keys().copied().collect::<Vec<_>>() {
+            self.read_neighbours(file);
+        }
+        self.outdate_runs();
+    }
+
     /// Answers a request as cancelled, if it has no answer yet.
     pub(crate) fn cancel(&mut self, id: &RequestId) {
         if self.waiting.iter().any(|request| request.id == *id) {

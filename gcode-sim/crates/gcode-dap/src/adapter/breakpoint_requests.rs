@@ -142,6 +142,9 @@ impl<H: Host> Adapter<H> {
         let settings = self.settings();
         body(match number {
             Ok(number @ (0 | 3000 | 3006)) => refused(format!("#{number} keeps no value")),
+            Ok(number) if !is_variable(number, &settings) => {
+                refused(format!("#{number} is no variable of this control"))
+            }
             Ok(number) => {
                 let is_local = (1..=LAST_LOCAL).contains(&number);
                 let data_id = if is_local { format!("#{number}@{level}") } else { format!("#{number}") };
@@ -203,6 +206,11 @@ impl<H: Host> Adapter<H> {
         }
         body(FilterAnswers { breakpoints })
     }
+}
+
+/// Returns true for a variable that a program of this control can read or write.
+fn is_variable(number: u32, settings: &Settings) -> bool {
+    VariableTable::new(settings).read(number).is_ok() || is_written(number, settings)
 }
 
 /// Returns true for a variable that a program can write.

@@ -204,17 +204,13 @@ impl Debuggee {
             if !self.breakpoints.is_empty() {
                 let site = (site.source, site.start);
                 let hits = self.breakpoints.reach_block(control, site, position);
-                if let Some(ids) =
-                    write_messages(hits, self.run.next_block(), output).filter(|_| goal.is_some())
-                {
-                    return Some(Stop::Breakpoint(ids));
-                }
+                let lines = write_messages(hits, self.run.next_block(), output);
                 let arrival = Arrival { control, has_entered: self.has_entered };
                 let hits = self.breakpoints.reach_programs(&arrival, position);
-                if let Some(ids) =
-                    write_messages(hits, self.run.next_block(), output).filter(|_| goal.is_some())
-                {
-                    return Some(Stop::ProgramBreakpoint(ids));
+                let programs = write_messages(hits, self.run.next_block(), output);
+                let stop = Stop::at_breakpoints(lines, programs).filter(|_| goal.is_some());
+                if stop.is_some() {
+                    return stop;
                 }
             }
         }
@@ -274,7 +270,8 @@ impl Debuggee {
                 format!("{name}: {text}")
             }));
         }
-        write_messages(hits, block, output).map(Stop::VariableBreakpoint)
+        let ids = write_messages(hits, block, output);
+        (!ids.is_empty()).then_some(Stop::VariableBreakpoint(ids))
     }
 
     /// Returns the stop at the end of a run. An alarm with its filter puts the run back in front of its block, once.
@@ -398,11 +395,9 @@ impl Debuggee {
         let site = self.run.next_block()?;
         let arrival = Arrival { control, has_entered };
         let (lines, programs) = self.breakpoints.stops_before(&arrival, (site.source, site.start), position);
-        if !lines.is_empty() {
-            return Some(Stop::Breakpoint(lines));
-        }
-        if !programs.is_empty() {
-            return Some(Stop::ProgramBreakpoint(programs));
+        let stop = Stop::at_breakpoints(lines, programs);
+        if stop.is_some() {
+            return stop;
         }
         if !self.breakpoints.variables.is_empty() {
             let ids = self.breakpoints.stops_at_access(control, &Access::of_next(control), position);
@@ -419,11 +414,11 @@ impl Debuggee {
 }
 
 /// Adds the messages of breakpoints to the output, and returns those that stop the run.
-fn write_messages(hits: Hits, block: Option<Span>, output: &mut Vec<OutputLine>) -> Option<Vec<i64>> {
+fn write_messages(hits: Hits, block: Option<Span>, output: &mut Vec<OutputLine>) -> Vec<i64> {
     output.extend(hits.messages.into_iter().map(|text| OutputLine { text, block }));
     if let Some(alarm) = hits.refusal {
         let text = format!("the condition of the breakpoint can't be evaluated: {}", values::alarm(&alarm));
         output.push(OutputLine { text, block });
     }
-    (!hits.ids.is_empty()).then_some(hits.ids)
+    hits.ids
 }

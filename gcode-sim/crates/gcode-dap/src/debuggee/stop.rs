@@ -27,7 +27,7 @@ pub(crate) enum Stop {
     Step,
     /// A person, M00, M01 or #3006 has stopped the run; the text of the stop, empty of a person's.
     Pause(String),
-    /// Breakpoints on the next block.
+    /// Breakpoints on the next block, and those on a program that begins with it.
     Breakpoint(Vec<i64>),
     /// Breakpoints on the program that has begun.
     ProgramBreakpoint(Vec<i64>),
@@ -37,6 +37,17 @@ pub(crate) enum Stop {
     /// A block was chosen as the next one.
     Goto,
     End(End),
+}
+
+impl Stop {
+    /// Returns the stop at breakpoints on a block and on a program that begins with it; `None` without any.
+    pub(super) fn at_breakpoints(lines: Vec<i64>, programs: Vec<i64>) -> Option<Self> {
+        match (lines.is_empty(), programs.is_empty()) {
+            (true, true) => None,
+            (true, false) => Some(Self::ProgramBreakpoint(programs)),
+            (false, _) => Some(Self::Breakpoint(lines.into_iter().chain(programs).collect())),
+        }
+    }
 }
 
 /// What a run is to do until it stops.

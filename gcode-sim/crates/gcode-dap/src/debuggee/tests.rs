@@ -216,6 +216,12 @@ fn a_program_stops_the_run_when_it_begins() {
     assert_eq!(next(&debuggee), "N9 M99");
     assert_eq!(reverse(&mut debuggee), Stop::ProgramBreakpoint(vec![3]));
     assert_eq!(next(&debuggee), "#100=#1");
+    let line = at_block(CALLS, "#100=#1", Conditions::default());
+    debuggee.breakpoints_mut().replace_lines("O1.nc", vec![line]);
+    assert_eq!(reverse(&mut debuggee), Stop::Entry);
+    assert_eq!(advance(&mut debuggee, Goal::Continue), Stop::Breakpoint(vec![1, 3]), "both are told");
+    assert_eq!(advance(&mut debuggee, Goal::Continue), Stop::ProgramBreakpoint(vec![4]));
+    assert_eq!(reverse(&mut debuggee), Stop::Breakpoint(vec![1, 3]));
 }
 
 #[test]

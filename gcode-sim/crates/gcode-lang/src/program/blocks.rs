@@ -7,6 +7,7 @@ use std::ops::Range;
 use super::block_texts::{BlockTexts, ProgramText};
 use super::loops::Loops;
 use super::lowering::{Lowering, lower_case};
+use super::numbers::NumberBlock;
 use super::{Op, OpBody, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
 use crate::shares::{share_length, work_on};
@@ -68,18 +69,17 @@ impl Blocks {
         self.texts.starts.len()
     }
 
-    /// Calls `each` with every block in order: with its operation and the text of its comment if it consists of numbers, and one
-    /// comment at most.
-    pub(super) fn visit_numbers<'t>(&'t self, mut each: impl FnMut(OpIndex, Option<(&Op, &'t [u8])>)) {
-        let mut op = Op::default();
+    /// Calls `each` with every block in order, read if it consists of numbers, and one comment at most.
+    pub(super) fn visit_numbers(&self, mut each: impl FnMut(OpIndex, Option<NumberBlock<'_>>)) {
+        let mut list = Vec::new();
         let text = &self.texts.text;
         for (index, start) in self.texts.starts.iter().enumerate() {
             let is_separate = self.texts.separate_trees.contains_key(&(index as u32));
-            let comment = match is_separate {
+            let block = match is_separate {
                 true => None,
-                false => op.refill_commented(text.source, text.content(), *start),
+                false => NumberBlock::read(&mut list, text.source, text.content(), *start),
             };
-            each(index, comment.map(|comment| (&op, comment)));
+            each(index, block);
         }
     }
 

@@ -33,6 +33,7 @@ pub use bytecode::{
 pub use dialect_syntax::DialectSyntax;
 pub use expression::{Expression, parse_target};
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
+pub use numbers::NumberBlock;
 pub use words::{CallCode, CallOp, CallTarget, LoweredWord, WordOperand, WordUse, Words};
 
 use std::ops::Range;
@@ -328,9 +329,8 @@ impl Program {
         self.blocks.texts()
     }
 
-    /// Calls `each` with every block in order: its index, and its operation and the text of its comment if it consists of
-    /// numbers, and one comment at most. Without a comment its text is empty.
-    pub fn visit_number_blocks<'t>(&'t self, each: impl FnMut(OpIndex, Option<(&Op, &'t [u8])>)) {
+    /// Calls `each` with every block in order: its index, and what it reads if it consists of numbers, and one comment at most.
+    pub fn visit_number_blocks(&self, each: impl FnMut(OpIndex, Option<NumberBlock<'_>>)) {
         self.blocks.visit_numbers(each);
     }
 

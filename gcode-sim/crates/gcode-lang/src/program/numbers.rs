@@ -1,6 +1,6 @@
 //! Lowering of blocks of numbers directly from their text.
 use super::g_codes;
-use super::words::{LoweredWord, WordOperand, Words, g_code, is_call};
+use super::words::{LoweredWord, MACRO_CALL, WordOperand, Words, g_code, is_call};
 use super::{Op, OpBody, OpKind};
 use crate::source::{SourceId, Span};
 use crate::syntax::{NumberWord, NumberWords};
@@ -17,7 +17,7 @@ impl Op {
             self.body = OpBody::Plain(OpKind::Words(Words::default()));
         }
         let OpBody::Plain(OpKind::Words(words)) = &mut self.body else { return false };
-        let filled = fill(words.cleared_list(), source, text, start);
+        let filled = fill(words.cleared_list(), source, text, start, |_| false);
         let Some((numbers, end)) = filled.filter(|(numbers, _)| numbers.is_at_end()) else { return false };
         if words.list.is_empty() {
             self.body = OpBody::default();
@@ -26,35 +26,53 @@ impl Op {
         self.number = numbers.sequence_number;
         true
     }
+}
 
-    /// Replaces the operation as [`Op::refill`] does, also by a block of numbers with one comment behind them. Returns the text
-    /// of the comment, which is empty without one.
-    pub(super) fn refill_commented<'t>(
-        &mut self,
+/// Block of numbers as written, with one comment behind them at most.
+#[derive(Clone, Copy, Debug)]
+pub struct NumberBlock<'a> {
+    /// Words in the order written. Those of a macro call are among them: G65, its program and its arguments.
+    pub words: &'a [LoweredWord],
+    /// Sequence number at the start of the block.
+    pub number: Option<u32>,
+    /// Text of the comment; empty without one.
+    pub comment: &'a [u8],
+    /// Span of the block.
+    pub span: Span,
+}
+
+impl<'a> NumberBlock<'a> {
+    /// Reads the block at `start`; `list` takes its words. Returns `None` for any other block, and for a call but G65.
+    pub(super) fn read(
+        list: &'a mut Vec<LoweredWord>,
         source: SourceId,
-        text: &'t [u8],
+        text: &'a [u8],
         start: u32,
-    ) -> Option<&'t [u8]> {
-        if self.refill(source, text, start) {
-            return Some(&[]);
-        }
-        let OpBody::Plain(OpKind::Words(words)) = &mut self.body else { return None };
-        let (numbers, _) = fill(words.cleared_list(), source, text, start)?;
-        let (comment, end) = numbers.comment_at_end().filter(|_| !words.list.is_empty())?;
-        self.span = Span { source, start, end };
-        self.number = numbers.sequence_number;
-        Some(comment)
+    ) -> Option<Self> {
+        list.clear();
+        let (numbers, words_end) = fill(list, source, text, start, |code| code == MACRO_CALL)?;
+        let (comment, end) = match numbers.is_at_end() {
+            true => (&text[..0], words_end),
+            false => numbers.comment_at_end().filter(|_| !list.is_empty())?,
+        };
+        Some(Self {
+            words: list,
+            number: numbers.sequence_number,
+            comment,
+            span: Span { source, start, end },
+        })
     }
 }
 
 /// Appends the words of the line at `start` to an empty list, up to anything but a word with a number. Returns the iterator
-/// behind them, which has the sequence number, and the end of the last word; `None` for a call.
+/// behind them, which has the sequence number, and the end of the last word; `None` for a call that `takes_call` refuses.
 #[inline(always)]
 fn fill<'t>(
     list: &mut Vec<LoweredWord>,
     source: SourceId,
     text: &'t [u8],
     start: u32,
+    takes_call: impl Fn(u32) -> bool,
 ) -> Option<(NumberWords<'t>, u32)> {
     let mut numbers = NumberWords::new(source, text, start)?;
     let mut end = numbers.words_start;
@@ -63,7 +81,7 @@ fn fill<'t>(
         let lowered_word = |value| LoweredWord { letter, axis: None, comma: false, value, span };
         match letter {
             b'G' => match g_code(number)? {
-                code if is_call(code) => return None,
+                code if is_call(code) && !takes_call(code) => return None,
                 code => list.push(lowered_word(WordOperand::G(code, g_codes::find(code)))),
             },
             b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return None,
@@ -78,6 +96,7 @@ mod tests {
     use proptest::collection::vec;
     use proptest::prelude::*;
 
+    use super::super::CallTarget;
     use super::super::lowering::Lowering;
     use super::*;
     use crate::syntax::block_at;
@@ -99,16 +118,46 @@ mod tests {
             after in proptest::sample::select(vec!["", FOLLOWING]),
         ) {
             let text = format!("{}{end}{after}", words.concat().trim_start_matches([' ', '\t', '\x1a']));
+            let mut list = Vec::new();
+            if let Some(block) = NumberBlock::read(&mut list, SourceId(0), text.as_bytes(), 0) {
+                prop_assume!(block.span.end > 0);
+                let tree = block_at(SourceId(0), text.as_bytes(), 0).unwrap();
+                let lowered = Lowering::default().lower_block(&tree, None);
+                prop_assert_eq!((block.number, block.span), (lowered.number, lowered.span), "{:?}", text);
+                let comments: Vec<_> = tree.comments.iter().map(|comment| comment.text.as_slice()).collect();
+                prop_assert!(comments.concat() == block.comment && comments.len() < 2, "{:?}", text);
+                let words = match lowered.kind() {
+                    OpKind::Words(words) => in_order(words),
+                    OpKind::Empty => Vec::new(),
+                    // G65 with words that it doesn't take.
+                    _ => return Ok(()),
+                };
+                prop_assert_eq!(format!("{:?}", block.words), format!("{words:?}"), "{:?}", text);
+            }
             let mut op = another();
-            if let Some(comment) = op.refill_commented(SourceId(0), text.as_bytes(), 0) {
+            if op.refill(SourceId(0), text.as_bytes(), 0) {
                 prop_assume!(op.span.end > 0);
                 let tree = block_at(SourceId(0), text.as_bytes(), 0).unwrap();
                 let lowered = Lowering::default().lower_block(&tree, None);
                 prop_assert_eq!(format!("{op:?}"), format!("{lowered:?}"), "{:?}", text);
-                let comments: Vec<_> = tree.comments.iter().map(|comment| comment.text.as_slice()).collect();
-                prop_assert!(comments.concat() == comment && comments.len() < 2, "{:?}", text);
             }
         }
+    }
+
+    /// Returns the words of a block in the order written, those of its call among them.
+    fn in_order(words: &Words) -> Vec<LoweredWord> {
+        let mut all = words.list.clone();
+        if let Some(call) = words.call() {
+            let code = WordOperand::G(MACRO_CALL, g_codes::find(MACRO_CALL));
+            all.push(LoweredWord { letter: b'G', axis: None, comma: false, value: code, span: call.span });
+            all.extend(&call.arguments);
+            all.extend(call.repeats);
+            if let CallTarget::Number(program) = &call.target {
+                all.push(*program);
+            }
+        }
+        all.sort_by_key(|word| word.span.start);
+        all
     }
 
     #[test]

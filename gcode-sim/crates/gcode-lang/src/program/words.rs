@@ -9,7 +9,7 @@ use crate::source::Span;
 use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};
 
 /// G codes × 10 of calls; those of the modal calls are also their states.
-const MACRO_CALL: u32 = 650;
+pub(super) const MACRO_CALL: u32 = 650;
 const MODAL_CALL: u32 = ModalCall::AfterMoves.code();
 const EVERY_BLOCK_CALL: u32 = ModalCall::EveryBlock.code();
 const MODAL_CALL_END: u32 = ModalCall::Off.code();

@@ -29,7 +29,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 pub(crate) fn sequence_numbers(unit: &ProgramUnit<'_>) -> Vec<(u32, Span)> {
     let parameters = parameters::parameter_blocks(unit.program);
     let ops = unit.program.ops().iter().zip(&parameters);
-    let mut left_out = unit.left_out_numbers.iter().peekable();
+    let mut left_out = unit.left_out.numbers.iter().peekable();
     let mut numbers: Vec<(u32, Span)> = Vec::new();
     // A block that is left out stands behind one of its run: either both are parameter input or neither.
     let mut is_input = false;

@@ -96,7 +96,16 @@ pub(crate) fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) 
     let start = unit.piece.as_ref().and_then(|piece| piece.start.pending_move);
     let far =
         unit.piece.iter().flat_map(|piece| &piece.entries).map(|entry| (entry.block, entry.pending_move));
-    unit.flow.propagate(std::iter::once((0, start)).chain(far), |known, other| *known = known.or(other), next)
+    unit.flow.propagate(
+        std::iter::once((0, start)).chain(far),
+        |known, other| *known = later(*known, other),
+        next,
+    )
+}
+
+/// Returns the later one of two moves, of which either may be in progress.
+pub(crate) fn later(one: Option<Span>, other: Option<Span>) -> Option<Span> {
+    one.into_iter().chain(other).max_by_key(|span| span.start)
 }
 
 /// Returns the effect of a call: that of a program that only moves, or does neither; false if it is unknown.

@@ -13,6 +13,7 @@ use gcode_lang::program::{LoweredWord, WordOperand, Words};
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::ast::Decimal;
 
+use crate::ControlKnowledge;
 use crate::literal::without_point;
 use crate::parameters;
 use crate::prelude::*;
@@ -33,7 +34,11 @@ const MIN_INTENDED_FEED: f64 = 1.0;
 
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let settings = context.settings;
-    if settings.uses_calculator_input || unit.piece.is_none() && counts_in_increments(unit, settings) {
+    if settings.uses_calculator_input {
+        return Vec::new();
+    }
+    // The pieces of a program count together.
+    if unit.piece.is_none() && point_counts(unit, settings).are_increments() {
         return Vec::new();
     }
     let found = numbers_without_point(context, unit);
@@ -50,15 +55,61 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let others = found.len().saturating_sub(1);
-    let as_whole = found.into_iter().next().map(|first| {
-        let message = format!(
-            "{}, and so with {others} more: hardly a number of the program has a point",
-            first.message
-        );
-        let help = "write the points, or give --control DPI=1 for a control with calculator-type input";
-        context.unless_optional(Diagnostic { message, ..first }.help(help))
-    });
-    as_whole.into_iter().collect()
+    found.into_iter().next().map(|first| as_whole(first, others, context.knowledge)).into_iter().collect()
+}
+
+/// Returns the finding about a file that hardly has a point.
+pub(crate) fn as_whole(first: Diagnostic, others: usize, knowledge: ControlKnowledge) -> Diagnostic {
+    let message =
+        format!("{}, and so with {others} more: hardly a number of the program has a point", first.message);
+    let help = "write the points, or give --control DPI=1 for a control with calculator-type input";
+    knowledge.unless_optional(Diagnostic { message, ..first }.help(help))
+}
+
+/// Numbers of a program that are lengths, angles or seconds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PointCounts {
+    /// Numbers other than 0 with a point.
+    pub pointed: usize,
+    /// Numbers other than 0 without one.
+    without: usize,
+    /// A number, which may be 0, has a point.
+    has_point: bool,
+    /// A number is 1 mm or more if it counts increments.
+    is_large: bool,
+}
+
+impl PointCounts {
+    /// Adds the numbers of another program, or of another piece of the same one.
+    pub(crate) fn add(&mut self, other: Self) {
+        self.pointed += other.pointed;
+        self.without += other.without;
+        self.has_point |= other.has_point;
+        self.is_large |= other.is_large;
+    }
+
+    /// Returns true for a program that counts in increments on purpose: it has no decimal point, and a number of 1 mm or more.
+    pub(crate) fn are_increments(self) -> bool {
+        !self.has_point && self.is_large
+    }
+
+    /// Returns true if hardly a number has a point.
+    pub(crate) fn hardly_have_points(self) -> bool {
+        self.without >= MANY_NUMBERS.max(POINTLESS_FOR_EACH_POINTED * self.pointed)
+    }
+}
+
+/// Returns what is counted in a program, with the blocks that are left out.
+pub(crate) fn point_counts(unit: &ProgramUnit<'_>, settings: &Settings) -> PointCounts {
+    let mut counts = PointCounts { pointed: unit.left_out.points, ..PointCounts::default() };
+    for number in numbers(unit, settings) {
+        let (has_point, is_zero) = (number.places.is_some(), number.digits == 0);
+        counts.pointed += usize::from(has_point && !is_zero);
+        counts.without += usize::from(!has_point && !is_zero);
+        counts.has_point |= has_point;
+        counts.is_large |= number.digits as f64 >= settings.increment.per_unit();
+    }
+    counts
 }
 
 /// Number of numbers without a point from which a file that hardly has a point is one finding.
@@ -69,18 +120,12 @@ const POINTLESS_FOR_EACH_POINTED: usize = 9;
 
 /// Returns the files that are written for calculator-type input: hardly a length in them has a point.
 fn calculator_files(context: &CheckContext<'_>) -> BTreeSet<SourceId> {
-    // Numbers with and without a point.
-    let mut counts: BTreeMap<SourceId, (usize, usize)> = BTreeMap::new();
+    let mut counts: BTreeMap<SourceId, PointCounts> = BTreeMap::new();
     for unit in &context.units {
-        let (pointed, without) = counts.entry(unit.program.span.source).or_default();
-        for number in numbers(unit, context.settings).filter(|number| number.digits > 0) {
-            *(if number.places.is_some() { &mut *pointed } else { &mut *without }) += 1;
-        }
+        counts.entry(unit.program.span.source).or_default().add(point_counts(unit, context.settings));
     }
-    let hardly_has_points = |(pointed, without): (usize, usize)| {
-        without >= MANY_NUMBERS.max(POINTLESS_FOR_EACH_POINTED * pointed)
-    };
-    counts.into_iter().filter(|(_, count)| hardly_has_points(*count)).map(|(source, _)| source).collect()
+    let files = counts.into_iter().filter(|(_, counts)| counts.hardly_have_points());
+    files.map(|(source, _)| source).collect()
 }
 
 /// Iterates over the programs under check in the file of a program.
@@ -257,20 +302,6 @@ impl<'w> BlockCodes<'w> {
     }
 }
 
-/// Returns true for a program that counts in increments on purpose.
-///
-/// The program has no decimal point and at least one number of 1 mm or more.
-fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
-    let mut large = false;
-    for number in numbers(unit, settings) {
-        if number.places.is_some() {
-            return false;
-        }
-        large |= number.digits as f64 >= settings.increment.per_unit();
-    }
-    large
-}
-
 fn spelled(letter: u8, number: Decimal) -> String {
     let sign = if number.negative { "-" } else { "" };
     format!("{}{sign}{}", char::from(letter), number.digits)
@@ -371,6 +402,17 @@ mod tests {
         assert_eq!(lines(&RULE, &longer.replace("X1\n", "X1.\n")).len(), 9, "two have one");
         let two = format!("{longer}O2\nG0 X7\nM30\n");
         assert_eq!(lines(&RULE, &two), [2], "the file is one finding");
+    }
+
+    /// Moves and calls that a check leaves out have points too: 9 numbers without one for each with one are hardly any.
+    #[test]
+    fn points_of_repeated_blocks_count() {
+        let found = |blocks: &str, count: usize| {
+            messages(&RULE, &format!("O1\nG90\n{}{}M30\n", blocks.repeat(count), "Z5\n".repeat(54))).len()
+        };
+        assert_eq!((found("X1.\n", 7), found("X1.\n", 6)), (54, 1));
+        assert_eq!((found("G65 P9810 X1. F5.\n", 7), found("G65 P9810 X1. F5.\n", 6)), (54, 1));
+        assert_eq!(found("X0. F5.\n", 100), 1, "0 and feeds are no lengths that need a point");
     }
 
     #[test]

@@ -57,10 +57,11 @@ fn is_in_memory(context: &CheckContext<'_>, number: u32) -> bool {
     context.memory.find_from(&ProgramName::Number(number), None).is_some()
 }
 
-/// Returns the number of calls of a program, if there are several.
+/// Returns the number of calls of a program, if there are several: those that are left out of the check count too.
 fn count_text(unit: &ProgramUnit<'_>, target: &CalledProgramName) -> String {
-    let calls =
-        unit.calls.iter().filter(|call| unit.is_reached[call.block] && call.target == *target).count();
+    let calls = unit.calls.iter().filter(|call| unit.is_reached[call.block] && call.target == *target);
+    let left_out = |block: OpIndex| unit.left_out.calls.get(&unit.op(block).span.start).copied();
+    let calls: usize = calls.map(|call| 1 + left_out(call.block).unwrap_or_default()).sum();
     if calls == 1 { String::new() } else { format!(" ({calls} calls)") }
 }
 

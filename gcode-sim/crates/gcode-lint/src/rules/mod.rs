@@ -44,7 +44,8 @@ pub use super::rule::Rule;
 use super::suppression::{Suppression, suppressions};
 use super::vacancy::keeps_locals;
 pub(super) use doubled_n::{doubled_numbers, sequence_numbers};
-pub(super) use live_position::{limits_lookahead, pending_moves};
+pub(crate) use live_position::{later, limits_lookahead, pending_moves};
+pub(super) use missing_point::{PointCounts, as_whole as missing_points_as_whole, point_counts};
 pub(super) use missing_program::find as missing_programs;
 pub(super) use refused_words::alarming_cancel;
 
@@ -98,12 +99,8 @@ pub(super) static MISSING_PROGRAM: &FindingKind = &missing_program::RULE.kind;
 pub(super) static LIVE_POSITION: &FindingKind = &live_position::RULE.kind;
 
 /// Kinds of findings about a block that other blocks, wherever they are, add to or take away.
-pub(super) static OF_WHOLE_PROGRAM: [&FindingKind; 4] = [
-    &loop_pairs::RULE.kind,
-    &missing_point::RULE.kind,
-    &unreachable::RULE.kind,
-    &unreachable_alarm::RULE.kind,
-];
+pub(super) static OF_WHOLE_PROGRAM: [&FindingKind; 3] =
+    [&loop_pairs::RULE.kind, &unreachable::RULE.kind, &unreachable_alarm::RULE.kind];
 
 /// Kind of finding about a macro call without a required argument.
 pub static MISSING_ARGUMENT: &FindingKind = &missing_argument::RULE.kind;
@@ -157,8 +154,13 @@ pub(super) fn findings_in_program(context: &CheckContext<'_>, unit: &ProgramUnit
 
 /// Removes the suppressed findings of a program and sorts the others by block; they are in the order of the rules.
 fn put_in_order(found: &mut Vec<Diagnostic>, off: &[Suppression]) {
-    found.retain(|finding| !off.iter().any(|suppression| suppression.suppresses(finding)));
+    leave_suppressed(found, off);
     found.sort_by_key(|finding| finding.backtrace.as_ref().map(|place| place.block.start));
+}
+
+/// Removes the suppressed findings.
+pub(super) fn leave_suppressed(found: &mut Vec<Diagnostic>, off: &[Suppression]) {
+    found.retain(|finding| !off.iter().any(|suppression| suppression.suppresses(finding)));
 }
 
 /// Does the same with the findings of the pieces of a program, which are not in the order of the rules.
