@@ -56,6 +56,17 @@ impl Project {
         self.groups(places)
     }
 
+    /// Returns the other files with calls of a file's programs, in the order of their names.
+    pub fn calling_files(&self, file: FileId) -> Vec<FileId> {
+        let finds = |(from, target)| self.called_program(from, target).is_some_and(|key| key.file == file);
+        let others = self.all_calls().filter(|(from, _)| from.file != file);
+        let calling = others.filter(|(from, call)| finds((from.file, &call.record.target)));
+        let mut files: Vec<_> = calling.map(|(from, _)| from.file).collect();
+        files.sort_by_key(|file| (self.file_name(*file), *file));
+        files.dedup();
+        files
+    }
+
     /// Returns the programs that a program calls, as far as the project has them, with the places of the calls.
     pub fn outgoing_calls(&self, key: ProgramKey) -> Vec<CallGroup> {
         let mut places: BTreeMap<ProgramKey, Vec<TextRange>> = BTreeMap::new();

@@ -96,6 +96,33 @@ fn symbols_are_nested() {
     check_nesting(&symbols, 0, u32::MAX);
 }
 
+/// A control has DO1 to DO3, and none of them within itself.
+#[test]
+fn loops_without_their_end_are_no_deeper_than_a_control_has_them() {
+    fn depth(symbols: &[DocumentSymbol]) -> usize {
+        symbols.iter().map(|symbol| 1 + depth(&symbol.children)).max().unwrap_or(0)
+    }
+    let loops: String = (0..20_000).map(|n| format!("WHILE[#1 LT 1]DO{}\nN{n}\n", 1 + n % 7)).collect();
+    let symbols = fixture(&format!("O1\n{loops}")).project.document_symbols(FileId(0));
+    assert_eq!(depth(&symbols), 5, "program, three loops, N");
+    check_nesting(&symbols, 0, u32::MAX);
+}
+
+#[test]
+fn the_callers_of_a_file_are_files() {
+    let mut project = Project::new(Settings::default());
+    let files = [
+        ("p/b", "O1\nM98 P3\nM98 P4\nM30\n"),
+        ("p/a", "O2\nG65 P4\nM98 P5\nO5\nM99\n"),
+        ("p/c", "O3\nM98 P4\nM99\nO4\nM99\n"),
+    ];
+    for (id, (name, text)) in (0..).zip(files) {
+        project.set_file(FileId(id), name, text.as_bytes().to_vec());
+    }
+    assert_eq!(project.calling_files(FileId(2)), [FileId(1), FileId(0)], "by name; its own calls aside");
+    assert_eq!(project.calling_files(FileId(1)), []);
+}
+
 /// Checks that symbols lie in a range, their names in them, and so on inside.
 fn check_nesting(symbols: &[DocumentSymbol], start: u32, end: u32) {
     for symbol in symbols {

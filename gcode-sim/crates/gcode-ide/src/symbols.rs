@@ -1,4 +1,6 @@
 //! Symbols of a file, nested, and symbols of the project by a query.
+use std::ops::RangeInclusive;
+
 use gcode_lang::syntax::ast::ProgramName;
 
 use crate::entry::EntryKind;
@@ -50,6 +52,9 @@ pub struct WorkspaceSymbol {
 /// Most sequence numbers of a file that are listed as symbols: in JSON each is some 300 bytes.
 const MAX_NUMBERS: usize = 5_000;
 
+/// Numbers of loops.
+const LOOP_NUMBERS: RangeInclusive<u32> = 1..=3;
+
 impl Project {
     /// Returns the programs of a file with their sequence numbers and loops.
     pub fn document_symbols(&self, file: FileId) -> Vec<DocumentSymbol> {
@@ -97,6 +102,11 @@ impl Project {
                     open.last_mut().map_or(&mut top, |(_, parent)| &mut parent.children).push(symbol);
                 }
                 EntryKind::LoopBegin => {
+                    // A loop of the same number inside is refused: the END of the first is missing. The numbers are 1 to 3, and
+                    // limit the nesting.
+                    let same = open.iter().position(|(number, _)| *number == entry.value);
+                    let from = same.unwrap_or(open.len());
+                    close_loops(&mut open, &mut top, from, 0);
                     let symbol = DocumentSymbol {
                         name: lossy(entry.range.of(text)),
                         detail: String::new(),
@@ -105,7 +115,11 @@ impl Project {
                         selection: entry.range,
                         children: Vec::new(),
                     };
-                    open.push((entry.value, symbol));
+                    if LOOP_NUMBERS.contains(&entry.value) {
+                        open.push((entry.value, symbol));
+                    } else {
+                        open.last_mut().map_or(&mut top, |(_, parent)| &mut parent.children).push(symbol);
+                    }
                 }
                 EntryKind::LoopEnd => {
                     // An END closes its own loop and those that lack theirs.

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use gcode_control::{Limits, Outcome, Progress};
-use gcode_ide::{FileId, ProgramKey, Project};
+use gcode_ide::{FileId, Project};
 use gcode_inspect::verify::Verdict;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
@@ -133,10 +133,7 @@ pub(crate) fn mains_of(project: &Project, file: FileId) -> Vec<FileId> {
     let mut known = BTreeSet::from([file]);
     let mut waiting = VecDeque::from([file]);
     while let Some(current) = waiting.pop_front() {
-        let count = project.file(current).map_or(0, |index| index.programs().len());
-        let keys = (0..count).map(|program| ProgramKey { file: current, program });
-        let callers = keys.flat_map(|key| project.incoming_calls(key)).map(|group| group.item.key.file);
-        let callers: Vec<_> = callers.filter(|caller| *caller != current).collect();
+        let callers = project.calling_files(current);
         if callers.is_empty() {
             mains.push(current);
         }

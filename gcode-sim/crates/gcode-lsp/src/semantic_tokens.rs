@@ -1,8 +1,9 @@
 //! Semantic tokens: the legend, and the tokens of a text in the protocol's relative form.
 use gcode_ide::{FileId, TextRange, TokenKind};
 use lsp_types::{
-    SemanticToken, SemanticTokenModifier, SemanticTokenType, SemanticTokens, SemanticTokensLegend,
-    SemanticTokensParams, SemanticTokensRangeParams, SemanticTokensRangeResult, SemanticTokensResult,
+    Position, Range, SemanticToken, SemanticTokenModifier, SemanticTokenType, SemanticTokens,
+    SemanticTokensLegend, SemanticTokensParams, SemanticTokensRangeParams, SemanticTokensRangeResult,
+    SemanticTokensResult,
 };
 
 use crate::failure::Failure;
@@ -72,9 +73,13 @@ pub(crate) fn range(
 fn tokens(snapshot: &Snapshot, file: FileId, range: Option<TextRange>) -> Result<SemanticTokens, Failure> {
     let text = snapshot.text_of(file)?;
     let (mut line, mut character) = (0, 0);
+    // Place of the token before.
+    let mut last = (0, Position::new(0, 0));
     let mut data = Vec::new();
     for token in snapshot.project.semantic_tokens(file, range) {
-        let range = text.range(token.range.start, token.range.end);
+        let start = text.position_behind(last, token.range.start);
+        last = (token.range.start, start);
+        let range = Range::new(start, text.position_behind(last, token.range.end));
         // A token of the protocol is part of one line.
         if range.start.line != range.end.line || range.start == range.end {
             continue;

@@ -86,11 +86,27 @@ impl TextDocument {
         let offset = offset.min(self.bytes.len() as u32);
         let line = self.lines.partition_point(|start| *start <= offset).saturating_sub(1);
         let before = &self.bytes[self.lines[line] as usize..offset as usize];
-        let character = match self.encoding {
-            PositionEncoding::Utf8 => before.len(),
-            PositionEncoding::Utf16 => before.iter().map(|byte| utf16_width(*byte)).sum(),
-        };
-        Position::new(line as u32, character as u32)
+        Position::new(line as u32, self.width(before))
+    }
+
+    /// Returns the position of an offset like [`TextDocument::position`], from that of another offset in a short time if it is
+    /// behind that in the same line.
+    pub(crate) fn position_behind(&self, (known, position): (u32, Position), offset: u32) -> Position {
+        let line_end = self.lines.get(position.line as usize + 1).copied().unwrap_or(u32::MAX);
+        let offset = offset.min(self.bytes.len() as u32);
+        if !(known..line_end).contains(&offset) {
+            return self.position(offset);
+        }
+        let between = &self.bytes[known as usize..offset as usize];
+        Position::new(position.line, position.character + self.width(between))
+    }
+
+    /// Returns the length of a part of a line in the protocol's units.
+    fn width(&self, bytes: &[u8]) -> u32 {
+        match self.encoding {
+            PositionEncoding::Utf8 => bytes.len() as u32,
+            PositionEncoding::Utf16 => bytes.iter().map(|byte| utf16_width(*byte) as u32).sum(),
+        }
     }
 
     /// Returns the range of the protocol between two offsets.
@@ -174,6 +190,19 @@ mod tests {
         let document = TextDocument::new(text.as_bytes(), PositionEncoding::Utf8);
         assert_eq!(document.offset(Position::new(0, 7)), 7);
         assert_eq!(document.position(9), Position::new(0, 9));
+    }
+
+    #[test]
+    fn a_position_behind_another_is_that_from_the_start() {
+        let text = "G0(\u{1f600}\u{d8})X1\r\nM30\n\nY2";
+        for encoding in [PositionEncoding::Utf8, PositionEncoding::Utf16] {
+            let document = TextDocument::new(text.as_bytes(), encoding);
+            let offsets = || text.char_indices().map(|(at, _)| at as u32).chain([text.len() as u32, 99]);
+            for (known, offset) in offsets().flat_map(|known| offsets().map(move |offset| (known, offset))) {
+                let found = document.position_behind((known, document.position(known)), offset);
+                assert_eq!(found, document.position(offset), "{offset} from {known}");
+            }
+        }
     }
 
     /// Every replacement of a short text by each of a few gives the lines that the new text has from the start.
