@@ -83,6 +83,29 @@ fn every_layout_passes_on_every_place_with_every_operation() {
     }
 }
 
+/// A drill of 10.2 mm and 118° to 32 mm is full to 32 − 5.1/tan 59° = 28.936 mm, one of 140° to 32 − 5.1/tan 70° = 30.144 mm.
+#[test]
+fn a_tap_that_goes_into_the_cone_of_its_drill_is_refused() {
+    for (point, depth, is_refused) in [
+        ("", 28.9, false),
+        ("", 29.1, true),
+        ("point_angle = 140.0", 30.1, false),
+        ("point_angle = 140.0", 30.3, true),
+    ] {
+        let job = format!(
+            "family = \"pattern\"\ncontrol = {{ dialect = \"fanuc-31i\", increment = \"IS-B\" }}\n\
+             tolerance = {{ position = 0.05, depth = 0.1 }}\n\
+             [[tool]]\nnumber = 1\noperation = \"drill\"\ndiameter = 10.2\nspeed = 1200\nfeed = 180.0\n{point}\n\
+             [[tool]]\nnumber = 2\noperation = \"tap\"\ndiameter = 12.0\nspeed = 300\npitch = 1.75\n\
+             [[pattern]]\nid = \"A\"\npoints = [[5.0, 7.0]]\n\
+             make = [{{ tool = 1, depth = 32.0 }}, {{ tool = 2, depth = {depth:?} }}]\n"
+        );
+        let found = refusals(&Bench::of(&job)).join("\n");
+        assert_eq!(!found.is_empty(), is_refused, "{point} {depth}: {found}");
+        assert!(!is_refused || found.contains("tap-drill"), "{found}");
+    }
+}
+
 #[test]
 fn a_wrong_digit_of_a_macro_or_a_call_is_refused() {
     for (layout, program, edit) in [

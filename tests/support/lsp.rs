@@ -128,7 +128,9 @@ impl<'a> Session<'a> {
                 self.notify("textDocument/didClose", json!({ "textDocument": { "uri": self.uri(name) } }))
             }
             "disk" => {
-                std::fs::write(self.folder.join(name), self.text(body)).unwrap();
+                let path = self.folder.join(name);
+                std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+                std::fs::write(path, self.text(body)).unwrap();
                 if words.next() != Some("silently") {
                     let change = json!({ "uri": self.uri(name), "type": 2 });
                     self.notify("workspace/didChangeWatchedFiles", json!({ "changes": [change] }));
