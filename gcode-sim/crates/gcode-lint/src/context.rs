@@ -23,8 +23,8 @@ use super::control_flow::ControlFlowGraph;
 use super::locals::States;
 use super::piece::Piece;
 use super::possible_modes::PossibleModes;
+use super::possible_units::PossibleUnits;
 pub(crate) use super::role::Role;
-use super::units::PossibleUnits;
 use super::variables::{self, VariableRead};
 
 /// Note of a finding that is none on a control with another option.

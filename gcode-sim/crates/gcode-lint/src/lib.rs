@@ -37,6 +37,7 @@ mod piece;
 mod piece_ends;
 mod pieces;
 mod possible_modes;
+mod possible_units;
 mod prelude;
 #[cfg(test)]
 mod property_tests;

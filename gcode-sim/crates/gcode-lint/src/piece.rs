@@ -5,9 +5,8 @@ use gcode_lang::source::Span;
 
 use super::locals::Locals;
 use super::possible_modes::PossibleModes;
+use super::possible_units::PossibleUnits;
 use super::role::Role;
-use super::rules;
-use super::units::PossibleUnits;
 
 /// Place of a piece in its program, and what the pieces before it leave.
 #[derive(Clone, Debug)]
@@ -41,8 +40,13 @@ impl PieceEntry {
             (Some(mine), Some(others)) => mine.join(others),
             (mine, others) => *mine = mine.or(others),
         }
-        self.pending_move = rules::later(self.pending_move, other.pending_move);
+        self.pending_move = later(self.pending_move, other.pending_move);
     }
+}
+
+/// Returns the later one of two moves, of which either may be in progress.
+pub(crate) fn later(one: Option<Span>, other: Option<Span>) -> Option<Span> {
+    one.into_iter().chain(other).max_by_key(|span| span.start)
 }
 
 /// State before the first block of a piece.

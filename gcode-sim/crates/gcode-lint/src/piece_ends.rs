@@ -86,3 +86,22 @@ fn crossed_places(
     }
     crossed
 }
+
+/// Returns the blocks behind a piece to which it jumps, and the blocks that do, each with the index of its target.
+pub(super) fn far_jumps(
+    part: &Program,
+    (whole, blocks): (&Program, Range<OpIndex>),
+) -> (Vec<OpIndex>, Vec<(OpIndex, usize)>) {
+    let mut targets = Vec::new();
+    let mut jumps = Vec::new();
+    for jump in ControlFlowGraph::new(part, &[]).jumps.iter().filter(|jump| !jump.is_return) {
+        let target = whole.find_number(jump.number, blocks.start + jump.block + 1);
+        let Some(target) = target.filter(|target| blocks.end <= *target) else { continue };
+        let place = targets.iter().position(|known| *known == target).unwrap_or_else(|| {
+            targets.push(target);
+            targets.len() - 1
+        });
+        jumps.push((jump.block, place));
+    }
+    (targets, jumps)
+}

@@ -13,20 +13,20 @@ use gcode_lang::source::Span;
 use gcode_lang::syntax::KnownBlocks;
 
 use super::context::{CheckContext, LoadedProgram, ProgramUnit, Role};
-use super::control_flow::ControlFlowGraph;
 use super::literal;
 use super::loader::Loader;
 use super::locals::Locals;
 use super::modes::modes_before;
 use super::parameters::has_open_parameter_input;
 use super::piece::{Piece, PieceEntry, PieceStart};
-use super::piece_ends::{PieceSizes, piece_end};
+use super::piece_ends::{PieceSizes, far_jumps, piece_end};
+use super::possible_units::PossibleUnits;
 use super::rules::{
     self, PointCounts, alarming_cancel, doubled_numbers, limits_lookahead, pending_moves, point_counts,
     sequence_numbers,
 };
 use super::suppression::{Suppression, suppressions};
-use super::units::{PossibleUnits, unit_in_force};
+use super::units::unit_in_force;
 use super::unset_reads::entry_locals;
 use super::vacancy::states_without_arguments;
 use super::{ControlKnowledge, FindingLimit};
@@ -308,25 +308,6 @@ impl WholeProgram {
         };
         Ok((start, findings))
     }
-}
-
-/// Returns the blocks behind a piece to which it jumps, and the blocks that do, each with the index of its target.
-fn far_jumps(
-    part: &Program,
-    (whole, blocks): (&Program, Range<OpIndex>),
-) -> (Vec<OpIndex>, Vec<(OpIndex, usize)>) {
-    let mut targets = Vec::new();
-    let mut jumps = Vec::new();
-    for jump in ControlFlowGraph::new(part, &[]).jumps.iter().filter(|jump| !jump.is_return) {
-        let target = whole.find_number(jump.number, blocks.start + jump.block + 1);
-        let Some(target) = target.filter(|target| blocks.end <= *target) else { continue };
-        let place = targets.iter().position(|known| *known == target).unwrap_or_else(|| {
-            targets.push(target);
-            targets.len() - 1
-        });
-        jumps.push((jump.block, place));
-    }
-    (targets, jumps)
 }
 
 /// Returns the states that the jumps of a piece bring to blocks behind it.

@@ -1,60 +1,11 @@
 //! Unit in which the numbers of a program count: its own G20 or G21, those of the programs that it calls or
 //! that call it, or the unit at power-on.
 use std::collections::BTreeSet;
-use std::ops::BitOrAssign;
 
-use gcode_lang::program::Program;
-use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Unit;
 
 use crate::context::{CheckContext, ProgramUnit, Role};
-
-/// Units that may be in force.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct PossibleUnits {
-    metric: bool,
-    inch: bool,
-}
-
-impl PossibleUnits {
-    const BOTH: Self = Self { metric: true, inch: true };
-
-    fn of(unit: Unit) -> Self {
-        Self { metric: unit == Unit::Metric, inch: unit == Unit::Inch }
-    }
-
-    /// Returns the units that the blocks of a program command.
-    pub(super) fn commanded_in(program: &Program) -> Self {
-        let words = program.ops().iter().filter_map(|op| op.kind().words());
-        let mut units = Self::default();
-        for row in words.flat_map(|words| words.g_codes().filter_map(|found| found.row_for_any())) {
-            if let Effect::Unit(unit) = row.effect {
-                units |= Self::of(unit);
-            }
-        }
-        units
-    }
-
-    fn is_none(self) -> bool {
-        self == Self::default()
-    }
-
-    /// Returns the only unit that may be in force.
-    fn only(self) -> Option<Unit> {
-        match self {
-            Self { metric: true, inch: false } => Some(Unit::Metric),
-            Self { metric: false, inch: true } => Some(Unit::Inch),
-            _ => None,
-        }
-    }
-}
-
-impl BitOrAssign for PossibleUnits {
-    fn bitor_assign(&mut self, other: Self) {
-        self.metric |= other.metric;
-        self.inch |= other.inch;
-    }
-}
+use crate::possible_units::PossibleUnits;
 
 /// Returns the unit in which a program counts; `None` if it may be either.
 ///

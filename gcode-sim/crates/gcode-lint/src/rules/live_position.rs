@@ -13,6 +13,7 @@ use gcode_lang::source::Span;
 
 use crate::calls::CallSite;
 use crate::literal;
+use crate::piece::later;
 use crate::prelude::*;
 use crate::variables::{self, VariableRead};
 
@@ -101,11 +102,6 @@ pub(crate) fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) 
         |known, other| *known = later(*known, other),
         next,
     )
-}
-
-/// Returns the later one of two moves, of which either may be in progress.
-pub(crate) fn later(one: Option<Span>, other: Option<Span>) -> Option<Span> {
-    one.into_iter().chain(other).max_by_key(|span| span.start)
 }
 
 /// Returns the effect of a call: that of a program that only moves, or does neither; false if it is unknown.

@@ -44,7 +44,7 @@ pub use super::rule::Rule;
 use super::suppression::{Suppression, suppressions};
 use super::vacancy::keeps_locals;
 pub(super) use doubled_n::{doubled_numbers, sequence_numbers};
-pub(crate) use live_position::{later, limits_lookahead, pending_moves};
+pub(super) use live_position::{limits_lookahead, pending_moves};
 pub(super) use missing_point::{PointCounts, as_whole as missing_points_as_whole, point_counts};
 pub(super) use missing_program::find as missing_programs;
 pub(super) use refused_words::alarming_cancel;
