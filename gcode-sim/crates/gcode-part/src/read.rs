@@ -209,7 +209,7 @@ mod tests {
             ),
             (
                 "id,x,y,z,i,j,k,depth,through\n1,0,0,0,0,1,0,5,maybe\n".to_owned(),
-                "line 2: column 'through' is 'maybe': true or false",
+                "line 2: column 'through' is 'maybe': yes or no",
             ),
             (
                 "id,x,y,z,i,j,k,depth,features\n1,0,0,0,0,1,0,5,drill 6 15; cbore 10 5\n".to_owned(),

@@ -22,6 +22,7 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         misplaced_comma,
         exponent,
         missing_operator,
+        function_without_brackets,
         else_case,
         two_signs,
         zero_divisor,
@@ -264,6 +265,18 @@ fn missing_operator(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String>
         .then(|| format!("check for a missing + - * or / before {}", &line[at..]))
 }
 
+/// Detects `#1=SIN30` and `#1=ABS-#2`.
+fn function_without_brackets(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    if *alarm != Alarm::MissingOpenBracket {
+        return None;
+    }
+    let before = alarm_line.before.trim_end();
+    let name = &before[before.rfind(|c: char| !c.is_ascii_alphabetic()).map_or(0, |at| at + 1)..];
+    let rest = alarm_line.rest;
+    let end = rest.find(|c: char| !matches!(c, '0'..='9' | '.' | '#' | '-')).unwrap_or(rest.len());
+    (!name.is_empty() && end > 0).then(|| format!("write {name}[{}]", &rest[..end]))
+}
+
 /// Detects `IF[…]THEN #1=2 ELSE #1=3`.
 fn else_case(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let is_else =
@@ -430,6 +443,13 @@ mod tests {
         // With calculator input a missing point is not the error.
         assert!(!help(small(4.0), "G02 X10. R4", "R4").contains("without"));
         assert!(help(Alarm::WordNotSimulated('X'), "G04 X1.5 P500", "X1.5").contains("one time"));
+    }
+
+    #[test]
+    fn a_function_without_brackets_is_written_with_them() {
+        assert_eq!(help(Alarm::MissingOpenBracket, "#100=SIN30", "30"), "write SIN[30]");
+        assert_eq!(help(Alarm::MissingOpenBracket, "#1=2*ABS -#2+1", "-#2"), "write ABS[-#2]");
+        assert!(help(Alarm::MissingOpenBracket, "#1=1+2]", "]").contains("unmatched"));
     }
 
     #[test]

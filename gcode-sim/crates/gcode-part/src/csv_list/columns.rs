@@ -5,11 +5,36 @@ use gcode_lang::similar;
 
 /// Columns of a list, with other names of each; a feature's own columns are beside them.
 const COLUMNS: [(&str, &[&str]); 11] = [
-    ("id", &["hole", "no", "nr", "no.", "nr.", "tag", "孔号", "序号"]),
+    (
+        "id",
+        &[
+            "hole",
+            "no",
+            "nr",
+            "no.",
+            "nr.",
+            "tag",
+            "#",
+            "hole #",
+            "hole#",
+            "hole no",
+            "hole no.",
+            "hole number",
+            "hole id",
+            "pos",
+            "pos.",
+            "孔号",
+            "序号",
+        ],
+    ),
     (
         "x",
         &[
             "x pos",
+            "x pos.",
+            "x location",
+            "x coordinate",
+            "x dim",
             "x loc",
             "xpos",
             "pos x",
@@ -26,6 +51,10 @@ const COLUMNS: [(&str, &[&str]); 11] = [
         "y",
         &[
             "y pos",
+            "y pos.",
+            "y location",
+            "y coordinate",
+            "y dim",
             "y loc",
             "ypos",
             "pos y",
@@ -80,10 +109,13 @@ pub(super) const FEATURE_COLUMNS: [&str; 5] = ["depth", "to", "angle", "pitch", 
 /// Returns true if the first line looks like a header of columns, unlike the first line of a job file.
 pub(crate) fn is_csv(text: &str) -> bool {
     let first = first_line(text);
-    if first.trim_start().starts_with('#') {
+    let separator = separator(first);
+    // `#` heads the numbers of the holes; with words behind it, it is a comment.
+    if first.trim_start().starts_with('#')
+        && first.split(separator).next().is_none_or(|cell| cell.trim() != "#")
+    {
         return false;
     }
-    let separator = separator(first);
     let names: Vec<_> = first.split(separator).map(column_name).collect();
     // A job file begins with a key and its value, or with a section.
     1 < names.len() && !first.contains('=') && !names[0].starts_with('[')

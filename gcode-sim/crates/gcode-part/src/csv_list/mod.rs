@@ -202,9 +202,9 @@ impl Cells<'_> {
             diameter: self.number("diameter")?,
             features: self.features()?,
             through: match self.text("through").to_lowercase().as_str() {
-                "" | "false" | "no" => false,
-                "true" | "yes" => true,
-                other => return Err(format!("column 'through' is '{other}': true or false is required")),
+                "" | "false" | "no" | "n" | "0" | "-" | "nein" => false,
+                "true" | "yes" | "y" | "1" | "x" | "ja" | "j" | "thru" | "through" | "durch" => true,
+                other => return Err(format!("column 'through' is '{other}': yes or no is required")),
             },
             ..Hole::default()
         };

@@ -43,11 +43,28 @@ fn separators_decimal_commas_case_units_and_a_line_with_the_separator_are_read()
 #[test]
 fn columns_have_the_words_of_drawings() {
     let plain = read("x,y,depth,countersink,countersink angle,through\n1,2,20,10,90,yes\n");
-    for header in ["X,Y,DEPTH,C'SINK,C'SINK ANGLE,THRU", "x,y,depth,csk,csk angle,thru hole"] {
-        let list = read(&format!("{header}\n1,2,20,10,90,YES\n"));
-        assert_eq!(list.holes, plain.holes, "{header}");
+    for header in [
+        "X,Y,DEPTH,C'SINK,C'SINK ANGLE,THRU",
+        "x,y,depth,csk,csk angle,thru hole",
+        "X Location,Y Location,depth,csk,csk angle,durchgehend",
+    ] {
+        for yes in ["YES", "x", "ja", "THRU", "1"] {
+            let list = read(&format!("{header}\n1,2,20,10,90,{yes}\n"));
+            assert_eq!(list.holes, plain.holes, "{header}, {yes}");
+        }
+        let blind = read(&format!("{header}\n1,2,20,10,90,\n1,3,20,10,90,nein\n1,4,20,10,90,0\n"));
+        assert!(blind.holes.holes.iter().all(|hole| !hole.through), "{header}");
     }
     assert!(plain.holes.holes[0].through);
+    assert!(
+        refused("x,y,depth,thru\n1,2,20,20\n").contains("column 'through' is '20': yes or no is required")
+    );
+    for name in ["#", "Hole #", "Hole#", "Hole No.", "Pos."] {
+        let text = format!("{name},X,Y,DEPTH\n7,1,2,20\n");
+        assert!(is_csv(&text), "{name}");
+        assert_eq!(read(&text).holes.holes[0].id.as_deref(), Some("7"), "{name}");
+    }
+    assert!(!is_csv("# holes, of the drawing\nfamily = \"pattern\"\n"));
 }
 
 /// 1.5 inch is 38.1 mm, 0.25 inch 6.35; an axis and an angle have no length, and M10x1.5 is metric everywhere.
