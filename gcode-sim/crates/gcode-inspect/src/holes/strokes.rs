@@ -386,7 +386,12 @@ impl MilledStrokes {
 }
 
 impl CuttingLine {
-    /// Returns true for a feed across the tool, as far as its direction is known.
+    /// Returns true for a feed square to the tool, as far as its direction is known.
+    pub(super) fn is_square_to_tool(&self) -> bool {
+        self.tool_axis.is_some_and(|axis| axis.dot(&self.out).abs() <= MAX_SQUARE_SINE)
+    }
+
+    /// Returns true for a feed across the tool, or against it, as far as its direction is known.
     pub(super) fn is_across_tool(&self) -> bool {
         self.tool_axis.is_some_and(|axis| axis.dot(&self.out) < MIN_TOOL_COSINE)
     }
@@ -407,11 +412,12 @@ impl HoleExtractor<'_> {
         }
         let is_between_rapids = !line.is_reached_by_feed && !is_feeding;
         let along_tool = CutKind::AlongTool { is_between_rapids };
-        if let Some(axis) = line.tool_axis {
+        if line.tool_axis.is_some() {
             let kind = self.machine.kind_of(line.cutting_state.tool);
-            let is_square = axis.dot(&line.out).abs() <= MAX_SQUARE_SINE;
             return match line.is_across_tool() {
-                true if is_square && !kind.is_some_and(ToolKind::cuts_with_end) => CutKind::Side,
+                true if line.is_square_to_tool() && !kind.is_some_and(ToolKind::cuts_with_end) => {
+                    CutKind::Side
+                }
                 true => CutKind::Oblique,
                 false => along_tool,
             };

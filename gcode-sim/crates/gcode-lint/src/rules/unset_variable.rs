@@ -58,7 +58,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         } else {
             (Severity::Warning, so.to_owned())
         };
-        let message = format!("#{local} is read but never set: {so}");
+        let message = format!("#{local} is read before a block sets it: {so}");
         let help = format!("set #{local} before it is read, or correct its number");
         let finding = unit.finding(&RULE.kind, block, message).with_severity(severity);
         found.push(finding.with_span(span).help(help));
@@ -78,13 +78,16 @@ mod tests {
         assert_eq!(lines(&RULE, "O1\n#1=#2+1\n#3=#3*2\n#4=1-#4\n#5=#5+#5\nM30\n"), [2, 3, 4, 5]);
         assert_eq!(lines(&RULE, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
         let found = messages(&RULE, "O1\nG0 Y#2\nM30\n");
-        assert_eq!(found, ["#2 is read but never set: its word is ignored"]);
+        assert_eq!(found, ["#2 is read before a block sets it: its word is ignored"]);
     }
 
     #[test]
     fn a_vacant_divisor_is_the_alarm() {
         let found = messages(&RULE, "O1\n#1=360.\n#2=#1/#3\n#4=#1*#5\nM30\n");
-        assert_eq!(found, ["#3 is read but never set: PS0112", "#5 is read but never set: it counts as 0"]);
+        assert_eq!(
+            found,
+            ["#3 is read before a block sets it: PS0112", "#5 is read but never set: it counts as 0"]
+        );
     }
 
     #[test]
