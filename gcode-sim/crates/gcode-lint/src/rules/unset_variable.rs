@@ -86,7 +86,10 @@ mod tests {
         let found = messages(&RULE, "O1\n#1=360.\n#2=#1/#3\n#4=#1*#5\nM30\n");
         assert_eq!(
             found,
-            ["#3 is read before a block sets it: PS0112", "#5 is read but never set: it counts as 0"]
+            [
+                "#3 is read before a block sets it: PS0112",
+                "#5 is read before a block sets it: it counts as 0"
+            ]
         );
     }
 
