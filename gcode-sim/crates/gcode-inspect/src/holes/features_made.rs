@@ -80,9 +80,8 @@ impl DrilledHole {
                 None => deepest.push(pass),
             }
         }
-        let kept: Vec<bool> = deepest.iter().map(|pass| !is_drilled_away(pass, &deepest, machine)).collect();
-        let mut kept = kept.into_iter();
-        deepest.retain(|_| kept.next().unwrap_or(true));
+        let is_left = |pass: &&ToolPass<'_>| !is_drilled_away(pass, &deepest, machine);
+        let deepest: Vec<ToolPass<'_>> = deepest.iter().filter(is_left).copied().collect();
         let makes_diameter = |pass: &ToolPass<'_>| {
             let is_cone = machine
                 .kind_of(pass.tool)

@@ -225,11 +225,12 @@ impl HoleExtractor<'_> {
     /// a list of holes only a feed square to the tool: another one is a hole with a head that is set wrong.
     /// At an unknown position nothing says what it removes.
     pub(super) fn is_milled(&self, line: &CuttingLine) -> bool {
-        let is_milling = match self.metal.holes {
-            Some(_) => line.is_across_tool() || self.is_pocketing(line) && !self.is_nominal_cycle(line),
-            None => line.is_square_to_tool(),
-        };
-        self.surface.is_some() && without_assumed(line.unknown_axes, self.machine).is_none() && is_milling
+        self.surface.is_some()
+            && without_assumed(line.unknown_axes, self.machine).is_none()
+            && match self.metal.holes {
+                Some(_) => line.is_across_tool() || self.is_pocketing(line) && !self.is_nominal_cycle(line),
+                None => line.is_square_to_tool(),
+            }
     }
 
     /// Returns true if a cycle drills at a nominal hole: it makes the hole, also where a pocket removes it later.
