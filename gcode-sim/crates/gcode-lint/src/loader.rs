@@ -7,7 +7,7 @@ use gcode_lang::syntax::KnownBlocks;
 
 use super::calls::{CallSite, CalledProgramName};
 use super::context::LoadedProgram;
-use super::repetition::{Repetitions, have_jumps};
+use super::repetition::Repetitions;
 
 /// Programs that are found, and those of them that are loaded.
 pub(super) struct Loader<'a, L> {
@@ -37,7 +37,8 @@ impl<'a, L: Library> Loader<'a, L> {
     /// Returns true if a jump may lead to a sequence number that is left out. Of a long program it is not known.
     pub(super) fn may_numbers_matter(&self) -> bool {
         let loaded = self.loaded.iter().map(|program| program.id);
-        self.repetitions.has_numbers() && (!self.long.is_empty() || have_jumps(self.memory, loaded))
+        let Self { repetitions, memory, long, .. } = self;
+        repetitions.has_numbers() && (!long.is_empty() || repetitions.may_be_jumped_to(memory, loaded))
     }
 
     /// Puts the moves back that were left out. Programs that become long are no longer loaded.

@@ -10,7 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::program::{
-    CallOp, CallTarget, LoweredWord, Memory, NumberBlock, OpIndex, OpKind, Program, ProgramId, WordOperand,
+    CallCode, CallOp, CallTarget, LoweredWord, Memory, NumberBlock, OpIndex, OpKind, Program, ProgramId, Statement,
+    WordOperand, Words,
 };
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::KnownBlocks;
@@ -27,8 +28,8 @@ pub(super) struct Repetitions {
     stand_ins: BTreeSet<(SourceId, u32)>,
     /// One of them has a finding.
     stand_for_found: bool,
-    /// A block within a run has a sequence number.
-    has_numbers: bool,
+    /// Programs with a sequence number on a block within a run.
+    numbered: BTreeSet<ProgramId>,
     /// What is left out, by program.
     left_out: BTreeMap<ProgramId, LeftOutBlocks>,
 }
@@ -103,6 +104,7 @@ impl Repetitions {
         let mut run = BlockRun::default();
         let mut numbers: Vec<(OpIndex, LeftOutNumber)> = Vec::new();
         let mut left_out = LeftOutBlocks::default();
+        let mut has_numbers = false;
         program.visit_number_blocks(|block, read| {
             let read = read.filter(|read| !is_read_by_rule(read.comment));
             let form = read.and_then(|read| BlockForm::of(&read, settings).zip(Some(read)));
@@ -117,7 +119,7 @@ impl Repetitions {
                 self.end_run(std::mem::take(&mut run), (source, &mut is_left_out, &mut left_out));
                 run.modes.after(form).unwrap_or_default()
             });
-            self.has_numbers |= form.has_number && run.is_numbered;
+            has_numbers |= form.has_number && run.is_numbered;
             run.is_numbered = form.has_number;
             let first = *run.first.entry((run.modes, form)).or_insert(span.start);
             // A block that changes the mode stays: the rest would be judged in another one.
@@ -138,6 +140,7 @@ impl Repetitions {
             run.modes = after;
         });
         self.end_run(run, (source, &mut is_left_out, &mut left_out));
+        self.numbered.extend(Some(id).filter(|_| has_numbers));
         if is_left_out.contains(&true) {
             let numbers = numbers.into_iter().filter(|(block, _)| is_left_out[*block]);
             left_out.numbers = numbers.map(|(_, number)| number).collect();
@@ -183,7 +186,19 @@ impl Repetitions {
 
     /// Returns true if a block within a run has a sequence number.
     pub(super) fn has_numbers(&self) -> bool {
-        self.has_numbers
+        !self.numbered.is_empty()
+    }
+
+    /// Returns true if a block of some programs may jump to a sequence number that is left out.
+    pub(super) fn may_be_jumped_to(
+        &self,
+        memory: &Memory,
+        programs: impl IntoIterator<Item = ProgramId>,
+    ) -> bool {
+        programs.into_iter().any(|id| {
+            let is_numbered = self.numbered.contains(&id);
+            memory.get(id).ops().iter().any(|op| jumps_between(op.kind()) || is_numbered && may_jump(op.kind()))
+        })
     }
 
     /// Returns true if one of the blocks that stand for others has a finding.
@@ -324,22 +339,39 @@ impl RunModes {
     }
 }
 
-/// Returns true if a block of some programs may jump to a sequence number.
-pub(super) fn have_jumps(memory: &Memory, programs: impl IntoIterator<Item = ProgramId>) -> bool {
-    programs.into_iter().flat_map(|id| memory.get(id).ops()).any(|op| may_jump(op.kind()))
+/// Returns true for a block that leads to a sequence number of another program: `M99 P`, `M98 P Q`.
+fn jumps_between(kind: &OpKind) -> bool {
+    let is_return_to = |call: &CallOp| call.kind == CallCode::Return && !matches!(call.target, CallTarget::None);
+    let call = kind.words().and_then(Words::call);
+    call.is_some_and(|call| call.start.is_some() || is_return_to(call))
 }
 
-/// Returns true for a block that may jump to a sequence number, or call a program that does.
+/// Returns true for a block that may jump to a sequence number of its program.
 fn may_jump(kind: &OpKind) -> bool {
-    let is_numbered = |call: &CallOp| call.start.is_some() || !matches!(call.target, CallTarget::None);
+    let is_jump = |word: &LoweredWord| word.letter == b'M' && matches!(literal::word_count(word), Some(96 | 97));
     match kind {
-        OpKind::Words(words) => {
-            let is_local_call =
-                words.list.iter().any(|word| word.letter == b'M' && literal::word_count(word) == Some(97));
-            is_local_call || words.call().is_some_and(is_numbered)
-        }
-        OpKind::Statement(_) | OpKind::If { .. } => true,
-        OpKind::Empty | OpKind::AssignDirect(_) | OpKind::Alarm(_) => false,
+        OpKind::Statement(statement) => statement_may_jump(statement),
+        OpKind::If { then, .. } => may_jump(then),
+        OpKind::Words(words) => words.list.iter().any(is_jump),
+        OpKind::Alarm(_) => true,
+        OpKind::Empty | OpKind::AssignDirect(_) => false,
+    }
+}
+
+fn statement_may_jump(statement: &Statement) -> bool {
+    match statement {
+        Statement::Goto(_) | Statement::IfGoto { .. } | Statement::Alarm(_) => true,
+        Statement::IfThen { then, .. } => statement_may_jump(then),
+        Statement::Assignments(all) => all.iter().any(statement_may_jump),
+        Statement::Assign { .. }
+        | Statement::AssignDirect(_)
+        | Statement::While { .. }
+        | Statement::Do { .. }
+        | Statement::End { .. }
+        | Statement::SetNames { .. }
+        | Statement::Print { .. }
+        | Statement::OpenOutput
+        | Statement::CloseOutput => false,
     }
 }
 
