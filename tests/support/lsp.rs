@@ -11,6 +11,7 @@
 //! - `-> METHOD {…}` and `<- {…}` or `<- error -32602 ~words`: a request and its answer, which `json` compares. `$O1.nc`
 //!   is the URI of a file.
 //! - `notify METHOD {…}`; `server METHOD ~words`: waits for a message of the server; `reply METHOD {…}`: answers its request.
+//! - `never METHOD`: the server has sent no such request that no step has taken.
 //! - `eol crlf`: lines behind `|` end with CR LF from here on.
 use std::collections::VecDeque;
 use std::path::Path;
@@ -171,6 +172,10 @@ impl<'a> Session<'a> {
                     }
                     _ => false,
                 });
+            }
+            "never" => {
+                let is_sent = |message: &Message| matches!(message, Message::Request(request) if request.method == name);
+                assert!(!self.received.iter().any(is_sent), "{}", self.place);
             }
             _ => panic!("{}: no such step", self.place),
         }

@@ -10,8 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::program::{
-    CallCode, CallOp, CallTarget, LoweredWord, Memory, NumberBlock, OpIndex, OpKind, Program, ProgramId, Statement,
-    WordOperand, Words,
+    CallCode, CallOp, CallTarget, LoweredWord, Memory, NumberBlock, OpIndex, OpKind, Program, ProgramId,
+    Statement, WordOperand, Words,
 };
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::KnownBlocks;
@@ -197,7 +197,11 @@ impl Repetitions {
     ) -> bool {
         programs.into_iter().any(|id| {
             let is_numbered = self.numbered.contains(&id);
-            memory.get(id).ops().iter().any(|op| jumps_between(op.kind()) || is_numbered && may_jump(op.kind()))
+            memory
+                .get(id)
+                .ops()
+                .iter()
+                .any(|op| jumps_between(op.kind()) || is_numbered && may_jump(op.kind()))
         })
     }
 
@@ -341,14 +345,16 @@ impl RunModes {
 
 /// Returns true for a block that leads to a sequence number of another program: `M99 P`, `M98 P Q`.
 fn jumps_between(kind: &OpKind) -> bool {
-    let is_return_to = |call: &CallOp| call.kind == CallCode::Return && !matches!(call.target, CallTarget::None);
+    let is_return_to =
+        |call: &CallOp| call.kind == CallCode::Return && !matches!(call.target, CallTarget::None);
     let call = kind.words().and_then(Words::call);
     call.is_some_and(|call| call.start.is_some() || is_return_to(call))
 }
 
 /// Returns true for a block that may jump to a sequence number of its program.
 fn may_jump(kind: &OpKind) -> bool {
-    let is_jump = |word: &LoweredWord| word.letter == b'M' && matches!(literal::word_count(word), Some(96 | 97));
+    let is_jump =
+        |word: &LoweredWord| word.letter == b'M' && matches!(literal::word_count(word), Some(96 | 97));
     match kind {
         OpKind::Statement(statement) => statement_may_jump(statement),
         OpKind::If { then, .. } => may_jump(then),

@@ -26,6 +26,9 @@ pub(crate) struct Client {
     pub can_register_watchers: bool,
     pub has_line_folding_only: bool,
     pub has_apply_edit: bool,
+    /// The client asks again for inlay hints when it is told to.
+    pub can_refresh_hints: bool,
+    pub can_refresh_tokens: bool,
 }
 
 impl Client {
@@ -68,6 +71,12 @@ impl Client {
             has_configuration: is(workspace.and_then(|workspace| workspace.configuration)),
             can_register_watchers: is(watchers.and_then(|watchers| watchers.dynamic_registration)),
             has_line_folding_only: is(text.and_then(|text| text.folding_range.as_ref()?.line_folding_only)),
+            can_refresh_hints: is(
+                workspace.and_then(|workspace| workspace.inlay_hint.as_ref()?.refresh_support)
+            ),
+            can_refresh_tokens: is(
+                workspace.and_then(|workspace| workspace.semantic_tokens.as_ref()?.refresh_support)
+            ),
             has_apply_edit: is(workspace.and_then(|workspace| workspace.apply_edit)),
         }
     }

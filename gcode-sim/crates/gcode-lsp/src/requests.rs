@@ -77,7 +77,7 @@ pub(crate) fn handler(method: &str) -> Option<Handler> {
         SignatureHelpRequest::METHOD => now!(SignatureHelpRequest, text_help::signature_help),
         SemanticTokensFullRequest::METHOD => aside!(SemanticTokensFullRequest, semantic_tokens::full),
         SemanticTokensRangeRequest::METHOD => now!(SemanticTokensRangeRequest, semantic_tokens::range),
-        CodeLensRequest::METHOD => now!(CodeLensRequest, commands::code_lenses),
+        CodeLensRequest::METHOD => aside!(CodeLensRequest, commands::code_lenses),
         PrepareRenameRequest::METHOD => now!(PrepareRenameRequest, edits::prepare_rename),
         HoverRequest::METHOD => later!(HoverRequest, text_help::hover),
         InlayHintRequest::METHOD => later!(InlayHintRequest, hints::inlay_hints),

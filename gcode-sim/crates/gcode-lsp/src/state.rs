@@ -9,6 +9,7 @@ use gcode_ide::FileId;
 use gcode_lang::control::Settings;
 use lsp_server::{Message, Notification, Request, RequestId, Response};
 use lsp_types::notification::{Notification as _, PublishDiagnostics, ShowMessage};
+use lsp_types::request::{InlayHintRefreshRequest, SemanticTokensRefresh};
 use lsp_types::{Diagnostic, MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri};
 
 use crate::checker::{self, CheckAnswer, CheckJob};
@@ -292,8 +293,23 @@ impl ServerState {
         let path = self.snapshot.path(file);
         let others = self.checked.iter().filter(|(other, _)| **other != file);
         let others = others.filter(|(_, basis)| basis.rests_on(&path, has_other_programs));
-        for other in others.map(|(other, _)| *other).collect::<Vec<_>>() {
+        let others: Vec<_> = others.map(|(other, _)| *other).collect();
+        let is_called_open = self.checked.get(&file).is_some_and(|basis| {
+            let called = basis.called.iter().filter(|called| **called != path);
+            called.into_iter().any(|called| self.snapshot.files.is_open(called))
+        });
+        if is_called_open || others.iter().any(|other| self.snapshot.documents.contains_key(other)) {
+            self.refresh_hints();
+        }
+        for other in others {
             self.check(other, false);
+        }
+    }
+
+    /// Has the client ask again for hints: those of open documents may rest on a text that another document changed.
+    fn refresh_hints(&mut self) {
+        if self.snapshot.client.can_refresh_hints {
+            self.ask::<InlayHintRefreshRequest>(());
         }
     }
 
@@ -316,6 +332,9 @@ impl ServerState {
             }
         }
         self.outdate_runs();
+        if !self.snapshot.documents.is_empty() {
+            self.refresh_hints();
+        }
         let files: Vec<_> = self.snapshot.documents.keys().chain(self.checked.keys()).copied().collect();
         let files: BTreeSet<_> = files.into_iter().collect();
         for file in files {
@@ -355,7 +374,12 @@ impl ServerState {
     /// Notes the control of a document.
     fn take_settings(&mut self, file: FileId) {
         let settings = self.snapshot.setup(file).settings;
-        self.settings.insert(file, settings);
+        let before = self.settings.insert(file, settings);
+        // The dialect tells the kinds of codes and variables.
+        let is_other = before.is_some_and(|before| self.settings.get(&file) != Some(&before));
+        if is_other && self.snapshot.client.can_refresh_tokens {
+            self.ask::<SemanticTokensRefresh>(());
+        }
     }
 
     /// Has the index read for the control of a document.
