@@ -27,6 +27,7 @@ mod context;
 mod control_flow;
 mod expressions;
 mod first_reach;
+mod jump_targets;
 mod literal;
 mod loader;
 mod locals;

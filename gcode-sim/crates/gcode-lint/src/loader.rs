@@ -34,11 +34,11 @@ impl<'a, L: Library> Loader<'a, L> {
         Self { memory, settings, library, repetitions, loaded, long, found, known, first_called, next: 0 }
     }
 
-    /// Returns true if a jump may lead to a sequence number that is left out. Of a long program it is not known.
+    /// Returns true if a program may lead to a sequence number of another one that is left out. Of a long program it is not known.
     pub(super) fn may_numbers_matter(&self) -> bool {
         let loaded = self.loaded.iter().map(|program| program.id);
         let Self { repetitions, memory, long, .. } = self;
-        repetitions.has_numbers() && (!long.is_empty() || repetitions.may_be_jumped_to(memory, loaded))
+        repetitions.has_numbers() && (!long.is_empty() || repetitions.are_targets(memory, loaded))
     }
 
     /// Puts the moves back that were left out. Programs that become long are no longer loaded.

@@ -3,20 +3,18 @@
 //! A long file consists of moves of axis words, or of calls, with decimal points. No rule depends on their values and comments,
 //! only on the form of a block (its letters, its code, the called program) and the modes in which it stands. In a run of such
 //! blocks one of each form in each mode stands for all of them, and the last move and the last call of each program for the end
-//! of the run. If a rule finds something at such a block, or a jump may lead to a sequence number that is left out, all blocks
-//! are checked. The rule of repeated sequence numbers knows those that are left out.
+//! of the run. A block to which its program jumps stays. If a rule finds something at a block that stands for others, or another
+//! program may lead to a sequence number that is left out, all blocks are checked. The rule of repeated sequence numbers knows those that are left out.
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::program::{
-    CallCode, CallOp, CallTarget, LoweredWord, Memory, NumberBlock, OpIndex, OpKind, Program, ProgramId,
-    Statement, WordOperand, Words,
-};
+use gcode_lang::program::{LoweredWord, Memory, NumberBlock, OpIndex, Program, ProgramId, WordOperand};
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::KnownBlocks;
 
 use super::context::{LeftOutBlocks, LeftOutNumber, LoadedProgram};
+use super::jump_targets::JumpTargets;
 use super::{literal, rules};
 
 /// Programs under check of which repeated blocks are left out.
@@ -28,8 +26,8 @@ pub(super) struct Repetitions {
     stand_ins: BTreeSet<(SourceId, u32)>,
     /// One of them has a finding.
     stand_for_found: bool,
-    /// Programs with a sequence number on a block within a run.
-    numbered: BTreeSet<ProgramId>,
+    /// Sequence numbers of blocks that are left out.
+    numbers: BTreeSet<u32>,
     /// What is left out, by program.
     left_out: BTreeMap<ProgramId, LeftOutBlocks>,
 }
@@ -99,71 +97,22 @@ impl Repetitions {
             return;
         }
         let program = memory.get(id);
-        let source = program.span.source;
-        let mut is_left_out = vec![false; program.block_count()];
-        let mut run = BlockRun::default();
-        let mut numbers: Vec<(OpIndex, LeftOutNumber)> = Vec::new();
-        let mut left_out = LeftOutBlocks::default();
-        let mut has_numbers = false;
-        program.visit_number_blocks(|block, read| {
-            let read = read.filter(|read| !is_read_by_rule(read.comment));
-            let form = read.and_then(|read| BlockForm::of(&read, settings).zip(Some(read)));
-            let Some((form, NumberBlock { number, span, words, .. })) = form else {
-                self.end_run(std::mem::take(&mut run), (source, &mut is_left_out, &mut left_out));
-                return;
-            };
-            // A jump may lead to a number; where all blocks have one, no jump is likely.
-            let begins_numbers = form.has_number && !run.is_numbered;
-            let after = run.modes.after(form).filter(|_| !begins_numbers);
-            let after = after.unwrap_or_else(|| {
-                self.end_run(std::mem::take(&mut run), (source, &mut is_left_out, &mut left_out));
-                run.modes.after(form).unwrap_or_default()
-            });
-            has_numbers |= form.has_number && run.is_numbered;
-            run.is_numbered = form.has_number;
-            let first = *run.first.entry((run.modes, form)).or_insert(span.start);
-            // A block that changes the mode stays: the rest would be judged in another one.
-            is_left_out[block] = after.setters == run.modes.setters && first != span.start;
-            let called = form.called();
-            run.last_left_out.remove(&called);
-            if is_left_out[block] {
-                self.stand_ins.insert((source, first));
-                let points = form.points(words);
-                run.points += points;
-                let last = LeftOutBlock { index: block, start: span.start, first, points };
-                run.last_left_out.insert(called, last);
-                if called.is_some() {
-                    *run.calls.entry(first).or_default() += 1;
-                }
-                numbers.extend(number.map(|number| (block, LeftOutNumber { number, block: span })));
+        let mut repeated = RepeatedBlocks::of(program, settings, &JumpTargets::default());
+        if !repeated.numbers.is_empty() {
+            let targets = JumpTargets::of(program, &repeated.others);
+            if repeated.numbers().any(|left_out| targets.has(left_out.number)) {
+                repeated = RepeatedBlocks::of(program, settings, &targets);
             }
-            run.modes = after;
-        });
-        self.end_run(run, (source, &mut is_left_out, &mut left_out));
-        self.numbered.extend(Some(id).filter(|_| has_numbers));
-        if is_left_out.contains(&true) {
-            let numbers = numbers.into_iter().filter(|(block, _)| is_left_out[*block]);
-            left_out.numbers = numbers.map(|(_, number)| number).collect();
-            self.left_out.insert(id, left_out);
-            let short = program.without(&is_left_out);
+        }
+        if repeated.is_left_out.contains(&true) {
+            let numbers: Vec<_> = repeated.numbers().collect();
+            self.numbers.extend(numbers.iter().map(|left_out| left_out.number));
+            let short = program.without(&repeated.is_left_out);
+            let RepeatedBlocks { stand_ins, calls, points, .. } = repeated;
+            self.stand_ins.extend(stand_ins);
+            self.left_out.insert(id, LeftOutBlocks { numbers, calls, points });
             self.programs.push((id, memory.replace(id, short)));
         }
-    }
-
-    /// Keeps the last blocks of a run.
-    fn end_run(
-        &mut self,
-        mut run: BlockRun,
-        (source, is_left_out, left_out): (SourceId, &mut [bool], &mut LeftOutBlocks),
-    ) {
-        for LeftOutBlock { index, start, first, points } in run.last_left_out.into_values() {
-            is_left_out[index] = false;
-            self.stand_ins.insert((source, start));
-            run.calls.entry(first).and_modify(|count| *count -= 1);
-            run.points -= points;
-        }
-        left_out.calls.append(&mut run.calls);
-        left_out.points += run.points;
     }
 
     /// Puts the programs back that have more than `max_blocks` blocks and that `is_one` accepts. Returns them.
@@ -184,25 +133,15 @@ impl Repetitions {
         long.into_iter().map(put_back).collect()
     }
 
-    /// Returns true if a block within a run has a sequence number.
+    /// Returns true if a block that is left out has a sequence number.
     pub(super) fn has_numbers(&self) -> bool {
-        !self.numbered.is_empty()
+        !self.numbers.is_empty()
     }
 
-    /// Returns true if a block of some programs may jump to a sequence number that is left out.
-    pub(super) fn may_be_jumped_to(
-        &self,
-        memory: &Memory,
-        programs: impl IntoIterator<Item = ProgramId>,
-    ) -> bool {
-        programs.into_iter().any(|id| {
-            let is_numbered = self.numbered.contains(&id);
-            memory
-                .get(id)
-                .ops()
-                .iter()
-                .any(|op| jumps_between(op.kind()) || is_numbered && may_jump(op.kind()))
-        })
+    /// Returns true if a block of some programs may lead to a sequence number of another one that is left out.
+    pub(super) fn are_targets(&self, memory: &Memory, programs: impl IntoIterator<Item = ProgramId>) -> bool {
+        let targets = JumpTargets::between(memory, programs);
+        self.numbers.iter().any(|number| targets.has(*number))
     }
 
     /// Returns true if one of the blocks that stand for others has a finding.
@@ -235,6 +174,86 @@ impl Repetitions {
                 *program = LoadedProgram::new(memory, id, &mut known, settings);
             }
         }
+    }
+}
+
+/// Blocks of a program that repeat others.
+#[derive(Debug, Default)]
+struct RepeatedBlocks {
+    is_left_out: Vec<bool>,
+    /// Sequence numbers of blocks that repeat others, also of those that are kept as the last of their run.
+    numbers: Vec<(OpIndex, LeftOutNumber)>,
+    /// Blocks that belong to no run.
+    others: Vec<OpIndex>,
+    /// Blocks that stand for others, by text and offset.
+    stand_ins: BTreeSet<(SourceId, u32)>,
+    /// How many calls are left out for the one of the block at an offset.
+    calls: BTreeMap<u32, usize>,
+    /// Number of lengths and angles with a decimal point that are left out.
+    points: usize,
+}
+
+impl RepeatedBlocks {
+    /// Finds the repeated blocks. One to which `targets` lead belongs to no run.
+    fn of(program: &Program, settings: &Settings, targets: &JumpTargets) -> Self {
+        let source = program.span.source;
+        let mut found = Self { is_left_out: vec![false; program.block_count()], ..Self::default() };
+        let mut run = BlockRun::default();
+        program.visit_number_blocks(|block, read| {
+            let is_target = |read: &NumberBlock<'_>| read.number.is_some_and(|number| targets.has(number));
+            let read = read.filter(|read| !is_read_by_rule(read.comment) && !is_target(read));
+            let form = read.and_then(|read| BlockForm::of(&read, settings).zip(Some(read)));
+            let Some((form, NumberBlock { number, span, words, .. })) = form else {
+                found.end_run(std::mem::take(&mut run), source);
+                found.others.push(block);
+                return;
+            };
+            // A jump may lead to a number; where all blocks have one, no jump is likely.
+            let begins_numbers = form.has_number && !run.is_numbered;
+            let after = run.modes.after(form).filter(|_| !begins_numbers);
+            let after = after.unwrap_or_else(|| {
+                found.end_run(std::mem::take(&mut run), source);
+                run.modes.after(form).unwrap_or_default()
+            });
+            run.is_numbered = form.has_number;
+            let first = *run.first.entry((run.modes, form)).or_insert(span.start);
+            // A block that changes the mode stays: the rest would be judged in another one.
+            found.is_left_out[block] = after.setters == run.modes.setters && first != span.start;
+            let called = form.called();
+            run.last_left_out.remove(&called);
+            if found.is_left_out[block] {
+                found.stand_ins.insert((source, first));
+                let points = form.points(words);
+                run.points += points;
+                let last = LeftOutBlock { index: block, start: span.start, first, points };
+                run.last_left_out.insert(called, last);
+                if called.is_some() {
+                    *run.calls.entry(first).or_default() += 1;
+                }
+                found.numbers.extend(number.map(|number| (block, LeftOutNumber { number, block: span })));
+            }
+            run.modes = after;
+        });
+        found.end_run(run, source);
+        found
+    }
+
+    /// Keeps the last blocks of a run.
+    fn end_run(&mut self, mut run: BlockRun, source: SourceId) {
+        for LeftOutBlock { index, start, first, points } in run.last_left_out.into_values() {
+            self.is_left_out[index] = false;
+            self.stand_ins.insert((source, start));
+            run.calls.entry(first).and_modify(|count| *count -= 1);
+            run.points -= points;
+        }
+        self.calls.append(&mut run.calls);
+        self.points += run.points;
+    }
+
+    /// Returns the sequence numbers of the blocks that are left out.
+    fn numbers(&self) -> impl Iterator<Item = LeftOutNumber> + '_ {
+        let left_out = self.numbers.iter().filter(|(block, _)| self.is_left_out[*block]);
+        left_out.map(|(_, number)| *number)
     }
 }
 
@@ -343,44 +362,6 @@ impl RunModes {
     }
 }
 
-/// Returns true for a block that leads to a sequence number of another program: `M99 P`, `M98 P Q`.
-fn jumps_between(kind: &OpKind) -> bool {
-    let is_return_to =
-        |call: &CallOp| call.kind == CallCode::Return && !matches!(call.target, CallTarget::None);
-    let call = kind.words().and_then(Words::call);
-    call.is_some_and(|call| call.start.is_some() || is_return_to(call))
-}
-
-/// Returns true for a block that may jump to a sequence number of its program.
-fn may_jump(kind: &OpKind) -> bool {
-    let is_jump =
-        |word: &LoweredWord| word.letter == b'M' && matches!(literal::word_count(word), Some(96 | 97));
-    match kind {
-        OpKind::Statement(statement) => statement_may_jump(statement),
-        OpKind::If { then, .. } => may_jump(then),
-        OpKind::Words(words) => words.list.iter().any(is_jump),
-        OpKind::Alarm(_) => true,
-        OpKind::Empty | OpKind::AssignDirect(_) => false,
-    }
-}
-
-fn statement_may_jump(statement: &Statement) -> bool {
-    match statement {
-        Statement::Goto(_) | Statement::IfGoto { .. } | Statement::Alarm(_) => true,
-        Statement::IfThen { then, .. } => statement_may_jump(then),
-        Statement::Assignments(all) => all.iter().any(statement_may_jump),
-        Statement::Assign { .. }
-        | Statement::AssignDirect(_)
-        | Statement::While { .. }
-        | Statement::Do { .. }
-        | Statement::End { .. }
-        | Statement::SetNames { .. }
-        | Statement::Print { .. }
-        | Statement::OpenOutput
-        | Statement::CloseOutput => false,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use gcode_lang::program::NoLibrary;
@@ -461,7 +442,7 @@ mod tests {
         );
         let calls = "(N[1-4]0 )?G65 ?P[23](A[0-9]\\.)?(X[0-9]\\.[0-9])?(F[1-9])?( ?\\(A\\))?";
         let others = "N9999 M9|M30|M99|G81Z-1\\.R1\\.|G80|#1=#2|IF\\[#1EQ#0\\]GOTO[1-4]0|GOTO[1-4]0|M98P2|M98P2Q20|WHILE\\[#1LT2\\]DO1|END1\
-            |G10L52|G11|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|G40 X1\\.|U5\\.|O2|M3M4|M99P20|X#1";
+            |G10L52|G11|GOTO#1|M97P20|#1=2GOTO10|M99P#2|#3=#5021|\\(CHECK-OFF MISSING-FEED\\)|G20|G40 X1\\.|U5\\.|O2|M3M4|M99P20|X#1";
         let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();
         prop_oneof![6 => of(&moves), 3 => of(calls), 1 => of(others)]
     }

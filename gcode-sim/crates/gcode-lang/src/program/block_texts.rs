@@ -81,7 +81,7 @@ impl BlockTexts {
     }
 
     /// Returns the tree of a block, read again from the text.
-    pub(super) fn tree(&self, index: usize) -> Option<ast::Block> {
+    pub fn tree(&self, index: usize) -> Option<ast::Block> {
         let start = *self.starts.get(index)?;
         match self.separate_trees.get(&(index as u32)) {
             Some(block) => Some(block.clone()),
