@@ -24,6 +24,7 @@ const RETURN: u32 = 99;
 /// Variable of output 0 of a Haas, and the number of the last output.
 const FIRST_OUTPUT: u32 = 12_000;
 const LAST_OUTPUT: u32 = 255;
+const LAST_OUTPUT_VARIABLE: u32 = FIRST_OUTPUT + LAST_OUTPUT;
 
 /// Variables of the outputs of a Haas before the NGC, which M59 and M69 name as they are.
 const OLDER_OUTPUTS: std::ops::RangeInclusive<u32> = 1100..=1155;
@@ -383,10 +384,12 @@ impl Planner<'_> {
                     let output = self.words.count(b'P')?;
                     let number = match output {
                         Some(output @ 0..=LAST_OUTPUT) => FIRST_OUTPUT + output,
+                        Some(output @ FIRST_OUTPUT..=LAST_OUTPUT_VARIABLE) => output,
                         // The variables of older controls.
                         Some(output) if OLDER_OUTPUTS.contains(&output) => output,
                         _ => {
-                            let what = format!("M{code:02} without P0 to P255 or P1100 to P1155");
+                            let what =
+                                format!("M{code:02} without P0 to P255, P12000 to P12255 or P1100 to P1155");
                             return Err(self.not_simulated(what));
                         }
                     };

@@ -223,7 +223,10 @@ impl Planner<'_> {
             let mut hole = first;
             for axis in 0..self.data.settings.axes.len() {
                 let step = if is_incremental { first[axis] - start[axis] } else { 0.0 };
-                hole[axis] = self.data.remove_residue(first[axis] + repeat * step);
+                // An axis that stands keeps its angle, which G53.1 doesn't round.
+                if step != 0.0 {
+                    hole[axis] = self.data.remove_residue(first[axis] + repeat * step);
+                }
             }
             if let Some(plane) = polar_plane {
                 let last = holes[holes.len() - 1];

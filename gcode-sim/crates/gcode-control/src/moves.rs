@@ -32,6 +32,9 @@ impl Planner<'_> {
     fn plan_length_offset(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
         let is_compensation_on =
             |row: &&GCodeRow| matches!(row.effect, Effect::Length(length) if length != Length::Off);
+        if self.ends_length_of_haas() {
+            plan.state.modal_words.h = 0;
+        }
         if let Some(row) = self.words.g_codes().find(is_compensation_on)
             && plan.state.modal_words.h == 0
             && !self.words.has(b'H')
@@ -100,8 +103,7 @@ impl Planner<'_> {
         if overrules_cycle {
             self.words.mark_read(Letters::of(b"KPQR"));
         }
-        let points_tool =
-            !is_arc && plan.state.modal.length == Length::TipByVector && self.words.has_any(b"IJK");
+        let points_tool = self.points_tool(&plan.state);
         if !(names_axis || points_tool || is_arc && self.words.has_any(b"IJKR")) {
             return self.move_by_length_change(plan, has_new_length);
         }
@@ -328,6 +330,7 @@ impl Planner<'_> {
         let start = (state.programmed_position[plane.0], state.programmed_position[plane.1]);
         let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
+        self.check_arc_of_tip(state)?;
         if !self.data.settings.alarms_without_centre && !self.words.has_any(b"IJKR") {
             if state.modal.cutter != CutterSide::Off {
                 return Err(self.not_simulated("an arc without R and I J K in cutter compensation"));

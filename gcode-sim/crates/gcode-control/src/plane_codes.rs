@@ -5,6 +5,7 @@ use super::plan::BlockPlan;
 use super::plane::{Plane, PlaneEntry, Tilt};
 use super::planner::Planner;
 use super::state::State;
+use super::words::WordNumber;
 
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::motion::{AxisIndex, Position};
@@ -86,6 +87,26 @@ impl Planner<'_> {
             *value = self.dimension(letter, state)?.unwrap_or(0.0);
         }
         Ok(vector)
+    }
+
+    /// Returns I, J and K as a direction of any length, 0 for those that the block lacks. It has no unit: a number with a decimal
+    /// point, and a computed one, count with all their digits, unless a setting says otherwise.
+    pub(super) fn direction_ijk(&self, state: &State) -> ExecResult<Vector> {
+        let has_increments = self.data.settings.undocumented.directions_have_increments;
+        let mut direction = [0.0; 3];
+        for (part, letter) in direction.iter_mut().zip([b'I', b'J', b'K']) {
+            *part = match self.words.get(letter) {
+                Some((WordNumber::Literal(number), _)) if number.places.is_some() && !has_increments => {
+                    number.value()
+                }
+                Some((WordNumber::Computed(value), _)) if !has_increments => value,
+                _ => {
+                    let length = self.dimension(letter, state)?.unwrap_or(0.0);
+                    self.data.to_program_unit(state, None, length)
+                }
+            };
+        }
+        Ok(direction)
     }
 
     /// Returns I, J and K as angles, 0 for those that the block lacks.
@@ -197,7 +218,7 @@ impl Planner<'_> {
             *value = self.axis_dimension(axis, state)?.unwrap_or(*value);
         }
         let direction =
-            unit_vector(self.lengths(*b"IJK", state)?).ok_or_else(|| format("I, J and K are all 0"))?;
+            unit_vector(self.direction_ijk(state)?).ok_or_else(|| format("I, J and K are all 0"))?;
         let angle = self.angle(b'R')?.ok_or_else(|| format("R is missing"))?;
         let plane = Plane { origin, matrix: Matrix::about(direction, angle) };
         let plane = match (&state.transform.tilt, self.registers.state.modal.rotation) {
@@ -224,7 +245,7 @@ impl Planner<'_> {
 
     /// Adds a block of P2 or P3; returns the plane with the last one.
     fn add_plane_block(&self, state: &mut State, form: u32, point: Vector) -> ExecResult<Option<Plane>> {
-        let vector = if form == 3 { self.lengths(*b"IJK", state)? } else { [0.0; 3] };
+        let vector = if form == 3 { self.direction_ijk(state)? } else { [0.0; 3] };
         let angle = self.angle(b'R')?.unwrap_or(0.0);
         let q = self.words.count(b'Q')?.unwrap_or(0);
         let mut entry = state.transform.plane_entry.unwrap_or(PlaneEntry { form, ..PlaneEntry::default() });

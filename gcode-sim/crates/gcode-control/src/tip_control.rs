@@ -11,7 +11,7 @@ use super::state::State;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Kinematics;
 use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
-use gcode_lang::program::g_codes::name;
+use gcode_lang::program::g_codes::{Effect, name};
 use gcode_lang::program::modes::{CutterSide, DynamicOffset, Length, Motion, Plane};
 use gcode_lang::units::MmPerMin;
 
@@ -168,6 +168,8 @@ impl Planner<'_> {
             "with cutter compensation or a corner word outside G17, beside a rotary axis, or in a plane that is not square to the tool and to the machine's Z"
         } else if state.modal.cycle.is_some() && !self.drills_along_tool(state) {
             "with a canned cycle that does not drill along the tool, or with a rotary axis in its block"
+        } else if state.modal.dynamic == DynamicOffset::On {
+            "with G254"
         } else if state.modal.motion == Motion::Thread {
             "with G33"
         } else {
@@ -187,11 +189,10 @@ impl Planner<'_> {
     fn compensates_across_tool(&self, state: &State) -> bool {
         let part = self.data.aligned(state, &state.machine_position);
         let normal = part.map_or([0.0, 0.0, 1.0], |aligned| aligned.frame.rotation.apply([0.0, 0.0, 1.0]));
-        let points_tool = state.modal.length == Length::TipByVector && self.words.has_any(b"IJK");
         state.modal.plane == Plane::Xy
             && normal[2] > 1.0 - 1e-12
             && self.drills_along_tool(state)
-            && !(points_tool && state.modal.motion == Motion::Linear)
+            && !self.points_tool(state)
     }
 
     /// Returns true if the block turns no rotary axis, and Z of the program is along the tool.
@@ -206,13 +207,29 @@ impl Planner<'_> {
         !turns && dot(aside, aside).sqrt() < 1e-7
     }
 
+    /// Returns true if the block has the direction of the tool at its end: I J K in G43.5 (A-79348E).
+    pub(super) fn points_tool(&self, state: &State) -> bool {
+        state.modal.length == Length::TipByVector && self.words.has_any(b"IJK")
+    }
+
+    /// In G43.5 only R gives an arc (A-79348E).
+    pub(super) fn check_arc_of_tip(&self, state: &State) -> ExecResult<()> {
+        if !self.points_tool(state) || self.words.has(b'R') {
+            return Ok(());
+        }
+        let what = "an arc without R in G43.5, where I J K are the direction of the tool at its end";
+        Err(self.not_simulated(what))
+    }
+
+    /// Returns true for G234 of a Haas without H: it ends G43 and its H (Haas Mill Operator's Manual, G234).
+    pub(super) fn ends_length_of_haas(&self) -> bool {
+        let is_tip_of_haas = |effect| effect == Effect::Length(Length::TipOfHaas);
+        !self.words.has(b'H') && self.words.has_non_motion_code(is_tip_of_haas)
+    }
+
     /// G43.5: turns the rotary axes of an end point so that the tool points along I J K.
     pub(super) fn point_tool(&self, state: &State, endpoint: &mut Endpoint) -> ExecResult<()> {
-        let mut vector = [0.0; 3];
-        for (part, letter) in vector.iter_mut().zip([b'I', b'J', b'K']) {
-            *part = self.dimension(letter, state)?.unwrap_or(0.0);
-        }
-        let Some(vector) = unit_vector(vector) else {
+        let Some(vector) = unit_vector(self.direction_ijk(state)?) else {
             return Err(self.not_simulated("G43.5 with I J K of length 0"));
         };
         if self.data.settings.tip_in_work_system {

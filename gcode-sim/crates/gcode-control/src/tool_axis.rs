@@ -144,11 +144,13 @@ impl Planner<'_> {
         let choosing = choosing_axis(kinematics, self.data.settings.tool_axis_choice);
         let is_on_side = |at: &Position| {
             let angle = choosing.map_or(0.0, |axis| at[axis] - 360.0 * (at[axis] / 360.0).round());
-            angle * side >= 0.0
+            // A half turn has both signs.
+            angle * side >= 0.0 || angle.abs() > 180.0 - 1e-6
         };
         let reachable = found.into_iter().filter(is_on_side).filter_map(|mut at| {
             for axis in kinematics.axes() {
-                at[axis.axis] = self.nearest_turn(axis.axis, at[axis.axis], from[axis.axis])?;
+                let sign = if choosing == Some(axis.axis) { side } else { 0.0 };
+                at[axis.axis] = self.nearest_turn(axis.axis, at[axis.axis], from[axis.axis], sign)?;
             }
             Some(at)
         });
@@ -172,8 +174,9 @@ impl Planner<'_> {
         nearest.ok_or_else(|| Alarm::ToolAxisUnreachable.located_at(self.block))
     }
 
-    /// Returns the angle plus full turns that is nearest to the current position within the stroke limits.
-    fn nearest_turn(&self, axis: AxisIndex, angle: f64, from: f64) -> Option<f64> {
+    /// Returns the angle plus full turns that is nearest to the current position within the stroke limits. Of two half turns it
+    /// is the one nearer to 0, then that of the sign, the plus side if `sign` is 0.
+    fn nearest_turn(&self, axis: AxisIndex, angle: f64, from: f64, sign: f64) -> Option<f64> {
         let turns = ((from - angle) / 360.0).round();
         let limits = self.data.settings.stroke_limits.filter(|_| !self.data.settings.rolls_over[axis]);
         let is_allowed = |at: &f64| {
@@ -182,8 +185,8 @@ impl Planner<'_> {
             })
         };
         let mut candidates = [turns, turns - 1.0, turns + 1.0].map(|turns| angle + 360.0 * turns);
-        // Of two half turns the one nearer to 0, then the plus side.
-        let order = |at: f64| (((at - from).abs() * 1e6).round(), (at.abs() * 1e6).round(), -at);
+        let preferred = if sign < 0.0 { -1.0 } else { 1.0 };
+        let order = |at: f64| (((at - from).abs() * 1e6).round(), (at.abs() * 1e6).round(), -preferred * at);
         candidates.sort_by(|a, b| order(*a).partial_cmp(&order(*b)).unwrap_or(Ordering::Equal));
         candidates.into_iter().find(is_allowed)
     }

@@ -336,6 +336,7 @@ undocumented_choices! {
     "TRANSFORM-RETURNS" returns_in_transforms = false, "G27 to G30 and G53 move in G68 and G51.1 as without them; otherwise SIM0001";
     "PLANE-TURNS" plane_turns_with_axes = false, "a rotary axis that moves after G53.1 takes the plane with it; otherwise the plane stays where G53.1 left it";
     "G268-TURNS" feature_axes_turn = false, "I, J and K of G268 are about axes that turn with one another, not about those of the work system";
+    "IJK-INCREMENTS" directions_have_increments = false, "I J K of a direction (G43.5, G68, G68.2 P3) are cut off at the increment instead of counting with all their digits";
     "PROGRAM-ZERO" reads_program_zero = true, "a program O0 runs: the operator gives it a number when it is read; otherwise PS0074";
     "G72-AT-START" line_starts_here = true, "the first hole of G72 is at the tool's position, not at the distance I from it";
     "M06-HOMES-Z" tool_change_homes_z = false, "M06 sends Z to machine zero before the tool changes";
