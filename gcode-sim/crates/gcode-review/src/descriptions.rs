@@ -1,6 +1,6 @@
 //! Words for steps, points and distances in an entry.
 use super::steps::{Step, StepKind, UnsimulatedKind, difference};
-use gcode_lang::motion::{Axes, Position, SpindleDirection, StopKind};
+use gcode_lang::motion::{Axes, MAX_AXES, Position, SpindleDirection, StopKind};
 
 /// Describes a command, or names a move.
 pub(super) fn describe(kind: &StepKind, axes: &Axes) -> String {
@@ -51,6 +51,22 @@ pub(super) fn coordinates(values: &Position, axes: &Axes, least: f64, signed: bo
     });
     shown.collect::<Vec<_>>().join(" ")
 }
+
+/// Returns a key of what [`coordinates`] shows with signs; `None` if a value is about half way between two that are shown.
+pub(super) fn shown_key(values: &Position, least: f64) -> Option<[i64; MAX_AXES]> {
+    let mut key = [HIDDEN; MAX_AXES];
+    for (shown, value) in key.iter_mut().zip(values.0).filter(|(_, value)| value.abs() > least) {
+        let rounded = (value * 1e4).round();
+        if (value * 1e4 - rounded).abs() > 0.499 || rounded == 0.0 {
+            return None;
+        }
+        *shown = rounded as i64;
+    }
+    Some(key)
+}
+
+/// Key of a value that isn't shown: none that is rounds to it.
+const HIDDEN: i64 = 0;
 
 /// Rounds a feed to four decimals.
 pub(super) fn short(rate: f64) -> f64 {

@@ -127,6 +127,19 @@ impl Links {
         runs.flat_map(|run| (0..run.length).map(|index| (run.start + index, run.get(index))))
     }
 
+    /// Returns true if all of these pairs of steps are equal steps before the first difference or after the last one.
+    pub(super) fn are_beside_differences(&self, pairs: &[(usize, usize)]) -> bool {
+        let is_difference = |run: &&LinkRun| !run.first.is_same();
+        let first = self.runs.iter().find(is_difference).map_or(self.length, |run| run.start);
+        let last = self.runs.iter().rev().find(is_difference).map_or(0, |run| run.start + run.length);
+        let behind = self.runs.iter().find(|run| run.start == last);
+        let Some(StepPair::Same(from_i, from_j)) = behind.map(|run| run.first) else {
+            return pairs.iter().all(|(i, j)| i == j && *i < first);
+        };
+        let is_behind = |(i, j): &(usize, usize)| from_i <= *i && i - from_i == j.wrapping_sub(from_j);
+        pairs.iter().all(|pair| pair.0 == pair.1 && pair.0 < first || is_behind(pair))
+    }
+
     /// Iterates over the links that one run alone has, with their numbers.
     pub(super) fn unpaired(&self) -> impl Iterator<Item = (usize, StepPair)> {
         self.differences().filter(|(_, link)| link.is_unpaired())
