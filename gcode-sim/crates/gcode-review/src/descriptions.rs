@@ -77,3 +77,20 @@ pub(super) fn short(rate: f64) -> f64 {
 pub(super) fn deeper(mm: f64) -> &'static str {
     if mm > 0.0 { "deeper" } else { "less deep" }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn displacements_have_one_key_if_they_are_shown_alike() {
+        let key = |x: f64, y: f64| shown_key(&Position([x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 1e-4);
+        assert_eq!(key(0.11 - 0.1, 0.0), key(0.01, 0.000_09), "X +0.0100, and a Y that is not shown");
+        assert!(key(0.01, 0.0).is_some());
+        assert_ne!(key(0.01, 0.0), key(0.0101, 0.0));
+        assert_ne!(key(0.01, 0.0), key(-0.01, 0.0));
+        assert_ne!(key(0.01, 0.0), key(0.01, 0.000_2));
+        // Half way between 0.0100 and 0.0101 the text decides.
+        assert_eq!(key(0.010_05, 0.0), None);
+    }
+}

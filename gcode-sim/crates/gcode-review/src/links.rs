@@ -161,3 +161,25 @@ impl FromIterator<StepPair> for Links {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_steps_lie_beside_all_differences_or_among_them() {
+        let mut links = Links::default();
+        links.push_run(StepPair::Same(0, 0), 2);
+        links.push(StepPair::Added(2));
+        links.push_run(StepPair::Same(2, 3), 2);
+        links.push(StepPair::Changed(4, 5));
+        links.push_run(StepPair::Same(5, 6), 3);
+        assert!(links.are_beside_differences(&[]));
+        assert!(links.are_beside_differences(&[(1, 1), (5, 6), (7, 8)]));
+        assert!(!links.are_beside_differences(&[(1, 1), (2, 3)]), "a difference lies on either side");
+        assert!(!links.are_beside_differences(&[(4, 5)]), "they differ");
+        assert!(!links.are_beside_differences(&[(6, 6)]), "no pair");
+        let same: Links = [StepPair::Same(0, 0), StepPair::Same(1, 1)].into_iter().collect();
+        assert!(same.are_beside_differences(&[(1, 1)]) && !same.are_beside_differences(&[(0, 1)]));
+    }
+}
