@@ -1,6 +1,7 @@
 //! Properties of the control: it never panics, and it runs the same program the same way every time.
 use gcode_control::{Control, Limits, Outcome};
 use gcode_lang::control::Settings;
+use gcode_lang::motion::Axes;
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_tests::expect::{self, Recorder};
 use proptest::prelude::*;
@@ -62,4 +63,15 @@ fn a_loop_round_a_cycle_with_many_holes_ends_by_its_moves() {
     let outcome = control.run(Limits { blocks: 40_000 }, &mut NoLibrary, &mut ());
     assert!(matches!(outcome, Outcome::Limit));
     assert!(control.blocks() < 200, "{} blocks", control.blocks());
+}
+
+/// U is the fourth axis, V the fifth and W the sixth: #5021 and following are their positions.
+#[test]
+fn axes_of_other_letters_move_return_and_have_their_variables() {
+    let program =
+        "O1\nG90 G00 X5. U3. V2.\n#100=#5024\nG91 G28 U0\n#101=#5024\nG90 G01 W4. F100\n#102=#5026\nM30\n";
+    let settings = Settings { axes: Axes::new("XYZUVW").unwrap(), ..Settings::default() };
+    expect::run_on(program.as_bytes(), settings, 100)
+        .must("end=normal; #100=3; #101=0; #102=4; mach.X=5; mach.V=2");
+    expect::run_on(program.as_bytes(), Settings::default(), 100).must("alarm=PS0009");
 }

@@ -289,3 +289,53 @@ proptest! {
         prop_assert!((way.dot(&at_point.axis.unwrap()) - z).abs() < 1e-6, "{program}");
     }
 }
+
+/// Every cycle on a plane that is turned by 90 degrees about X makes the moves of the same cycle in G17, turned with it: on a
+/// trunnion the table turns and the path keeps its directions, under a fork head the plane's Y is Z and its Z is -Y.
+#[test]
+fn every_cycle_of_a_tilted_plane_makes_the_moves_of_the_cycle() {
+    let trunnion = include_str!("../suite/control/tilted_planes_on_a_trunnion/machine.toml");
+    let fork = include_str!("../suite/control/tilted_planes_under_a_fork_head/machine.toml");
+    let about_x = Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+    let cycles = [
+        "G73 X3. Y4. Z-6. R1. Q2.",
+        "G74 X3. Y4. Z-6. R1.",
+        "G76 X3. Y4. Z-6. R1. Q0.5",
+        "G81 X3. Y4. Z-6. R1.",
+        "G82 X3. Y4. Z-6. R1. P500",
+        "G83 X3. Y4. Z-6. R1. Q2.",
+        "G84 X3. Y4. Z-6. R1.",
+        "G85 X3. Y4. Z-6. R1.",
+        "G86 X3. Y4. Z-6. R1.",
+        "G87 X3. Y4. Z-2. R-6. Q0.5",
+        "G89 X3. Y4. Z-6. R1. P500",
+    ];
+    for (machine, turned) in [(trunnion, Rotation3::identity()), (fork, about_x)] {
+        let machine = Machine::parse(machine).unwrap();
+        for cycle in cycles {
+            for level in ["G98", "G99"] {
+                let path = |plane: &str| {
+                    let text = format!(
+                        "O1\nG90 G21 G17 S500 M3\n{plane}G00 X0 Y0 Z20.\n{level} {cycle} F100\nX20. Y5.\nG80\nM30\n"
+                    );
+                    let ran = run(&machine, &text);
+                    assert!(matches!(ran.outcome, Outcome::End), "{text}: {:?}", ran.outcome);
+                    let moves =
+                        ran.recorder.moves().map(|(kind, at)| (kind, Vector3::new(at[0], at[1], at[2])));
+                    moves.collect::<Vec<_>>()
+                };
+                let (flat, tilted) = (path(""), path("G68.2 X0 Y0 Z0 I0 J90. K0\nG53.1\n"));
+                let tilted = &tilted[tilted.len() - flat.len()..];
+                for (a, b) in flat.iter().zip(tilted) {
+                    let expected = turned * (a.1 - flat[0].1);
+                    let found = b.1 - tilted[0].1;
+                    assert!(
+                        a.0 == b.0 && (found - expected).norm() < 1e-9,
+                        "{level} {cycle}: {found} is not {expected}"
+                    );
+                }
+                assert!(flat.len() > 6, "{level} {cycle}: {flat:?}");
+            }
+        }
+    }
+}

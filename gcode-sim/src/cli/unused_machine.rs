@@ -40,7 +40,10 @@ pub(super) fn warn_unused_axes(arguments: &ProgramArguments, machine: &Machine, 
     let control = &run.control;
     let axes = &control.settings().axes;
     let uncommanded = control.unknown_axes().uncommanded | machine.used_axes();
-    let unused = (0..axes.len()).filter(|axis| axes.is_rotary(*axis) && uncommanded >> axis & 1 == 0);
+    // G28 without axes commands all that a machine has: whether it has these is unknown.
+    let is_named = |axis: &usize| names_axis(run, axes.letter(*axis));
+    let is_commanded = |axis: &usize| axes.is_rotary(*axis) && uncommanded >> axis & 1 == 0;
+    let unused = (0..axes.len()).filter(is_commanded).filter(is_named);
     let unused = axes.names(unused.fold(0, |bits, axis| bits | 1 << axis));
     if arguments.conditions.machine.is_none() && !unused.is_empty() {
         output::print_message(&format!(
@@ -48,6 +51,13 @@ pub(super) fn warn_unused_axes(arguments: &ProgramArguments, machine: &Machine, 
              4th-axis (or trunnion, head-table, head-head) writes one\n"
         ));
     }
+}
+
+/// Returns true if a text of the run has an axis letter before a value.
+fn names_axis(run: &Run, letter: char) -> bool {
+    let value = |byte: &u8| byte.is_ascii_digit() || b"#[.+- ".contains(byte);
+    let is_word = |pair: &[u8]| pair[0].eq_ignore_ascii_case(&(letter as u8)) && value(&pair[1]);
+    run.control.memory().sources().iter().any(|(_, source)| source.bytes.windows(2).any(is_word))
 }
 
 /// Prints a warning if the program's head names another control than `check` assumes.

@@ -12,7 +12,7 @@ use super::links::{Links, StepPair};
 use super::position_cells::PositionCells;
 use super::record::Record;
 use super::step_list::StepList;
-use super::steps::{Step, StepKind, difference};
+use super::steps::{Step, StepKind, difference, is_same};
 use gcode_lang::motion::{Axes, MAX_AXES, Position};
 
 /// Two records, and which step of one is which of the other.
@@ -84,6 +84,12 @@ impl<'a> StepRange<'a> {
     fn kind(self, number: usize) -> &'a StepKind {
         self.list.kind(self.first + number)
     }
+
+    /// Returns true for the same action, see [`steps::is_same`](super::steps::is_same).
+    fn is_same(self, number: usize, other: StepRange<'_>, of_other: usize, tolerance: f64) -> bool {
+        let kinds = [self.kind(number), other.kind(of_other)];
+        is_same(kinds, tolerance, || [self.end(number).1, other.end(of_other).1])
+    }
 }
 
 /// Steps of both runs.
@@ -91,7 +97,8 @@ type BothSteps<'a> = (StepRange<'a>, StepRange<'a>);
 
 /// Aligns like [`align`]; if one run alone stops (old, new), later steps of the other are lost or added.
 pub(super) fn align_until_stop(old: &StepList, new: &StepList, stops: (bool, bool), tolerance: f64) -> Links {
-    let same = |i: usize, j: usize| old.at(i).is_same(&new.at(j), tolerance);
+    let [all, all_now] = [old, new].map(|list| StepRange::new(list, 0..list.len()));
+    let same = |i: usize, j: usize| all.is_same(i, all_now, j, tolerance);
     let (rows, columns) = match stops {
         (false, true) => (reach(old.len(), new.len(), same), new.len()),
         (true, false) => (old.len(), reach(new.len(), old.len(), |j, i| same(i, j))),
@@ -121,11 +128,14 @@ pub(super) fn align((old, new): BothSteps<'_>, tolerance: f64) -> Links {
         let (was, is) = (tool_changes(old), tool_changes(new));
         let tools = common(was.len(), is.len(), |i, j| old.kind(was[i]) == new.kind(is[j]));
         let mut stops: Vec<(usize, usize)> = tools.into_iter().map(|(i, j)| (was[i], is[j])).collect();
-        stops.extend(whole);
-        let by_tool = between((old, new), &stops, tolerance);
-        let edits = |links: &Links| edits(links, (old, new));
-        if edits(&by_tool) <= edits(&links) {
-            links = by_tool;
+        // The search between two tool changes about all differences would be the same one.
+        if !links.are_beside_differences(&stops) {
+            stops.extend(whole);
+            let by_tool = between((old, new), &stops, tolerance);
+            let edits = |links: &Links| edits(links, (old, new));
+            if edits(&by_tool) <= edits(&links) {
+                links = by_tool;
+            }
         }
         links = keep_moves_paired((old, new), tolerance, &links);
     }
@@ -155,7 +165,7 @@ fn between((old, new): BothSteps<'_>, stops: &[(usize, usize)], tolerance: f64) 
     let (mut i, mut j) = (0, 0);
     for &(stop_i, stop_j) in stops {
         let (from_i, from_j) = (i, j);
-        let is_same = |a: usize, b: usize| old.at(from_i + a).is_same(&new.at(from_j + b), tolerance);
+        let is_same = |a: usize, b: usize| old.is_same(from_i + a, new, from_j + b, tolerance);
         let step = |side: usize, index: usize| match side {
             0 => old.end(from_i + index),
             _ => new.end(from_j + index),
@@ -214,7 +224,7 @@ fn reordered(
         _ => return None,
     };
     let StepPair::Same(other_i, other_j) = between else { return None };
-    let is_move = old.kind(i).is_move() && old.at(i).is_same(&new.at(j), tolerance);
+    let is_move = old.kind(i).is_move() && old.is_same(i, new, j, tolerance);
     // A tool change after an unpaired step keeps its pair.
     let is_of_pass =
         matches!(old.kind(other_i), StepKind::Tool(_)) && before.last().is_some_and(StepPair::is_unpaired);
@@ -252,7 +262,7 @@ fn align_gap((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, tolerance
         let (to_i, to_j) = (first_i + to_i, first_j + to_j);
         let mut pair = |link: StepPair| match link {
             // Beyond the limits of the search equal steps are found here.
-            StepPair::Changed(i, j) if old.at(i).is_same(&new.at(j), tolerance) => {
+            StepPair::Changed(i, j) if old.is_same(i, new, j, tolerance) => {
                 links.push(StepPair::Same(i, j));
             }
             _ => links.push(link),
@@ -268,10 +278,8 @@ fn pairs_in_order((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, tole
     let (rows, columns) = (range_i.len(), range_j.len());
     let surplus = [rows.saturating_sub(columns), columns.saturating_sub(rows)];
     let paired = rows.min(columns);
-    let steps = |i: usize, j: usize| (old.at(range_i.start + i), new.at(range_j.start + j));
     let apart = |i: usize, j: usize| {
-        let (was, is) = steps(i, j);
-        step_distance(&was, &is).unwrap_or(UNLIKE)
+        step_distance(old.end(range_i.start + i), new.end(range_j.start + j)).unwrap_or(UNLIKE)
     };
     // How much farther the pairs before a place end than those behind the surplus would.
     let (mut farther, mut nearest, mut split) = (0.0, 0.0, 0);
@@ -284,8 +292,9 @@ fn pairs_in_order((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, tole
     let mut runs = Vec::new();
     for k in 0..paired {
         let [skip_i, skip_j] = if k < split { [0, 0] } else { surplus };
-        let (was, is) = steps(k + skip_i, k + skip_j);
-        let is_pair = was.is_move() && is.is_move() && !was.is_same(&is, tolerance);
+        let (i, j) = (range_i.start + k + skip_i, range_j.start + k + skip_j);
+        let are_moves = old.kind(i).is_move() && new.kind(j).is_move();
+        let is_pair = are_moves && !old.is_same(i, new, j, tolerance);
         append(&mut runs, (k + skip_i, k + skip_j, usize::from(is_pair)));
     }
     runs
@@ -311,7 +320,7 @@ fn nearest((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, link: &mut 
                 cost[r * width + c] = unpaired * ((rows - r) + (columns - c)) as f64;
                 continue;
             }
-            let apart = step_distance(&old.at(range_i.start + r), &new.at(range_j.start + c));
+            let apart = step_distance(old.end(range_i.start + r), new.end(range_j.start + c));
             let pair = apart.map_or(f64::INFINITY, |mm| mm + cost[(r + 1) * width + c + 1]);
             let skip = unpaired + cost[(r + 1) * width + c].min(cost[r * width + c + 1]);
             cost[r * width + c] = pair.min(skip);
@@ -322,7 +331,7 @@ fn nearest((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, link: &mut 
         let (i, j) = (range_i.start + r, range_j.start + c);
         let best = cost[r * width + c];
         let is_best = |mm: f64| mm + cost[(r + 1) * width + c + 1] <= best;
-        if r < rows && c < columns && step_distance(&old.at(i), &new.at(j)).is_some_and(is_best) {
+        if r < rows && c < columns && step_distance(old.end(i), new.end(j)).is_some_and(is_best) {
             link(StepPair::Changed(i, j));
             (r, c) = (r + 1, c + 1);
         } else if r < rows && unpaired + cost[(r + 1) * width + c] <= best {
@@ -355,14 +364,17 @@ fn in_order((old, range_i): StepGap<'_>, (new, range_j): StepGap<'_>, link: &mut
 }
 
 /// Returns how far apart two steps of one kind of change end; a rapid is no likely pair of a feed.
-fn step_distance(a: &Step<'_>, b: &Step<'_>) -> Option<f64> {
-    if a.kind.change() != b.kind.change() {
+fn step_distance(
+    (kind, end): (&StepKind, Position),
+    (other_kind, other_end): (&StepKind, Position),
+) -> Option<f64> {
+    if kind.change() != other_kind.change() {
         return None;
     }
-    let shift = difference(&a.to, &b.to);
+    let shift = difference(&end, &other_end);
     let distance = (0..MAX_AXES).map(|axis| shift[axis].abs()).sum::<f64>();
-    let other_kind = std::mem::discriminant(a.kind) != std::mem::discriminant(b.kind);
-    Some(distance + if other_kind { 1e3 } else { 0.0 })
+    let is_other_kind = std::mem::discriminant(kind) != std::mem::discriminant(other_kind);
+    Some(distance + if is_other_kind { 1e3 } else { 0.0 })
 }
 
 #[cfg(test)]

@@ -124,28 +124,28 @@ pub(super) fn shared<K: IntoIterator<Item = u64>>(
     shared
 }
 
-/// Set of hashes that may contain others too: one bit for each remainder of a hash.
+/// Set of hashes that may contain few others too: two bits for each, of sixteen.
 struct HashFilter {
     bits: Vec<u64>,
 }
 
 impl HashFilter {
     fn of(length: usize, hash: impl Fn(usize) -> u64) -> Self {
-        let mut filter = Self { bits: vec![0; (length / 8).next_power_of_two()] };
+        let mut filter = Self { bits: vec![0; (length / 4).next_power_of_two()] };
         for hash in (0..length).map(hash) {
-            let (index, bit) = filter.place(hash);
-            filter.bits[index] |= bit;
+            let (index, bits) = filter.place(hash);
+            filter.bits[index] |= bits;
         }
         filter
     }
 
     fn place(&self, hash: u64) -> (usize, u64) {
-        ((hash >> 6) as usize & (self.bits.len() - 1), 1 << (hash & 63))
+        ((hash >> 12) as usize & (self.bits.len() - 1), 1 << (hash & 63) | 1 << (hash >> 6 & 63))
     }
 
     fn may_contain(&self, hash: u64) -> bool {
-        let (index, bit) = self.place(hash);
-        self.bits[index] & bit != 0
+        let (index, bits) = self.place(hash);
+        self.bits[index] & bits == bits
     }
 }
 

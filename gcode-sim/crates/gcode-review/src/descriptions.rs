@@ -1,6 +1,6 @@
 //! Words for steps, points and distances in an entry.
 use super::steps::{Step, StepKind, UnsimulatedKind, difference};
-use gcode_lang::motion::{Axes, Position, SpindleDirection, StopKind};
+use gcode_lang::motion::{Axes, MAX_AXES, Position, SpindleDirection, StopKind};
 
 /// Describes a command, or names a move.
 pub(super) fn describe(kind: &StepKind, axes: &Axes) -> String {
@@ -52,6 +52,22 @@ pub(super) fn coordinates(values: &Position, axes: &Axes, least: f64, signed: bo
     shown.collect::<Vec<_>>().join(" ")
 }
 
+/// Returns a key of what [`coordinates`] shows with signs; `None` if a value is about half way between two that are shown.
+pub(super) fn shown_key(values: &Position, least: f64) -> Option<[i64; MAX_AXES]> {
+    let mut key = [HIDDEN; MAX_AXES];
+    for (shown, value) in key.iter_mut().zip(values.0).filter(|(_, value)| value.abs() > least) {
+        let rounded = (value * 1e4).round();
+        if (value * 1e4 - rounded).abs() > 0.499 || rounded == 0.0 {
+            return None;
+        }
+        *shown = rounded as i64;
+    }
+    Some(key)
+}
+
+/// Key of a value that isn't shown: none that is rounds to it.
+const HIDDEN: i64 = 0;
+
 /// Rounds a feed to four decimals.
 pub(super) fn short(rate: f64) -> f64 {
     (rate * 1e4).round() / 1e4
@@ -60,4 +76,21 @@ pub(super) fn short(rate: f64) -> f64 {
 /// Describes the sign of a change of depth.
 pub(super) fn deeper(mm: f64) -> &'static str {
     if mm > 0.0 { "deeper" } else { "less deep" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn displacements_have_one_key_if_they_are_shown_alike() {
+        let key = |x: f64, y: f64| shown_key(&Position([x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 1e-4);
+        assert_eq!(key(0.11 - 0.1, 0.0), key(0.01, 0.000_09), "X +0.0100, and a Y that is not shown");
+        assert!(key(0.01, 0.0).is_some());
+        assert_ne!(key(0.01, 0.0), key(0.0101, 0.0));
+        assert_ne!(key(0.01, 0.0), key(-0.01, 0.0));
+        assert_ne!(key(0.01, 0.0), key(0.01, 0.000_2));
+        // Half way between 0.0100 and 0.0101 the text decides.
+        assert_eq!(key(0.010_05, 0.0), None);
+    }
 }

@@ -101,8 +101,14 @@ impl EffectGroup {
 
     pub(super) fn join(&mut self, other: Self) {
         self.varies |= self.text != other.text;
-        self.add_causes(other.causes, other.is_direct);
-        match (&mut self.numbers, other.numbers) {
+        self.join_numbers(other.numbers, other.causes, other.is_direct);
+        other.counts.into_iter().for_each(|(name, times)| self.count(name, times));
+    }
+
+    /// Adds numbers and edits of another difference.
+    pub(super) fn join_numbers(&mut self, numbers: Numbers, causes: EditSet, is_direct: bool) {
+        self.add_causes(causes, is_direct);
+        match (&mut self.numbers, numbers) {
             (
                 Numbers::Shift { most, is_compensated },
                 Numbers::Shift { most: others, is_compensated: is_other },
@@ -117,11 +123,13 @@ impl EffectGroup {
             (Numbers::Moves { old, .. }, Numbers::Moves { old: others, .. }) => old.extend(others),
             _ => {}
         }
-        for (what, times) in other.counts {
-            match self.counts.iter_mut().find(|(known, _)| *known == what) {
-                Some((_, count)) => *count += times,
-                None => self.counts.push((what, times)),
-            }
+    }
+
+    /// Counts steps of a name.
+    pub(super) fn count(&mut self, name: &'static str, times: usize) {
+        match self.counts.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, count)) => *count += times,
+            None => self.counts.push((name, times)),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::align::Alignment;
 use super::block_location::BlockLocation;
 use super::change::Effect;
-use super::descriptions::{coordinates, describe, point, short};
+use super::descriptions::{coordinates, describe, point, short, shown_key};
 use super::differences::{Difference, StepDifference};
 use super::edits::{Causes, Edits};
 use super::effect_groups::{EditSet, EffectGroup, Numbers, RepeatedBlocks, block_key};
@@ -17,7 +17,7 @@ use super::modal_conditions::ModalAspect;
 use super::redundant_commands::is_speed_alone;
 use super::steps::{Step, StepKind, difference, near, with_article};
 use gcode_lang::diag::FindingKind;
-use gcode_lang::motion::Position;
+use gcode_lang::motion::{MAX_AXES, Position};
 
 /// Description of one difference, from which its group begins.
 struct Description {
@@ -39,15 +39,17 @@ impl Description {
 /// More shifts of one edit than this are one effect, by up to the largest.
 const MOST_SHIFTS: usize = 4;
 
-/// Largest number of pairs of feeds whose groups are found without their sentences.
-const MOST_RATES: usize = 4096;
+/// Largest number of pairs of feeds, and of displacements, whose groups are found without their sentences.
+const MOST_KEYS: usize = 4096;
 
 /// All groups, in the order of their first differences.
 pub(super) struct Effects<'a> {
     all: Vec<EffectGroup>,
     by_text: BTreeMap<(&'static str, String), usize>,
-    /// Groups of differences of feeds by the bits of the feeds, old and new: those of [`MOST_RATES`] pairs.
+    /// Groups of differences of feeds by the bits of the feeds, old and new: those of [`MOST_KEYS`] pairs.
     by_rates: BTreeMap<[u64; 2], usize>,
+    /// Groups of moves that end at another point by [`shown_key`] of the displacement: those of [`MOST_KEYS`] keys.
+    by_shifts: BTreeMap<[i64; MAX_AXES], usize>,
     /// By kind, and the numbers of the blocks, old and new, from 1.
     by_blocks: BTreeMap<(u8, u32, u32), u32>,
     alignment: Alignment<'a>,
@@ -67,6 +69,7 @@ impl<'a> Effects<'a> {
             all: Vec::new(),
             by_text: BTreeMap::new(),
             by_rates: BTreeMap::new(),
+            by_shifts: BTreeMap::new(),
             by_blocks: BTreeMap::new(),
             alignment,
             edits,
@@ -121,6 +124,12 @@ impl<'a> Effects<'a> {
         {
             return self.join_feed(group, feed, steps);
         }
+        let shift = self.shift(kind);
+        if let (Some(key), StepDifference::EndPoint(shift)) = (shift, kind)
+            && let Some(group) = self.by_shifts.get(&key).copied()
+        {
+            return self.join_shift(group, shift, steps);
+        }
         let group = self.group_of_difference(kind, steps);
         let (is_direct, blocks) = (group.is_direct, group.block_numbers);
         let is_speed = matches!(group.numbers, Numbers::Speeds { .. });
@@ -144,10 +153,16 @@ impl<'a> Effects<'a> {
             None => self.all.push(group),
         }
         if let Some((rates, _)) = feed {
-            if self.by_rates.len() == MOST_RATES {
+            if self.by_rates.len() == MOST_KEYS {
                 self.by_rates.clear();
             }
             self.by_rates.insert(rates, number);
+        }
+        if let Some(key) = shift {
+            if self.by_shifts.len() == MOST_KEYS {
+                self.by_shifts.clear();
+            }
+            self.by_shifts.insert(key, number);
         }
         // Another one of the same blocks has the same edits, unless these depend on the steps.
         self.last_feed = feed.filter(|_| is_direct).map(|(rates, blocks)| (rates, blocks, number));
@@ -166,6 +181,32 @@ impl<'a> Effects<'a> {
         let (causes, is_direct) = self.causes_of_difference(&self.all[group].numbers, blocks, steps);
         self.all[group].join_same(causes, is_direct);
         self.last_feed = is_direct.then_some((rates, blocks, group));
+    }
+
+    /// Returns the key of the displacement of a move that ends at another point.
+    fn shift(&self, kind: &StepDifference) -> Option<[i64; MAX_AXES]> {
+        let StepDifference::EndPoint(shift) = kind else { return None };
+        shown_key(shift, self.alignment.tolerance)
+    }
+
+    /// Adds a move that ends at another point to the group of those before it with the same displacement.
+    fn join_shift(&mut self, group: usize, shift: &Position, steps: [Option<usize>; 2]) {
+        let records = self.alignment.records;
+        let lists = [0, 1].map(|side| Some((&records[side].steps, steps[side]?)));
+        let block_numbers = lists.map(|list| list.map(|(list, step)| list.block_number(step)));
+        let numbers = shift_numbers(shift, self.is_compensated(steps));
+        let (causes, is_direct) = self.causes_of_difference(&numbers, block_numbers, steps);
+        let [old, new] = lists.map(|list| list.map(|(list, step)| list.kind(step)));
+        let name = new.or(old).map_or("move", StepKind::name);
+        self.all[group].join_numbers(numbers, causes, is_direct);
+        self.all[group].count(name, 1);
+    }
+
+    /// Returns true if two moves end at the same machine position.
+    fn is_compensated(&self, steps: [Option<usize>; 2]) -> bool {
+        let [old, new] =
+            [0, 1].map(|side| Some(self.alignment.records[side].steps.machine_end(steps[side]?)));
+        old.zip(new).is_some_and(|(old, new)| near(&old, &new, self.alignment.tolerance))
     }
 
     /// Returns true if one of two blocks makes several steps, or sets a word of several.
@@ -194,10 +235,8 @@ impl<'a> Effects<'a> {
         let Some(step) = old.as_ref().or(new.as_ref()) else { unreachable!("a difference has a step") };
         let described = match (kind, old.as_ref().zip(new.as_ref())) {
             (StepDifference::Condition(aspect), _) => self.describe_condition(*aspect, step, steps),
-            (StepDifference::EndPoint(shift), both) => {
-                let is_compensated =
-                    both.is_some_and(|(old, new)| near(&old.at, &new.at, self.alignment.tolerance));
-                self.describe_end_point(shift, new.as_ref().unwrap_or(step), is_compensated)
+            (StepDifference::EndPoint(shift), _) => {
+                self.describe_end_point(shift, new.as_ref().unwrap_or(step), self.is_compensated(steps))
             }
             (StepDifference::MoveKind, Some((old, new))) => {
                 let text = format!("{} instead of {}", new.kind.one(), old.kind.one());
@@ -268,9 +307,8 @@ impl<'a> Effects<'a> {
     fn describe_end_point(&self, shift: &Position, step: &Step<'_>, is_compensated: bool) -> Description {
         let Alignment { tolerance, .. } = self.alignment;
         let text = coordinates(shift, self.alignment.axes(), tolerance, true);
-        let most = Position(shift.0.map(f64::abs));
         Description {
-            numbers: Numbers::Shift { most, is_compensated },
+            numbers: shift_numbers(shift, is_compensated),
             ..Description::new(&kinds::MOVE_SHIFTED, step, text)
         }
     }
@@ -419,6 +457,10 @@ impl<'a> Effects<'a> {
 /// Returns the kind of a change of a command.
 fn change(step: &Step<'_>) -> &'static FindingKind {
     step.kind.change().unwrap_or(&kinds::MOVE_SHIFTED)
+}
+
+fn shift_numbers(shift: &Position, is_compensated: bool) -> Numbers {
+    Numbers::Shift { most: Position(shift.0.map(f64::abs)), is_compensated }
 }
 
 /// Describes a move with another feed, mm/min.

@@ -127,6 +127,19 @@ impl Links {
         runs.flat_map(|run| (0..run.length).map(|index| (run.start + index, run.get(index))))
     }
 
+    /// Returns true if all of these pairs of steps are equal steps before the first difference or after the last one.
+    pub(super) fn are_beside_differences(&self, pairs: &[(usize, usize)]) -> bool {
+        let is_difference = |run: &&LinkRun| !run.first.is_same();
+        let first = self.runs.iter().find(is_difference).map_or(self.length, |run| run.start);
+        let last = self.runs.iter().rev().find(is_difference).map_or(0, |run| run.start + run.length);
+        let behind = self.runs.iter().find(|run| run.start == last);
+        let Some(StepPair::Same(from_i, from_j)) = behind.map(|run| run.first) else {
+            return pairs.iter().all(|(i, j)| i == j && *i < first);
+        };
+        let is_behind = |(i, j): &(usize, usize)| from_i <= *i && i - from_i == j.wrapping_sub(from_j);
+        pairs.iter().all(|pair| pair.0 == pair.1 && pair.0 < first || is_behind(pair))
+    }
+
     /// Iterates over the links that one run alone has, with their numbers.
     pub(super) fn unpaired(&self) -> impl Iterator<Item = (usize, StepPair)> {
         self.differences().filter(|(_, link)| link.is_unpaired())
@@ -146,5 +159,27 @@ impl FromIterator<StepPair> for Links {
         let mut all = Self::default();
         links.into_iter().for_each(|link| all.push(link));
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_steps_lie_beside_all_differences_or_among_them() {
+        let mut links = Links::default();
+        links.push_run(StepPair::Same(0, 0), 2);
+        links.push(StepPair::Added(2));
+        links.push_run(StepPair::Same(2, 3), 2);
+        links.push(StepPair::Changed(4, 5));
+        links.push_run(StepPair::Same(5, 6), 3);
+        assert!(links.are_beside_differences(&[]));
+        assert!(links.are_beside_differences(&[(1, 1), (5, 6), (7, 8)]));
+        assert!(!links.are_beside_differences(&[(1, 1), (2, 3)]), "a difference lies on either side");
+        assert!(!links.are_beside_differences(&[(4, 5)]), "they differ");
+        assert!(!links.are_beside_differences(&[(6, 6)]), "no pair");
+        let same: Links = [StepPair::Same(0, 0), StepPair::Same(1, 1)].into_iter().collect();
+        assert!(same.are_beside_differences(&[(1, 1)]) && !same.are_beside_differences(&[(0, 1)]));
     }
 }

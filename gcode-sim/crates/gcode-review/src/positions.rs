@@ -10,16 +10,40 @@ const UNITS: f64 = 10_000.0;
 /// Positions by their indices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Positions {
-    pieces: Vec<[AxisPiece; MAX_AXES]>,
+    pieces: Vec<Piece>,
     /// Positions of the last piece, up to [`PIECE`].
     open: Vec<Position>,
+}
+
+/// Some positions: the first of them, and the coordinates of the axes that move.
+#[derive(Clone, Debug)]
+struct Piece {
+    first: Position,
+    moving: Box<[(u8, AxisPiece)]>,
+}
+
+impl Piece {
+    fn of(positions: &[Position]) -> Self {
+        let first = positions.first().copied().unwrap_or_default();
+        let is_moving = |axis: &usize| {
+            positions.iter().any(|position| position[*axis].to_bits() != first[*axis].to_bits())
+        };
+        let of = |axis: usize| (axis as u8, AxisPiece::of(positions.iter().map(|position| position[axis])));
+        Self { first, moving: (0..MAX_AXES).filter(is_moving).map(of).collect() }
+    }
+
+    fn get(&self, index: usize) -> Position {
+        let mut position = self.first;
+        for (axis, piece) in &self.moving {
+            position[usize::from(*axis)] = piece.get(index);
+        }
+        position
+    }
 }
 
 /// Coordinates of one axis in a piece.
 #[derive(Clone, Debug)]
 enum AxisPiece {
-    /// All are equal.
-    Constant(f64),
     /// Whole numbers of ten-thousandths: the nearest number to each has the bits of the coordinate.
     Units(Box<[i32]>),
     /// The same, as multiples of `unit` above the first.
@@ -31,10 +55,6 @@ enum AxisPiece {
 impl AxisPiece {
     fn of(coordinates: impl Iterator<Item = f64> + Clone) -> Self {
         let is_same = |a: f64, b: f64| a.to_bits() == b.to_bits();
-        let first = coordinates.clone().next().unwrap_or_default();
-        if coordinates.clone().all(|one| is_same(one, first)) {
-            return Self::Constant(first);
-        }
         let units = |one: f64| {
             let units = (one * UNITS).round() as i32;
             is_same(f64::from(units) / UNITS, one).then_some(units)
@@ -56,7 +76,6 @@ impl AxisPiece {
 
     fn get(&self, index: usize) -> f64 {
         match self {
-            Self::Constant(one) => *one,
             Self::Units(units) => f64::from(units[index]) / UNITS,
             Self::Offsets { first, unit, offsets } => {
                 f64::from(first + unit * i32::from(offsets[index])) / UNITS
@@ -71,8 +90,7 @@ impl Positions {
     pub(super) fn push(&mut self, position: Position) {
         self.open.push(position);
         if self.open.len() == PIECE {
-            let of = |axis: usize| AxisPiece::of(self.open.iter().map(|position| position[axis]));
-            self.pieces.push(std::array::from_fn(of));
+            self.pieces.push(Piece::of(&self.open));
             self.open.clear();
         }
     }
@@ -84,7 +102,7 @@ impl Positions {
     /// Returns a position.
     pub(super) fn get(&self, index: usize) -> Position {
         match self.pieces.get(index / PIECE) {
-            Some(piece) => Position(std::array::from_fn(|axis| piece[axis].get(index % PIECE))),
+            Some(piece) => piece.get(index % PIECE),
             None => self.open[index % PIECE],
         }
     }

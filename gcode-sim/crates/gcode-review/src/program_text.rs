@@ -179,11 +179,13 @@ struct ChangedPassage<'a> {
     sides: [&'a ProgramSide<'a>; 2],
     read_words: fn(&str, &mut String),
     blocks: [Vec<u32>; 2],
+    /// Hashes of the words of these blocks.
+    hashes: [Vec<u64>; 2],
 }
 
 impl<'a> ChangedPassage<'a> {
     fn new(sides: [&'a ProgramSide<'a>; 2], read_words: fn(&str, &mut String)) -> Self {
-        let mut passage = Self { sides, read_words, blocks: Default::default() };
+        let mut passage = Self { sides, read_words, blocks: Default::default(), hashes: Default::default() };
         let mut from = [0, 0];
         let mut to = sides.map(ProgramSide::count);
         while from[0] < to[0] && from[1] < to[1] {
@@ -203,7 +205,10 @@ impl<'a> ChangedPassage<'a> {
             for index in from[side]..to[side] {
                 passage.read(side, index, &mut words);
                 if !words.is_empty() {
+                    let mut hasher = DefaultHasher::new();
+                    words.hash(&mut hasher);
                     passage.blocks[side].push(index as u32);
+                    passage.hashes[side].push(hasher.finish());
                 }
             }
         }
@@ -239,24 +244,10 @@ impl<'a> ChangedPassage<'a> {
         self.words_of(side, self.blocks[side][index] as usize)
     }
 
-    /// Returns the hashes of the words of all blocks.
-    fn hashes(&self) -> [Vec<u64>; 2] {
-        let mut words = String::new();
-        [0, 1].map(|side| {
-            let hash = |index: &u32| {
-                self.read(side, *index as usize, &mut words);
-                let mut hasher = DefaultHasher::new();
-                words.hash(&mut hasher);
-                hasher.finish()
-            };
-            self.blocks[side].iter().map(hash).collect()
-        })
-    }
-
     /// Returns the ranges of blocks between equal ones.
     fn differences(&self) -> Vec<[Range<usize>; 2]> {
-        let [old, new] = self.hashes();
-        let runs = common_lines([&old, &new], |i, j| self.words(0, i) == self.words(1, j));
+        let [old, new] = &self.hashes;
+        let runs = common_lines([old, new], |i, j| self.words(0, i) == self.words(1, j));
         let ends = [self.blocks[0].len(), self.blocks[1].len()];
         let mut from = [0, 0];
         let end = EqualRun { old: ends[0], new: ends[1], length: 0 };

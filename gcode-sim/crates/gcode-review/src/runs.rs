@@ -34,6 +34,12 @@ impl<T: PartialEq> Runs<T> {
 
     /// Returns the value at an index.
     pub(super) fn get(&self, index: usize) -> &T {
+        // Most lists end with one long run.
+        if let (Some(start), Some(value)) = (self.starts.last(), self.values.last())
+            && *start as usize <= index
+        {
+            return value;
+        }
         let first = self.index[index / STRIDE] as usize - 1;
         let last = self.index.get(index / STRIDE + 1).map_or(self.starts.len(), |end| *end as usize);
         let behind = self.starts[first..last].partition_point(|start| *start as usize <= index);

@@ -101,6 +101,11 @@ impl StepList {
         difference(&self.at.get(number), self.lengths.get(number))
     }
 
+    /// Returns the axis positions after a step, in machine coordinates.
+    pub(super) fn machine_end(&self, number: usize) -> Position {
+        self.at.get(number)
+    }
+
     /// Returns what a step does.
     pub(super) fn kind(&self, number: usize) -> &StepKind {
         &self.kinds[self.of_step.get(number) as usize]

@@ -168,26 +168,9 @@ impl Step<'_> {
         *self.kind == StepKind::Rapid
     }
 
-    /// Returns true for the same action: a move of the same kind to the same point, at any feed.
+    /// Returns true for the same action, see [`is_same`].
     pub(super) fn is_same(&self, other: &Step<'_>, tolerance: f64) -> bool {
-        match (self.kind, other.kind) {
-            (StepKind::Rapid, StepKind::Rapid)
-            | (StepKind::Feed(_), StepKind::Feed(_))
-            | (StepKind::Probe(_), StepKind::Probe(_)) => near(&self.to, &other.to, tolerance),
-            (StepKind::Arc(a, _), StepKind::Arc(b, _)) => {
-                near(&self.to, &other.to, tolerance) && is_same_arc(a, b, tolerance)
-            }
-            (StepKind::Length(a), StepKind::Length(b)) => near(a, b, tolerance),
-            (StepKind::Stop(kind, text, named), StepKind::Stop(other, words, values)) => {
-                let same = |(a, b): (&(u32, f64), &(u32, f64))| a.0 == b.0 && (a.1 - b.1).abs() <= tolerance;
-                let alike = named.len() == values.len() && named.iter().zip(values).all(same);
-                kind == other && text == words && alike
-            }
-            (StepKind::Coolant(on, a), StepKind::Coolant(is, b)) => {
-                on == is && (a.is_none() || b.is_none() || a == b)
-            }
-            (a, b) => a == b,
-        }
+        is_same([self.kind, other.kind], tolerance, || [self.to, other.to])
     }
 
     /// Returns true for two moves of the same direction and length.
@@ -231,6 +214,31 @@ pub(super) fn is_as_far_above(
     let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
     let above = new.distance(feed_new) - old.distance(feed_old) - deeper;
     is_on_line && above.abs() <= ROUNDED
+}
+
+/// Returns true for the same action: a move of the same kind to the same point, at any feed. The ends of two moves are
+/// asked for only if that needs them.
+pub(super) fn is_same(kinds: [&StepKind; 2], tolerance: f64, ends: impl FnOnce() -> [Position; 2]) -> bool {
+    let are_near = || {
+        let [a, b] = ends();
+        near(&a, &b, tolerance)
+    };
+    match kinds {
+        [StepKind::Rapid, StepKind::Rapid]
+        | [StepKind::Feed(_), StepKind::Feed(_)]
+        | [StepKind::Probe(_), StepKind::Probe(_)] => are_near(),
+        [StepKind::Arc(a, _), StepKind::Arc(b, _)] => is_same_arc(a, b, tolerance) && are_near(),
+        [StepKind::Length(a), StepKind::Length(b)] => near(a, b, tolerance),
+        [StepKind::Stop(kind, text, named), StepKind::Stop(other, words, values)] => {
+            let same = |(a, b): (&(u32, f64), &(u32, f64))| a.0 == b.0 && (a.1 - b.1).abs() <= tolerance;
+            let alike = named.len() == values.len() && named.iter().zip(values).all(same);
+            kind == other && text == words && alike
+        }
+        [StepKind::Coolant(on, a), StepKind::Coolant(is, b)] => {
+            on == is && (a.is_none() || b.is_none() || a == b)
+        }
+        [a, b] => a == b,
+    }
 }
 
 /// Returns true for the same angle about the same centre.

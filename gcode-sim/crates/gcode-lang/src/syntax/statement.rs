@@ -195,6 +195,9 @@ fn require_condition<'a>(line: LineInput, input: Input<'a>, of_loop: bool) -> Re
     match condition(line, input, of_loop) {
         Err(nom::Err::Error(_)) if comment_before(input) => round_brackets(input, None),
         Err(nom::Err::Error(_)) => fail(spaces(input), otherwise),
+        Ok((rest, _)) if matches!(next(rest), Some((b']', _))) => {
+            fail(spaces(rest), Alarm::MissingOpenBracket)
+        }
         read => read,
     }
 }

@@ -1,7 +1,6 @@
 //! Rule: a block that raises an alarm as it is read: unreadable text, or words that exclude each other. A block behind `;`
-//! in its line is a note.
+//! in its line and a program O0 are notes.
 use gcode_lang::program::DialectSyntax;
-use gcode_lang::source::Spanned;
 
 use crate::prelude::*;
 
@@ -11,11 +10,18 @@ pub(super) static RULE: Rule =
 fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = context.reading_findings(unit, &RULE.kind, |alarm| !has_own_rule(alarm));
     for (block, op) in unit.reached_ops() {
-        let second = |syntax: &&Spanned<_>| syntax.node == DialectSyntax::BlockAfterSemicolon;
-        let Some(syntax) = op.dialect_syntax().iter().find(second) else { continue };
-        if syntax.node.is_accepted(context.settings) {
-            let message = "the text behind ; is a block of its own, and it is executed";
-            let help = "write the block on a line of its own, a comment in round brackets";
+        for syntax in op.dialect_syntax().iter().filter(|syntax| syntax.node.is_accepted(context.settings)) {
+            let (message, help) = match syntax.node {
+                DialectSyntax::BlockAfterSemicolon => (
+                    "the text behind ; is a block of its own, and it is executed",
+                    "write the block on a line of its own, a comment in round brackets",
+                ),
+                DialectSyntax::ProgramZero => (
+                    "O0 is no program number: a control refuses it (PS0074) unless the operator gives another one when it is read",
+                    "write O1 to O99999999",
+                ),
+                _ => continue,
+            };
             let finding = unit.finding(&RULE.kind, block, message).with_span(syntax.span).help(help);
             found.push(finding.with_severity(Severity::Note));
         }
@@ -62,6 +68,21 @@ mod tests {
     fn a_block_behind_a_semicolon_is_a_note() {
         let found = messages(&RULE, "O1\nG43; H01 (TOOL 1)\nG0 X1.; TO THE LEFT\nG0 X2.;\nM30\n");
         assert_eq!(found, ["the text behind ; is a block of its own, and it is executed"]);
+    }
+
+    #[test]
+    fn a_program_with_the_number_0_is_a_note() {
+        let found = messages(&RULE, "O0000\nG0 X1.\nM30\n");
+        assert!(found[0].starts_with("O0 is no program number") && found.len() == 1, "{found:?}");
+        assert_eq!(lines(&RULE, "O0001\nG0 X1.\nM30\n"), NOWHERE);
+    }
+
+    #[test]
+    fn an_extra_bracket_behind_a_condition_is_named() {
+        for block in ["IF[#500 EQ 1]]GOTO 5", "IF[#500 EQ 1]]THEN #2=1", "WHILE[#500 EQ 1]]DO1\nEND1"] {
+            let found = messages(&RULE, &format!("O1\n{block}\nN5 M30\n"));
+            assert!(found[0].starts_with("PS1131: "), "{block}: {found:?}");
+        }
     }
 
     #[test]
