@@ -98,9 +98,16 @@ impl HoleExtractor<'_> {
             let radius = self.radius_of_unsized(&[*from, *to], &axis);
             radius.is_some_and(|radius| rim(&axis, &along, radius - FIT).into_iter().any(is_cut))
         };
+        let cuts_mouth = |axis: Unit<Vector3<f64>>| {
+            self.widest_in_open_hole(to, &axis).is_some_and(|(height, radius)| {
+                let above = axis.into_inner() * height;
+                rim(&axis, &along, radius).into_iter().any(|offset| is_cut(offset + above))
+            })
+        };
         Some(
             cuts || axis.is_some_and(|axis| {
                 cuts_at_rim(axis)
+                    || cuts_mouth(axis)
                     || self.cuts_with_side(&[*from, *to], &axis)
                     || cuts_as_wide_as_its_feature(axis)
             }),
