@@ -356,16 +356,31 @@ enum MilledLength {
     Comb,
 }
 
-/// Judges how far the helices of full width cover a milled thread, which begins at the entry or less than a turn below it.
+/// Judges how far the helices of full width cover a milled thread, which begins at the entry, below wider features, or less than half
+/// a turn deeper: the tooth of a mill is above its tip. A narrower turn above them leaves metal in the thread.
 fn milled_length(judged: &Judgement<'_>, feature: &Feature, made: &Cut<'_>) -> Option<MilledLength> {
     let lead = made.thread?.lead.abs();
-    let is_full = |cut: &&Cut<'_>| cut.mismatch(feature, judged.comparison.tolerances).is_some();
+    let tolerances = judged.comparison.tolerances;
+    let widest = widest_path(judged, made);
+    let is_whole = |cut: &Cut<'_>| {
+        let path = cut.pass.cut.milled.map_or(0.0, |circle| circle.radius);
+        cut.pass.diameter.is_some() || !exceeds(2.0 * (widest - path), tolerances.diameter)
+    };
+    let is_full = |cut: &&Cut<'_>| cut.mismatch(feature, tolerances).is_some() && is_whole(cut);
     let covered = covered_depths(judged.near.iter().filter(is_full));
     let [top, _] = *covered.first()?;
-    let uncut = match covered.get(1).filter(|[_, upper]| 0.0 < *upper) {
+    let begin = thread_begin(judged.nominal, feature);
+    let is_narrow = |cut: &Cut<'_>| {
+        let upper = cut.thread.map(|helix| cut.tip - helix.height);
+        cut.pass.tool == made.pass.tool
+            && !is_full(&cut)
+            && upper.is_some_and(|upper| exceeds(top - upper, MAX_STEP) && exceeds(cut.tip - begin, MAX_STEP))
+    };
+    let may_end = !exceeds(top - begin, lead / 2.0 + LEAD_TOLERANCE) && !judged.near.iter().any(is_narrow);
+    let uncut = match covered.get(1).filter(|[_, upper]| begin < *upper) {
         Some([_, upper]) => [*upper, top],
-        None if top < lead - LEAD_TOLERANCE => return None,
-        None => [0.0, top],
+        None if may_end || !exceeds(top - begin, MAX_STEP) => return None,
+        None => [begin, top],
     };
     let own = covered_depths(judged.near.iter().filter(|cut| cut.pass.tool == made.pass.tool));
     if own.iter().all(|[upper, lower]| lower - upper < MAX_COMB_TURNS * lead) {
@@ -373,9 +388,11 @@ fn milled_length(judged: &Judgement<'_>, feature: &Feature, made: &Cut<'_>) -> O
     }
     let [from, to] = uncut;
     let (id, name) = (judged.id, made.name());
-    let message = match from == 0.0 {
+    let message = match from == begin {
         true => format!(
-            "hole {id}: {name} mills the thread from {to:.3} mm below the entry on; less than {lead:.3}, a turn, is required"
+            "hole {id}: {name} mills the thread from {to:.3} mm below the entry on; at most {:.3}, half a turn below its \
+             beginning, is required, and no narrower turn above",
+            begin + lead / 2.0
         ),
         false => format!(
             "hole {id}: {name} mills no thread from {from:.3} to {to:.3} mm below the entry, limit {MAX_STEP}"
@@ -383,6 +400,25 @@ fn milled_length(judged: &Judgement<'_>, feature: &Feature, made: &Cut<'_>) -> O
     };
     let finding = Diagnostic::new(&FEATURE_DEPTH, message).with_backtrace(made.pass.backtrace.clone());
     Some(MilledLength::Fault(finding.help("mill up to the entry, each turn to the diameter of the thread")))
+}
+
+/// Returns the radius of the widest helix of the tool of a cut, mm.
+fn widest_path(judged: &Judgement<'_>, made: &Cut<'_>) -> f64 {
+    let own = judged.near.iter().filter(|cut| cut.thread.is_some() && cut.pass.tool == made.pass.tool);
+    own.filter_map(|cut| Some(cut.pass.cut.milled?.radius)).fold(0.0, f64::max)
+}
+
+/// Returns the depth at which a thread begins, below the features that are wider, mm.
+fn thread_begin(nominal: &Hole, thread: &Feature) -> f64 {
+    let wider = nominal.features.iter().filter(|feature| thread.diameter <= feature.diameter);
+    let bottom = |feature: &Feature| match (feature.kind, feature.angle) {
+        (FeatureKind::Countersink, Some(angle)) => {
+            (feature.diameter - thread.diameter) / 2.0 / Deg(angle / 2.0).tan()
+        }
+        (FeatureKind::Tap, _) => 0.0,
+        _ => feature.bottom(),
+    };
+    wider.map(bottom).fold(0.0, f64::max)
 }
 
 /// Returns the depths that some helices cover without a step between them, from the top of each stretch to its bottom, the
