@@ -141,8 +141,12 @@ fn wide_cut(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<WideCut> {
         let is_spot_drill = cut.kind.is_none() && cut.point == PointShape::Unknown && is_wide(cut.tip);
         return is_spot_drill.then_some(WideCut::SpotDrill(cut.pass.tool));
     }
+    let made = match cut.is_void {
+        true => format!("is {full:.3} mm deep"),
+        false => format!("cuts {full:.3} mm deep at its full diameter"),
+    };
     let message = format!(
-        "hole {}: {} cuts {full:.3} mm deep at its full diameter, {:.3} mm wider than the hole for the thread",
+        "hole {}: {} {made}, {:.3} mm wider than the hole for the thread",
         judged.id,
         cut.name(),
         excess(full)
