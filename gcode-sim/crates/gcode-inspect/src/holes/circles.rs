@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::arc_run::{PartArc, Ring};
-use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess};
+use super::hole_circles::{EXCESS_SLACK, HoleCircles, PathExcess, distance};
 use super::milled::{Engagement, MIN_AXIS_COSINE};
 use super::strokes::LEVEL_TOLERANCE;
 use super::swept_tool::ring as directions;
@@ -101,8 +101,9 @@ impl HoleExtractor<'_> {
         (holes, has_pocket)
     }
 
-    /// Returns the turns at nominal threads; a turn along a thread cuts no hole. Of several at one thread the widest decides how far
-    /// the path leads beyond them. Without nominal holes those count that cut the wall of a drilled hole.
+    /// Returns the turns at nominal threads, and at nominal holes of unknown diameter; a turn along a thread cuts no hole. Of several at
+    /// one thread the widest decides how far the path leads beyond them. Without nominal holes those count that cut the wall of a
+    /// drilled hole.
     fn thread_turns(&self, turns: Vec<&Ring>, cutter: Option<f64>) -> Vec<HoleCircles> {
         if self.strokes.nominal_axes().is_empty() {
             let is_at_wall = |ring: &&Ring| self.strokes.is_at_drilled_wall(ring, cutter, self.machine);
@@ -114,7 +115,8 @@ impl HoleExtractor<'_> {
         }
         let entry = |ring: &&Ring| {
             let axis = self.strokes.nominal_of_ring(ring, true)?;
-            (axis.thread.is_some() && self.is_at_nominal_wall(ring, cutter)).then_some(axis.entry)
+            let may_have_thread = axis.thread.is_some() || axis.radius.is_none() && self.is_hollow(ring);
+            (may_have_thread && self.is_at_nominal_wall(ring, cutter)).then_some(axis.entry)
         };
         let turns: Vec<(Point3<f64>, &Ring)> =
             turns.into_iter().filter_map(|ring| Some((entry(&ring)?, ring))).collect();
@@ -127,6 +129,11 @@ impl HoleExtractor<'_> {
             Some(circles)
         });
         circles.collect()
+    }
+
+    /// Returns true if feeds have removed the metal inside a circle.
+    fn is_hollow(&self, ring: &Ring) -> bool {
+        self.metal.uncut(&[ring.centre, ring.centre + ring.out.into_inner() * ring.height()]).is_none()
     }
 
     /// Returns the circles of each hole among rings that follow no thread.
@@ -223,12 +230,6 @@ impl PartArc {
         let along = if self.sweep.0 < 0.0 { -turn } else { turn }.rem_euclid(360.0);
         (1e-9 < away.norm() && along < self.sweep.0.abs()).then(|| self.point(along / self.sweep.0.abs()))
     }
-}
-
-/// Returns the distance of a point from an axis.
-fn distance(p: &Point3<f64>, centre: &Point3<f64>, out: &Unit<Vector3<f64>>) -> f64 {
-    let spoke = p - centre;
-    (spoke - out.into_inner() * spoke.dot(out)).norm()
 }
 
 #[cfg(test)]

@@ -98,9 +98,16 @@ impl HoleExtractor<'_> {
             let radius = self.radius_of_unsized(&[*from, *to], &axis);
             radius.is_some_and(|radius| rim(&axis, &along, radius - FIT).into_iter().any(is_cut))
         };
+        let cuts_mouth = |axis: Unit<Vector3<f64>>| {
+            self.widest_in_open_hole(to, &axis).is_some_and(|(height, radius)| {
+                let above = axis.into_inner() * height;
+                rim(&axis, &along, radius).into_iter().any(|offset| is_cut(offset + above))
+            })
+        };
         Some(
             cuts || axis.is_some_and(|axis| {
                 cuts_at_rim(axis)
+                    || cuts_mouth(axis)
                     || self.cuts_with_side(&[*from, *to], &axis)
                     || cuts_as_wide_as_its_feature(axis)
             }),
@@ -167,7 +174,7 @@ impl HoleExtractor<'_> {
         if let Some(gouge) = worst {
             self.gouge_count += 1;
             self.milling.record_cut(self.setup.tool);
-            self.report_gouge(&event.backtrace(), gouge);
+            self.report_gouge(&event.backtrace(), path, gouge);
         }
     }
 
@@ -184,7 +191,7 @@ impl HoleExtractor<'_> {
             if self.positions.is_known(self.machine)
                 && let Some(gouge) = self.turned_body_gouge(&AxisMotion { from, to, arc: None })
             {
-                self.report_gouge(&event.backtrace(), gouge);
+                self.report_gouge(&event.backtrace(), &[self.pose.tip], gouge);
             }
             return self.count_unsearched_feed(event);
         };
@@ -201,7 +208,9 @@ impl HoleExtractor<'_> {
         };
         let side = FeedPart::Side { radius: self.body_radius(), slope: 0.0 };
         match at.and_then(|at| self.metal.gouge(&[at, at], side)) {
-            Some(at) => self.report_gouge(&event.backtrace(), Gouge { at, part: ToolRegion::Side }),
+            Some(at) => {
+                self.report_gouge(&event.backtrace(), &[self.pose.tip], Gouge { at, part: ToolRegion::Side })
+            }
             None => self.unsearched_feeds.count(|| event.backtrace()),
         }
     }
@@ -444,7 +453,7 @@ impl HoleExtractor<'_> {
     pub(super) fn report_plunge(&mut self, line: &CuttingLine) {
         if let Some(gouge) = self.plunge_gouge(line) {
             self.plunge = None;
-            self.report_gouge(line.backtrace(), gouge);
+            self.report_gouge(line.backtrace(), &[line.start, line.bottom()], gouge);
         }
     }
 }

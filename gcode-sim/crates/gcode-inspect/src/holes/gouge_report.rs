@@ -3,6 +3,8 @@ use nalgebra::Point3;
 
 use super::HoleExtractor;
 use super::feed_law::{Gouge, ToolRegion};
+use super::hole_circles::HoleCircles;
+use super::per_block::Findings;
 use super::rapids::format_point;
 use super::unsized_tool::MAX_RADIUS;
 use crate::findings::FEED_BESIDE_HOLE;
@@ -13,9 +15,31 @@ use gcode_lang::motion::Backtrace;
 /// Largest radius of a hole of unknown diameter that is milled, mm.
 const MAX_OPEN_RADIUS: f64 = 50.0;
 
+/// Feed beside a nominal hole without a diameter, which may be as wide as the circle that mills it.
+#[derive(Debug)]
+pub(super) struct OpenFeed {
+    /// Points of its path.
+    path: Vec<Point3<f64>>,
+    findings: Findings,
+}
+
 impl HoleExtractor<'_> {
-    /// Reports where a feed cuts what has to stay.
-    pub(super) fn report_gouge(&mut self, backtrace: &Backtrace, Gouge { at, part }: Gouge) {
+    /// Reports the feeds beside holes without a diameter whose paths leave the circles that an engagement mills.
+    pub(super) fn report_open_feeds(&mut self, feeds: Vec<OpenFeed>, holes: &[HoleCircles]) {
+        for OpenFeed { path, findings } in feeds {
+            if !holes.iter().any(|circles| path.iter().all(|tip| circles.contains(tip))) {
+                self.findings.append(findings);
+            }
+        }
+    }
+
+    /// Reports where a feed along a path cuts what has to stay.
+    pub(super) fn report_gouge(
+        &mut self,
+        backtrace: &Backtrace,
+        path: &[Point3<f64>],
+        Gouge { at, part }: Gouge,
+    ) {
         let (depth, point) = (at.depth, format_point(&at.point));
         let level = self.metal.level_at(&at.point);
         let (message, help) = match (part, self.metal.holes.as_deref()) {
@@ -63,12 +87,12 @@ impl HoleExtractor<'_> {
                 (format!("{what} cuts {place}, {depth:.3} mm below {level} at {point}"), help)
             }
         };
-        // A hole of unknown diameter may be as wide as the circle that mills it.
-        let findings = match self.is_at_open_hole(&at.point) {
-            true => &mut self.engagement.errors,
-            false => &mut self.findings,
-        };
+        let mut findings = Findings::default();
         findings.add(&FEED_BESIDE_HOLE, backtrace, 0, |kind| Diagnostic::new(kind, message).help(help));
+        match self.is_at_open_hole(&at.point) {
+            true => self.engagement.open_feeds.push(OpenFeed { path: path.to_vec(), findings }),
+            false => self.findings.append(findings),
+        }
     }
 
     /// Returns where a feed beside the stated pockets cuts; `None` without pockets.

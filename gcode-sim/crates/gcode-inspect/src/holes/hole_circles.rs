@@ -1,5 +1,5 @@
 //! Milled circles of one hole, and how far their path leads beyond them.
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::arc_run::Ring;
 use gcode_part::exceeds;
@@ -34,8 +34,20 @@ pub(super) struct PathExcess {
 }
 
 impl HoleCircles {
+    /// Returns true if a position of the tip is inside the widest circle, or on it.
+    pub(super) fn contains(&self, tip: &Point3<f64>) -> bool {
+        let Ring { centre, out, radius, roundness, .. } = &self.widest;
+        !exceeds(distance(tip, centre, out), radius + EXCESS_SLACK + roundness)
+    }
+
     /// Returns true if the whole path stays inside the widest circle.
     pub(super) fn is_whole(&self) -> bool {
         self.excess.is_none_or(|excess| !exceeds(excess.depth, EXCESS_SLACK + self.widest.roundness))
     }
+}
+
+/// Returns the distance of a point from an axis.
+pub(super) fn distance(p: &Point3<f64>, centre: &Point3<f64>, out: &Unit<Vector3<f64>>) -> f64 {
+    let spoke = p - centre;
+    (spoke - out.into_inner() * spoke.dot(out)).norm()
 }

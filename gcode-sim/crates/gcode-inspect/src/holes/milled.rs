@@ -7,6 +7,7 @@ use super::chord_run::ChordRun;
 use super::cut_states::{CutStates, StateCut};
 use super::cutting::CuttingState;
 use super::drill_pass::{DrillPass, MilledCut, PassCut};
+use super::gouge_report::OpenFeed;
 use super::hole_circles::HoleCircles;
 use super::per_block::Findings;
 use super::slug::Turn;
@@ -56,6 +57,7 @@ pub(super) struct Engagement {
     pub uncounted: Uncounted,
     /// Errors about them, where the surface is known.
     pub errors: Findings,
+    pub open_feeds: Vec<OpenFeed>,
 }
 
 /// Path of a feed.
@@ -258,6 +260,8 @@ impl HoleExtractor<'_> {
         let unretracted = std::mem::take(&mut self.engagement.unretracted);
         let uncounted = std::mem::take(&mut self.engagement.uncounted);
         let errors = std::mem::take(&mut self.engagement.errors);
+        let open_feeds = std::mem::take(&mut self.engagement.open_feeds);
+        self.report_open_feeds(open_feeds, &holes);
         if holes.is_empty() {
             for (order, pass) in unretracted {
                 self.push_unretracted(order, pass, has_pocket);

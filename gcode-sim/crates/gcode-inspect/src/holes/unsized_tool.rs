@@ -14,6 +14,9 @@ use gcode_part::Collar;
 /// Depth in a hole from which on the start of a feed is inside it, mm.
 const MIN_START_DEPTH: f64 = 0.1;
 
+/// Depth below the entry of a hole at which the width of a cone counts as that at the entry, mm.
+const MOUTH_DEPTH: f64 = 0.05;
+
 /// Radius up to which a mill of unknown diameter may remove metal, mm.
 pub(super) const MAX_RADIUS: f64 = 25.0;
 
@@ -145,25 +148,44 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the depth at which a tool of known diameter begins in a hole whose diameter the reference doesn't have, and the tool's
-    /// radius, if no feed has made the hole as wide above it.
+    /// radius there, if no feed has made the hole as wide above it.
     fn start_in_open_hole(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<(f64, f64)> {
-        let full = *self.machine.tool_end(self.setup.tool).first()?;
-        let wide = line.start + axis.into_inner() * full.from;
-        let mut begun = None;
-        self.metal.around(&[line.start, wide], &mut |collar| {
-            let is_on_axis = collar.is_parallel(axis) && collar.from_axis(&line.start) <= ON_AXIS;
-            let depth = collar.depth(&line.start);
-            if !collar.has_diameter && is_on_axis && MIN_START_DEPTH + full.from < depth {
-                begun = Some(depth);
+        let depth = self.depth_in_open_hole(&line.start, axis).filter(|depth| MIN_START_DEPTH < *depth)?;
+        let (height, radius) = self.widest_in_open_hole(&line.start, axis)?;
+        let out = axis.into_inner();
+        let (wide, above) = (line.start + out * height, line.start + out * depth);
+        let rim = rim(axis, &Vector3::zeros(), radius - FIT);
+        let is_cut =
+            |offset: Vector3<f64>| self.metal.cuts_open_wall(&[wide + offset, above + offset], axis, radius);
+        rim.into_iter().any(is_cut).then_some((depth, radius))
+    }
+
+    /// Returns the depth of a tip on the axis of a hole whose diameter the reference doesn't have, mm; `None` beside all of them.
+    fn depth_in_open_hole(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<f64> {
+        let mut deepest: Option<f64> = None;
+        let top = tip + axis.into_inner() * self.metal.removed.height_of_metal(tip, axis);
+        self.metal.around(&[*tip, top], &mut |collar| {
+            let is_on_axis = collar.is_parallel(axis) && collar.from_axis(tip) <= ON_AXIS;
+            if !collar.has_diameter && is_on_axis {
+                deepest = Some(deepest.unwrap_or(0.0).max(collar.depth(tip)));
             }
         });
-        let depth = begun?;
-        let above = line.start + axis.into_inner() * depth;
-        let rim = rim(axis, &Vector3::zeros(), full.radius() - FIT);
-        let is_cut = |offset: Vector3<f64>| {
-            self.metal.cuts_open_wall(&[wide + offset, above + offset], axis, full.radius())
-        };
-        rim.into_iter().any(is_cut).then(|| (depth, full.radius()))
+        deepest
+    }
+
+    /// Returns the height above a tip, on the axis of a hole whose diameter the reference doesn't have, at which the tool is as wide as
+    /// it gets below the entry, and its radius there: that of a cone only at the entry, if the full diameter is above it.
+    pub(super) fn widest_in_open_hole(
+        &self,
+        tip: &Point3<f64>,
+        axis: &Unit<Vector3<f64>>,
+    ) -> Option<(f64, f64)> {
+        let full = *self.machine.tool_end(self.setup.tool).first()?;
+        let mouth = self.depth_in_open_hole(tip, axis)? - MOUTH_DEPTH;
+        match full.from <= mouth {
+            true => Some((full.from, full.radius())),
+            false => (0.0 < mouth).then(|| (mouth, full.radius() * mouth / full.from)),
+        }
     }
 
     /// Returns the depth at which a tool of unknown diameter begins in a hole, and the radius to which it widens that, if the metal

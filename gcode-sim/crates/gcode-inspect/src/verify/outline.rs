@@ -102,7 +102,7 @@ impl Outline {
     ///
     /// Both radii are linear between the ends of their pieces, so the least difference lies at one of these ends.
     pub(super) fn margin(&self, cut: &CutShape) -> f64 {
-        let (top, bottom) = (cut.start.max(0.0), cut.tip.min(self.bottom()));
+        let (top, bottom) = (cut.begin().max(0.0), cut.tip.min(self.bottom()));
         // A cone meets cylinders, and other cones: where both are as wide.
         let joints = self.cones.iter().enumerate().flat_map(|(index, (wide, slope))| {
             let cylinders = self.cylinders.iter().map(move |(radius, _)| (wide - radius) / slope);
@@ -128,13 +128,18 @@ impl CutShape {
         self.tip - self.point.length(2.0 * self.radius).unwrap_or(0.0)
     }
 
+    /// Returns the depth at which the feed begins to cut: a point also cuts above its tip, up to where it is as wide as the tool.
+    fn begin(&self) -> f64 {
+        self.start - self.point.length(2.0 * self.radius).unwrap_or(0.0)
+    }
+
     /// Returns true if this cut removes all that another one on the same axis removes below the entry and above `floor`. An
     /// unknown end of this tool counts as that of a drill.
     pub(super) fn covers(&self, other: &Self, floor: f64) -> bool {
         let point = if self.point == PointShape::Unknown { PointShape::DRILL } else { self.point };
         let own = Self { point, ..*self };
-        let (top, bottom) = (other.start.max(0.0), other.tip.min(floor));
-        let is_whole = own.path <= own.radius && own.start <= top && bottom <= own.tip + NOISE;
+        let (top, bottom) = (other.begin().max(0.0), other.tip.min(floor));
+        let is_whole = own.path <= own.radius && own.begin() <= top && bottom <= own.tip + NOISE;
         let ends = [top, bottom, own.full_depth(), other.full_depth()];
         let mut depths = ends.into_iter().filter(|depth| top <= *depth && *depth <= bottom);
         is_whole && top < bottom && depths.all(|depth| other.radius_at(depth) <= own.radius_at(depth) + NOISE)
@@ -180,6 +185,7 @@ mod tests {
             (cut(10.0, 9.0, pointed), -1.0),
             (cut(5.0, 15.0, PointShape::Unknown), 0.5),
             (CutShape { start: 6.0, ..cut(5.0, 15.0, PointShape::Flat) }, 0.5),
+            (CutShape { start: 6.0, ..cut(10.0, 9.0, pointed) }, -1.0),
         ] {
             let margin = outline.margin(&cut);
             assert!((margin - expected).abs() < 1e-12, "{cut:?}: {margin}");
@@ -203,6 +209,11 @@ mod tests {
         assert!(!ring.covers(&spot, f64::INFINITY), "a core is left on its axis");
         let below = CutShape { start: 5.0, ..cut(10.0, 20.0, PointShape::Flat) };
         assert!(!below.covers(&spot, f64::INFINITY), "it begins in the hole");
+        let inside = CutShape { start: 3.5, ..spot };
+        assert!(
+            !cut(7.9, 20.0, PointShape::Flat).covers(&inside, f64::INFINITY),
+            "its cone cuts above its tip"
+        );
     }
 
     /// A cone of Φ12 at 90° meets Φ6 at 3. A 90° tool with its tip at 6 fits exactly; a 120° tool with its tip at 3 has a
