@@ -8,8 +8,9 @@ use super::work_zeros::zeros;
 use gcode_draw::{
     DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, Side, Sign, TopView, TravelLimit,
 };
+use gcode_inspect::drawn_move::PathKind;
 use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool, ToolKind};
-use gcode_inspect::tool_path::{PathKind, PathStop, StretchAxis, ToolPath};
+use gcode_inspect::tool_path::{PathStop, StretchAxis, ToolPath};
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Position;

@@ -68,7 +68,7 @@ mod uniform_shift;
 pub use block_location::BlockLocation;
 pub use change::{Change, Effect};
 pub use holes::Paired;
-pub use path::Leg;
+pub use path::{Leg, UnplacedEnd};
 pub use program_text::{UnexecutedChange, unexecuted};
 pub use record::{Record, Revision, Totals, alarm_code};
 pub use store::{AcceptedFile, StoreError};

@@ -9,9 +9,9 @@ use super::block_location::BlockLocation;
 use super::first_command::CommandKind;
 use super::record::Record;
 use super::steps::StepKind;
+use gcode_inspect::drawn_move::{PathKind, for_each_drawn_pose, is_placed, moved_axes};
 use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};
-use gcode_inspect::tool_path::for_each_drawn_pose;
 use gcode_lang::motion::{AxisIndex, Position, StopKind};
 
 /// Largest deviation of a curved path from its chords, mm.
@@ -38,12 +38,26 @@ pub struct Leg {
     pub is_of_hole: bool,
     /// Number of its block in [`Record::block_location`].
     pub block_number: usize,
-    /// Points from start to end, mm; the end alone if an axis has not been commanded before the move.
+    /// End whose place on the part is unknown.
+    pub unplaced: Option<UnplacedEnd>,
+    /// Points from start to end, mm; the known end alone if the other is unknown, the point before it if both are.
     pub points: Vec<Point3<f64>>,
     /// Largest distance of the path from the line through `points`, mm; 0 of straight moves that are all there.
     pub deviation: f64,
     /// Points that deviate from the path by at most 0.001 mm; empty if `points` are these, or if there are too many.
     pub exact: Vec<Point3<f64>>,
+}
+
+/// End of a move whose place on the part is unknown: an axis has not been commanded before, or stands at machine coordinates
+/// while the work offset is unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnplacedEnd {
+    /// The start.
+    Start,
+    /// The end.
+    End,
+    /// Start and end.
+    Both,
 }
 
 impl Leg {
@@ -52,7 +66,7 @@ impl Leg {
         self.steps = *self.steps.start()..=*next.steps.end();
         self.moves += next.moves;
         self.is_of_hole |= next.is_of_hole;
-        if next.points.len() == 1 {
+        if next.unplaced.is_some() {
             (self.points, self.exact, self.deviation) = (next.points, next.exact, next.deviation);
             return;
         }
@@ -110,7 +124,12 @@ impl Record {
         let mut all: Vec<Leg> = Vec::new();
         for next in self.legs(machine, usize::MAX, usize::MAX, exact_points) {
             match all.last_mut() {
-                Some(leg) if leg.kind == next.kind && is_same_feed(leg, &next) && leg.moves < joined => {
+                Some(leg)
+                    if leg.kind == next.kind
+                        && is_same_feed(leg, &next)
+                        && leg.moves < joined
+                        && leg.unplaced == next.unplaced =>
+                {
                     leg.join(next);
                 }
                 _ => all.push(next),
@@ -137,7 +156,8 @@ impl Record {
         let of_holes: BTreeSet<usize> = self.feeds.iter().flatten().copied().collect();
         let mut legs: Vec<Leg> = Vec::new();
         let mut setup = Setup::default();
-        let mut from = Position::default();
+        let (mut from, mut unknown) = (self.start.at, self.start.unknown);
+        let mut last_placed = None;
         let (mut left, mut exact_left) = (points, exact_points);
         let unknown_starts = self.unknown_axes(machine).iter().map(|(_, moves)| moves + 1).max().unwrap_or(0);
         let mut move_number = 0;
@@ -151,8 +171,30 @@ impl Record {
                 };
                 let travel = AxisMotion { from: &from, to: &to, arc };
                 let mut points_of_move = move_points(machine, &setup, &travel, CHORD);
-                if move_number < unknown_starts {
-                    points_of_move.drain(..points_of_move.len() - 1);
+                let kind = path_kind(step.kind);
+                let moved = moved_axes(&travel);
+                let is_lost = |unknown, number: usize| {
+                    number < unknown_starts || !is_placed(machine, unknown, kind, moved)
+                };
+                let ends = [
+                    is_lost(unknown, move_number),
+                    is_lost(self.steps.unknown_after(index), move_number + 1),
+                ];
+                let unplaced = match ends {
+                    [true, true] => Some(UnplacedEnd::Both),
+                    [true, false] => Some(UnplacedEnd::Start),
+                    [false, true] => Some(UnplacedEnd::End),
+                    [false, false] => None,
+                };
+                match unplaced {
+                    Some(UnplacedEnd::End) => points_of_move.truncate(1),
+                    Some(_) => points_of_move.drain(..points_of_move.len() - 1).for_each(drop),
+                    None => {}
+                }
+                match (unplaced, last_placed) {
+                    (Some(UnplacedEnd::Both), Some(last)) => points_of_move = vec![last],
+                    (Some(UnplacedEnd::Both), None) => {}
+                    _ => last_placed = points_of_move.last().copied(),
                 }
                 let is_curved = 2 < points_of_move.len();
                 let mut exact = Vec::new();
@@ -174,12 +216,13 @@ impl Record {
                     feed: step.kind.rate(),
                     is_of_hole: of_holes.contains(&index) || back,
                     block_number: step.block_number,
+                    unplaced,
                     points: points_of_move,
                     deviation: if is_curved { CHORD } else { 0.0 },
                     exact,
                 });
             }
-            from = to;
+            (from, unknown) = (to, self.steps.unknown_after(index));
         }
         legs
     }
@@ -267,6 +310,14 @@ fn set_up(setup: &mut Setup, kind: &StepKind) {
     }
 }
 
+fn path_kind(kind: &StepKind) -> PathKind {
+    match kind {
+        StepKind::Rapid => PathKind::Rapid,
+        StepKind::Probe(_) => PathKind::Probe,
+        _ => PathKind::Feed,
+    }
+}
+
 /// Returns the points of a move on the part.
 fn move_points(machine: &Machine, setup: &Setup, travel: &AxisMotion<'_>, chord: f64) -> Vec<Point3<f64>> {
     let mut points = Vec::new();
@@ -276,6 +327,7 @@ fn move_points(machine: &Machine, setup: &Setup, travel: &AxisMotion<'_>, chord:
 
 #[cfg(test)]
 mod tests {
+    use super::UnplacedEnd;
     use crate::Revision;
     use gcode_inspect::machine::Machine;
     use gcode_lang::program::NoLibrary;
@@ -396,6 +448,59 @@ mod tests {
         assert_eq!(counts(""), [1, 1, 2, 2]);
         assert_eq!(counts("[start]\nX = 1.0\nY = 1.0\n"), [1, 1, 2, 2]);
         assert_eq!(counts("[start]\nX = 1.0\nY = 1.0\nZ = 100.0\n"), [2, 2, 2, 2]);
+    }
+
+    /// G28 sends Z to machine zero, and X and Y follow there: without G54 this place on the part is unknown, and the ends that are
+    /// known remain. With G54 its zero is at Z −400 of the machine, so that Z is 400 less the tool's 120.
+    #[test]
+    fn a_move_to_a_machine_position_without_its_offset_has_no_end() {
+        let text =
+            "O1\nG90 G54 G0 X5. Y0\nG43 H1 Z50.\nG91 G28 Z0\nG90 X9.\nG43 H1 Z50.\nX7.\nG91 G28 Z0\nM30\n";
+        let legs = |offsets: &str| -> Vec<_> {
+            let head = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n[[tool]]\nnumber = 1\nlength = 120.0\n";
+            let machine = Machine::parse(&format!("{head}{offsets}")).unwrap();
+            let text = text.replace("O1\n", "O1\nT1 M6\n");
+            let request = Request::new("O1.nc", text.into_bytes(), machine);
+            let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
+            let path = revision.record.path(&request.machine, 10, 1000);
+            path.iter().map(|leg| (leg.unplaced, leg.points.last().unwrap().z, leg.points.len())).collect()
+        };
+        let (start, end, both) = (Some(UnplacedEnd::Start), Some(UnplacedEnd::End), Some(UnplacedEnd::Both));
+        let unknown = legs("");
+        let placed = [
+            (start, 50.0, 1),
+            (end, 50.0, 1),
+            (both, 50.0, 1),
+            (start, 50.0, 1),
+            (None, 50.0, 2),
+            (end, 50.0, 1),
+        ];
+        assert_eq!(unknown[1..], placed);
+        let offsets = "[part]\norigin = [0.0, 0.0, -400.0]\n[offsets.G54]\nX = 0.0\nY = 0.0\nZ = -400.0\n";
+        let known: Vec<_> =
+            legs(offsets).iter().map(|(unplaced, z, points)| (*unplaced, z.round(), *points)).collect();
+        let placed = [
+            (start, 50.0, 1),
+            (None, 280.0, 2),
+            (None, 280.0, 2),
+            (None, 50.0, 2),
+            (None, 50.0, 2),
+            (None, 280.0, 2),
+        ];
+        assert_eq!(known[1..], placed);
+    }
+
+    /// `[start]` is Z 250: the first rapid comes from there, not from machine zero.
+    #[test]
+    fn a_stated_start_is_where_the_path_begins() {
+        let head =
+            "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n[start]\nX = -5.0\nY = 0.0\nZ = 250.0\n";
+        let text = "O1\nG90 G54 G0 X5. Y0\nM30\n";
+        let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::parse(head).unwrap());
+        let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
+        let path = revision.record.path(&request.machine, 10, 1000);
+        let ends: Vec<[f64; 3]> = path[0].points.iter().map(|point| point.coords.into()).collect();
+        assert_eq!(ends, [[-5.0, 0.0, 250.0], [5.0, 0.0, 250.0]]);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::drawn_lines::{DrawnCells, DrawnSegments, SAME_LINE, distance};
 use super::path_view::{ColorBy, PathRun, PathView, RunAxis, RunKind, StandardView};
 use super::view_frames::{PlacedView, axis_index};
 use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint, arc};
+use gcode_lang::units::Deg;
 use gcode_part::Stock;
 use nalgebra::Vector3;
 
@@ -338,17 +339,27 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
         Stock::Cylinder { axis, diameter, from, to, .. } => {
             let (along, radius) = (axis_index(*axis), diameter / 2.0);
             let (first, second) = ((along + 1) % 3, (along + 2) % 3);
-            let rim = |end: f64| -> Vec<[f64; 3]> {
+            let rim = |end: f64, angles: [f64; 2]| -> Vec<[f64; 3]> {
                 let place = |[a, b]: Point| {
                     let mut point = [end; 3];
                     (point[first], point[second]) = (a, b);
                     point
                 };
-                arc([0.0, 0.0], [radius, radius], [0.0, 360.0]).into_iter().map(place).collect()
+                arc([0.0, 0.0], [radius, radius], angles).into_iter().map(place).collect()
             };
-            let rims = [rim(*from), rim(*to)];
-            // The outline runs along the generators that are farthest apart across the line of sight.
             let towards = view.side.towards();
+            let (near, far) = if towards[along] < 0.0 { (*from, *to) } else { (*to, *from) };
+            let facing = Deg::atan2(towards[second], towards[first]).0;
+            // The wall hides the half of the far rim that is turned away from the reader.
+            let is_half_hidden = view.kind == StandardView::Isometric;
+            let far_rims = match is_half_hidden {
+                true => vec![
+                    edge(&rim(far, [facing - 90.0, facing + 90.0])),
+                    line(Pen::Construction, &rim(far, [facing + 90.0, facing + 270.0])),
+                ],
+                false => vec![edge(&rim(far, [0.0, 360.0]))],
+            };
+            // The outline runs along the generators that are farthest apart across the line of sight.
             let across = libm::hypot(towards[first], towards[second]);
             let sides = [1.0, -1.0].into_iter().filter(|_| 1e-6 < across).map(|sign| {
                 let end = |end: f64| {
@@ -359,7 +370,7 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
                 };
                 edge(&[end(*from), end(*to)])
             });
-            rims.iter().map(|rim| edge(rim)).chain(sides).collect()
+            far_rims.into_iter().chain([edge(&rim(near, [0.0, 360.0]))]).chain(sides).collect()
         }
         Stock::Surface { .. } => Vec::new(),
     }
