@@ -1,7 +1,7 @@
 //! Contents of the top view: actual holes and, with a reference, the verdict on each.
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 use super::figures::{count, with_sign};
 use super::work_zeros::zeros;
@@ -57,16 +57,21 @@ pub fn of_holes(
     }
 }
 
-/// Returns what the tools make of each hole: its drills, counterbores, threads. Without a known surface the width of a
-/// countersink is unknown.
+/// Largest height at which a feed still begins on the surface, mm.
+const SAME_LEVEL: f64 = 1e-6;
+
+/// Returns what the tools make of each hole: its drills, counterbores, threads. Without a known surface, as on a floor that the
+/// program mills, the width of a countersink is unknown.
 fn features_made(simulation: &Simulation, machine: &Machine) -> Vec<Vec<Feature>> {
     let body = machine.stock.as_ref().and_then(|stock| stock.body(None));
     let mut list = simulation.hole_list();
     body.iter().for_each(|body| list.enter_at(body));
     let holes = simulation.extracted.holes.iter().zip(list.holes);
     let features = holes.map(|(found, hole)| {
-        let made = found.features(&hole.entry.into(), &hole.axis.into(), machine).into_iter();
-        made.filter(|feature| body.is_some() || feature.kind != FeatureKind::Countersink).collect()
+        let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
+        let is_on_body = body.is_some() && (entry - found.entry).dot(&out) < SAME_LEVEL;
+        let made = found.features(&entry, &out, machine).into_iter();
+        made.filter(|feature| is_on_body || feature.kind != FeatureKind::Countersink).collect()
     });
     features.collect()
 }

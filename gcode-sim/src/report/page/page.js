@@ -304,6 +304,8 @@
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => viewer.ask());
   const paper = (on) => {
     document.documentElement.classList.toggle("paper", on);
+    viewer.isOnPaper = on;
+    viewer.scales = null;
     viewer.draw();
   };
   addEventListener("beforeprint", () => paper(true));

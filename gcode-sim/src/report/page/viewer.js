@@ -7,6 +7,8 @@ const MOST_LETTERS = 1.6e6;
 const STRIP = 40;
 // Half the length of the cross in place of a ring that is wider than the canvas, pixels.
 const CROSS = 10;
+// Width of a printed page, pixels; the style sheet has the heights of the canvases there.
+const PAPER_WIDTH = 703;
 // Half the width of a ring that has room for names inside, pixels.
 const BIG = 60;
 // Number of shades of the feeds by their height.
@@ -704,6 +706,13 @@ class Viewer {
     return { factor: this.fitting(rows, width, height + STRIP), centre: this.middle };
   }
 
+  // Returns width and height of a canvas in its pixels, and the dots of a pixel: on paper those of the printed page, whatever the
+  // screen has.
+  size(canvas) {
+    if (this.isOnPaper) return [this.sides.length === 1 ? PAPER_WIDTH : PAPER_WIDTH / 2, this.sides.length === 1 ? 416 : 265, 3];
+    return [canvas.clientWidth, canvas.clientHeight, window.devicePixelRatio || 1];
+  }
+
   fit() {
     this.scales = null;
     this.ask();
@@ -722,14 +731,13 @@ class Viewer {
     for (let shade = 0; shade < SHADES; shade++) names.push(`depth-${shade}`);
     const colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
     const rows = this.camera.axes();
-    this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight));
+    this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, ...this.size(canvas)));
     const fitting = Math.min(...this.scales);
-    const dots = window.devicePixelRatio || 1;
     const scale = fitting * this.camera.zoom;
     this.camera.scale = scale;
     const middle = this.middle.map((mm, axis) => mm + this.camera.offset[axis]);
     for (const side of this.sides) {
-      const { clientWidth: width, clientHeight: height } = side.canvas;
+      const [width, height, dots] = this.size(side.canvas);
       if (!width || !height) continue;
       if (side.canvas.width !== Math.round(width * dots) || side.canvas.height !== Math.round(height * dots)) {
         side.canvas.width = Math.round(width * dots);
@@ -738,7 +746,7 @@ class Viewer {
       side.context.setTransform(dots, 0, 0, dots, 0, 0);
       side.project({ rows, middle, scale, width, height, zoom: this.camera.zoom, cx: width / 2, cy: (height - STRIP) / 2 });
     }
-    const drawn = this.sides.filter((side) => side.view && side.canvas.clientWidth && side.canvas.clientHeight);
+    const drawn = this.sides.filter((side) => side.view && this.size(side.canvas).every((length) => length > 0));
     for (const side of drawn) side.draw(colours, this.options, this.pick, drawn.find((other) => other !== side));
     this.drawn?.();
   }

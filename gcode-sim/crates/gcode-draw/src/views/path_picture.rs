@@ -21,7 +21,7 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     let (letter, sign) = arrangement.top.axis_of_coordinate(2).unwrap_or(('z', 1.0));
     let axis = ['x', 'y', 'z'].iter().position(|name| *name == letter).unwrap_or(2);
     let tools = tool_order(path);
-    let shades = ShadeScale::of(path, arrangement.color_by, |point| point[axis] * sign);
+    let shades = ShadeScale::of(path, arrangement.color_by, &frames, |point| point[axis] * sign);
     let drawer = PathDrawer {
         path,
         color_by: arrangement.color_by,

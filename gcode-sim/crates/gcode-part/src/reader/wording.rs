@@ -6,6 +6,18 @@ use toml::de::{DeTable, DeValue};
 use super::keys::OUT_OF_RANGE;
 use gcode_lang::similar;
 
+/// Names of tools in catalogues, with their kinds in a machine file.
+const OTHER_NAMES: [(&str, &str); 8] = [
+    ("face-mill", "end-mill"),
+    ("shell-mill", "end-mill"),
+    ("ball-mill", "end-mill"),
+    ("thread-mill", "end-mill"),
+    ("chamfer-mill", "countersink"),
+    ("center-drill", "spot-drill"),
+    ("centre-drill", "spot-drill"),
+    ("spotdrill", "spot-drill"),
+];
+
 /// Rewords `message` about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
     // A key missing from the root is reported with an empty span.
@@ -48,7 +60,12 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         let (found, allowed) =
             (found.replace('`', ""), allowed.trim_start_matches("one of ").replace('`', ""));
         let allowed = allowed.replace(" or ", ", ");
-        let meant = similar(&found, allowed.split(", ")).map(|meant| format!(" (did you mean '{meant}'?)"));
+        let other_name =
+            OTHER_NAMES.iter().find(|(name, _)| *name == found.to_lowercase().replace([' ', '_'], "-"));
+        let other_name =
+            other_name.map(|(_, meant)| *meant).filter(|meant| allowed.split(", ").any(|one| one == *meant));
+        let meant = other_name.or_else(|| similar(&found, allowed.split(", ")));
+        let meant = meant.map(|meant| format!(" (did you mean '{meant}'?)"));
         return format!("key '{name}' is '{found}'{}; allowed: {allowed}", meant.unwrap_or_default());
     }
     if let Some(wrong) = message.strip_prefix(OUT_OF_RANGE) {
@@ -223,6 +240,12 @@ mod tests {
                 "1.0",
                 "invalid type: floating point `1.0`, expected u32",
                 "key 'hole.radius' is floating point 1.0: a whole number is required; write 1",
+            ),
+            (
+                "[[tool]]\nkind = \"Face mill\"\n",
+                "\"Face",
+                "unknown variant `Face mill`, expected one of `drill`, `end-mill`",
+                "key 'tool.kind' is 'Face mill' (did you mean 'end-mill'?); allowed: drill, end-mill",
             ),
             (JOB, "radius", "duplicate key", "duplicate key"),
             (
