@@ -312,6 +312,26 @@ mod tests {
         axes.iter().map(hole).collect()
     }
 
+    /// A spot of 90°, 3 deep, is 6 wide at the surface. That of the second hole is fed from −10 to −18: where the floor is that it
+    /// counts from, is unknown.
+    #[test]
+    fn a_cone_below_the_surface_has_no_width() {
+        let tool = |kind: &str| format!("[[tool]]\nkind = \"{kind}\"\n");
+        let head = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n";
+        let stock = "[stock]\nkind = \"box\"\nmin = [0.0, 0.0, -40.0]\nmax = [50.0, 20.0, 0.0]\n";
+        let spot = tool("spot-drill") + "number = 1\ndiameter = 10.0\npoint_angle = 90.0\n";
+        let drill = tool("drill") + "number = 2\ndiameter = 5.0\npoint_angle = 180.0\n";
+        let machine = Machine::parse(&format!("{head}{stock}{spot}{drill}")).unwrap();
+        let text = "O1\nT1 M06\nS1000 M03\nG90 G54 G00 X10. Y10. Z50.\nG98 G81 Z-3. R2. F100.\nX30. Z-18. R-10.\nG80\n\
+                    T2 M06\nS1000 M03\nG98 G81 X10. Y10. Z-10. R2. F100.\nX30. Z-25. R-10.\nG80\nM30\n";
+        let request = gcode_session::Request::new("O1.nc", text.as_bytes(), machine);
+        let simulation =
+            gcode_session::simulate(&request, &mut gcode_lang::program::NoLibrary, None).unwrap();
+        let made = features_made(&simulation, &request.machine);
+        let cone = |hole: usize| made[hole].iter().find(|made| made.kind == FeatureKind::Countersink);
+        assert_eq!((made.len(), cone(0).map(|cone| cone.diameter.round()), cone(1)), (2, Some(6.0), None));
+    }
+
     #[test]
     fn a_part_is_seen_along_most_of_its_holes() {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);

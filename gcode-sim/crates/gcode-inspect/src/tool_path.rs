@@ -442,6 +442,24 @@ mod tests {
         assert_eq!((path.unplaced_feeds, path.moves.len(), path.points[0]), (1, 2, [10.0, 0.0, 0.0]));
     }
 
+    /// Z goes to machine zero, X follows there, and Z comes back: three rapids without a place. A feed across at that height keeps its
+    /// x; a path that ends there has no end.
+    #[test]
+    fn rapids_at_an_unknown_machine_position_are_not_recorded() {
+        let home = |axes: u8| EventKind::PositionUnknown {
+            axes: UnknownAxes { at_machine_position: axes, ..UnknownAxes::default() },
+        };
+        let there =
+            EventScript::new().with(home(0)).then("rapid Z5").with(home(4)).then("rapid Z0; rapid X10");
+        let path = |script: EventScript| path(&upright(), &script);
+        let lost = path(there.clone());
+        assert_eq!((lost.moves.len(), lost.end), (1, None));
+        let back = path(there.clone().with(home(0)).then("rapid Z5; rapid X20"));
+        assert_eq!((back.moves.len(), back.end), (2, Some([20.0, 0.0, 5.0])));
+        assert_eq!(back.points[back.stretches[1].points.clone()], [[10.0, 0.0, 5.0], [20.0, 0.0, 5.0]]);
+        assert_eq!(path(there.then("feed X30")).moves.len(), 2);
+    }
+
     /// The direction of the default machine's tool is unknown: two rapids along z and one along x.
     #[test]
     fn rapids_along_an_axis_indicate_the_tool() {

@@ -293,11 +293,17 @@
   box("rapids", "rapids");
   box("changed-only", "changedOnly");
 
-  // A sticky drawing covers lines: the target of a link is scrolled to below it.
+  // A sticky drawing covers lines: the target of a link is scrolled to below it. A long page is slow to lay out again, and a long path
+  // to draw, where nothing has changed.
+  let measured = null;
   function measure() {
     const element = document.getElementById("viewer");
-    const sticks = getComputedStyle(element).position === "sticky";
-    document.documentElement.style.setProperty("--viewer", sticks ? `${element.offsetHeight}px` : "0px");
+    const sizes = [element, ...sides.map((side) => side.canvas)].map((one) => `${one.offsetWidth} ${one.offsetHeight}`).join();
+    if (sizes === measured) return;
+    measured = sizes;
+    const { style } = document.documentElement;
+    const height = getComputedStyle(element).position === "sticky" ? `${element.offsetHeight}px` : "0px";
+    if (height !== (style.getPropertyValue("--viewer") || "0px")) style.setProperty("--viewer", height);
     viewer.fit();
   }
   new ResizeObserver(measure).observe(document.getElementById("viewer"));

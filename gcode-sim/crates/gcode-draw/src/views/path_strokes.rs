@@ -391,11 +391,11 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::path_view::{Arrangement, Projection};
+    use super::super::path_view::Arrangement;
     use super::super::top::TopView;
     use super::super::view_frames::ViewBox;
     use super::*;
-    use crate::side::Side;
+    use crate::side::{Projection, Side};
 
     /// A drilled feed to z −20 is a point in the top view, where the slot at z −2 is the only line; from the front it is a line.
     #[test]

@@ -99,7 +99,7 @@ impl ProjectFile {
             match error.message.strip_prefix("key 'references' is string ") {
                 Some(_) => FileError {
                     message: format!(
-                        "{} a program each; write [references] and below it \"O1001.nc\" = \"O1001.csv\"",
+                        "{}; write [references] and below it \"O1001.nc\" = \"O1001.csv\"",
                         error.message
                     ),
                     ..error
