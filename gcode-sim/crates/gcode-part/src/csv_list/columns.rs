@@ -236,6 +236,11 @@ pub(super) fn example(names: &[String], separator: char) -> String {
             all.insert(place + 1, own);
         }
     }
+    // A cone alone has no depth.
+    let is_deep = |kind: &FeatureKind| *kind != FeatureKind::Countersink && has(kind.name());
+    if has("countersink") && !has("depth") && !has("features") && !FeatureKind::ALL.iter().any(is_deep) {
+        all.push("depth".to_owned());
+    }
     let line: Vec<_> = all.iter().map(cell).collect();
     match all == names {
         true => format!("a right line: {}", line.join(&text)),

@@ -179,7 +179,8 @@ fn an_error_shows_a_line_that_is_right() {
         ),
         (
             "x,y,countersink\n1,2,10\n",
-            "line 2: column 'depth' is missing: a hole of countersinks alone needs it; a right line: ",
+            "line 2: column 'depth' is missing: a hole of countersinks alone needs it; right columns: \
+             x,y,countersink,countersink angle,depth, and a right line: 30.5,10,12,90,15",
         ),
         ("x,y,depth,tap,thread\n1,2,20,M10,M10\n", "line 1: column 'tap' is there twice; "),
         (
@@ -253,6 +254,7 @@ fn the_right_line_is_read() {
         "x,y,depth,tap,tap depth,counterbore,counterbore depth",
         "nr;x;y;diameter;tap;tap depth;tap pitch",
         "nr;x;y;dia;cbore;countersink",
+        "nr,x,y,csk",
         "nr,x,y,drill",
         "nr,x,y,drill,depth,ream,bore depth,bore",
     ] {
