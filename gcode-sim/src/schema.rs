@@ -40,8 +40,8 @@ pub struct Format {
 /// All formats: files first, then results by the commands that write them.
 pub const FORMATS: &[Format] = &[
     file::<JobFile>("job", "a job file, of any family"),
-    file::<MachineFile>("machine", "a machine file: --machine"),
-    file::<ControlFile>("control", "settings of the control: --control-file"),
+    file::<MachineFile>("machine", "a machine file: gcode-sim --machine"),
+    file::<ControlFile>("control", "settings of the control: gcode-sim --control-file"),
     file::<ProjectFile>("project", "the project's file: gcode.toml"),
     file::<ErrorFile>("errors", "set-up and machine errors: budget --errors"),
     file::<ClaimsFile>("claims", "claims of a case, proved by test: claims.toml"),

@@ -56,6 +56,17 @@ fn is_list_in_place_of_program(argument: &OsString) -> bool {
     ending.is_some_and(|ending| ["csv", "json", "toml"].iter().any(|list| ending == *list))
 }
 
+/// Returns the right place of a file among the arguments, if it is in a place where none goes.
+fn tip_for_files(given: &[OsString]) -> Option<String> {
+    if given.get(1).is_some_and(|one| one == "new") {
+        let is_of_list =
+            given.get(2).is_some_and(|one| one == "reference") && !given.contains(&"--from".into());
+        return is_of_list.then(|| "the program goes behind --from, and the list behind -o".to_owned());
+    }
+    let list = given.iter().find(|one| is_list_in_place_of_program(one))?;
+    Some(format!("{} goes behind --reference; the program is given alone", list.to_string_lossy()))
+}
+
 /// Parses the arguments with clap and executes the command. Help and version count as results; anything else that
 /// clap rejects is an invalid request.
 pub fn main<A: Parser>(
@@ -70,11 +81,7 @@ pub fn main<A: Parser>(
             if error.kind() == ErrorKind::UnknownArgument {
                 // The tip to write `-- --flag` takes the flag for a value, which none is.
                 error.remove(ContextKind::Suggested);
-                if let Some(list) = given.iter().find(|one| is_list_in_place_of_program(one)) {
-                    let tip = format!(
-                        "{} goes behind --reference; the program is given alone",
-                        list.to_string_lossy()
-                    );
+                if let Some(tip) = tip_for_files(&given) {
                     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
                 }
             }
@@ -102,6 +109,18 @@ mod tests {
         assert_eq!(number("0.1"), Ok(0.1));
         assert_eq!(number("0,1").unwrap_err(), "a number has a point, not a comma: 0.1");
         assert_eq!(number("1,0,1").unwrap_err(), "a number is required, such as 0.1");
+    }
+
+    #[test]
+    fn a_file_in_a_wrong_place_has_a_tip() {
+        let tip = |line: &str| tip_for_files(&line.split(' ').map(OsString::from).collect::<Vec<_>>());
+        let from = Some("the program goes behind --from, and the list behind -o".to_owned());
+        assert_eq!(tip("gcode-sim new reference O1.nc -o x.csv"), from);
+        assert_eq!(tip("gcode-sim new reference --from O1.nc x.csv"), None);
+        assert_eq!(tip("gcode-sim new machine x.toml"), None);
+        let behind = Some("x.csv goes behind --reference; the program is given alone".to_owned());
+        assert_eq!(tip("gcode-sim verify O1.nc x.csv"), behind);
+        assert_eq!(tip("gcode-sim verify O1.nc O2.nc"), None);
     }
 
     #[test]

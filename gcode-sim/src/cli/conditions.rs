@@ -53,7 +53,8 @@ pub(super) struct ProgramArguments {
 #[command(next_help_heading = "Machine, control and start of the run")]
 pub(super) struct RunConditions {
     /// The main program of a file with several, by O number, name or path in a dump, e.g. O1234 or
-    /// //CNC_MEM/USER/PATH1/O1234 [default: the first]
+    /// //CNC_MEM/USER/PATH1/O1234 [default: the first, or the main one if the first
+    /// is a subprogram]
     #[arg(long = "program", value_name = "O1234")]
     pub(super) main_program: Option<String>,
 

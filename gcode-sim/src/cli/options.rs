@@ -42,6 +42,7 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
         taken.map_err(|error| UsageError::new(format!("--dialect: {error}")))?;
     }
     if let Some(path) = &arguments.control_file {
+        refuse_other_kind("--control-file", "a file with settings of the control", path)?;
         control_file::apply(&input::text(path)?, &mut request.settings, arguments.dialect.is_none())
             .map_err(|error| UsageError::in_toml(path, &error))?;
     }
@@ -116,6 +117,7 @@ fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result
             "--part: --control SKIP=… or --skip already sets the skip signal: omit one of them",
         ));
     }
+    refuse_other_kind("--part", "a job file", path)?;
     let part = ProbedPart::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))?;
     match (&request.machine.probe, part.radius) {
         (None, Some(radius)) => request.machine.probe = Some(Probe::new(radius)),
@@ -163,7 +165,21 @@ fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), Stri
 
 /// Reads a machine file.
 pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
+    refuse_other_kind("--machine", "a machine file (machine.toml)", path)?;
     Machine::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))
+}
+
+/// Refuses a list of holes or a program where a TOML file is required.
+fn refuse_other_kind(flag: &str, required: &str, path: &Path) -> Result<(), UsageError> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    let is_list = matches!(ending.as_deref(), Some("csv" | "json"));
+    let is_program = ending.as_deref() != Some("toml") && !is_list && input::program(path).is_ok();
+    let found = match (is_list, is_program) {
+        (true, _) => "a list of holes: it goes behind --reference",
+        (_, true) => "a program: it is given alone",
+        _ => return Ok(()),
+    };
+    Err(UsageError::new(format!("{flag} {}: {required} is required, and this is {found}", path.display())))
 }
 
 /// Reads a hole list or a job file, and says what a list leaves out. Depths that it leaves out are those of the program's holes.

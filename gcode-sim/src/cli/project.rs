@@ -45,8 +45,16 @@ impl Project {
         (conditions, said)
     }
 
-    /// Returns the reference that the project's file gives the program.
+    /// Returns the reference that the project's file gives the program; says if it gives one to a program that isn't there, but
+    /// has this one's name in another folder or case.
     pub(super) fn reference(&self) -> Option<PathBuf> {
+        if let Some((other, own)) = self.0.misnamed_reference(&DiskFiles) {
+            output::print_message(&format!(
+                "note: {PROJECT_FILE}: [references] names {}, which isn't there, and not this program: {}\n",
+                other.display(),
+                own.display()
+            ));
+        }
         self.0.reference()
     }
 

@@ -8,8 +8,9 @@ use super::work_zeros::zeros;
 use gcode_draw::{
     DrawnTool, PathPlace, PathRun, PathView, RunAxis, RunKind, Side, Sign, TopView, TravelLimit,
 };
+use gcode_inspect::drawn_move::PathKind;
 use gcode_inspect::machine::{HeadKind, Machine, Setup, Tool, ToolKind};
-use gcode_inspect::tool_path::{PathKind, PathStop, StretchAxis, ToolPath};
+use gcode_inspect::tool_path::{PathStop, StretchAxis, ToolPath};
 use gcode_lang::control::StrokeLimits;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Position;
@@ -114,7 +115,8 @@ fn tool(number: Option<u32>, machine: &Machine) -> DrawnTool {
     DrawnTool { name, swept_width }
 }
 
-/// Returns start and end of the path, its stops, and the position of an alarm.
+/// Returns start and end of the path, its stops, and the position of an alarm, or the last known one. A path that leads to an unknown
+/// place has no end.
 fn places(path: &ToolPath, simulation: &Simulation) -> Vec<PathPlace> {
     let place = |sign, at: Option<[f64; 3]>, label: String| at.map(|at| PathPlace { sign, at, label });
     let first = path.points.first().copied();
@@ -122,7 +124,7 @@ fn places(path: &ToolPath, simulation: &Simulation) -> Vec<PathPlace> {
     let start = place(Sign::Start, first, "start".to_owned());
     let end = match simulation.run.stop_finding() {
         Some(finding) => place(Sign::Alarm, last, finding.code().into_owned()),
-        None => place(Sign::End, last, "end".to_owned()),
+        None => place(Sign::End, path.end, "end".to_owned()),
     };
     let stops = path.stops.iter().filter_map(|stop| place(Sign::Stop, stop.at, stop.kind.name().to_owned()));
     start.into_iter().chain(end).chain(stops).collect()

@@ -1,7 +1,7 @@
 //! Contents of the top view: actual holes and, with a reference, the verdict on each.
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 use super::figures::{count, with_sign};
 use super::work_zeros::zeros;
@@ -57,16 +57,21 @@ pub fn of_holes(
     }
 }
 
-/// Returns what the tools make of each hole: its drills, counterbores, threads. Without a known surface the width of a
-/// countersink is unknown.
+/// Largest height at which a feed still begins on the surface, mm.
+const SAME_LEVEL: f64 = 1e-6;
+
+/// Returns what the tools make of each hole: its drills, counterbores, threads. Without a known surface, as on a floor that the
+/// program mills, the width of a countersink is unknown.
 fn features_made(simulation: &Simulation, machine: &Machine) -> Vec<Vec<Feature>> {
     let body = machine.stock.as_ref().and_then(|stock| stock.body(None));
     let mut list = simulation.hole_list();
     body.iter().for_each(|body| list.enter_at(body));
     let holes = simulation.extracted.holes.iter().zip(list.holes);
     let features = holes.map(|(found, hole)| {
-        let made = found.features(&hole.entry.into(), &hole.axis.into(), machine).into_iter();
-        made.filter(|feature| body.is_some() || feature.kind != FeatureKind::Countersink).collect()
+        let (entry, out) = (Point3::from(hole.entry), Vector3::from(hole.axis));
+        let is_on_body = body.is_some() && (entry - found.entry).dot(&out) < SAME_LEVEL;
+        let made = found.features(&entry, &out, machine).into_iter();
+        made.filter(|feature| is_on_body || feature.kind != FeatureKind::Countersink).collect()
     });
     features.collect()
 }
@@ -305,6 +310,26 @@ mod tests {
             ..Hole::default()
         };
         axes.iter().map(hole).collect()
+    }
+
+    /// A spot of 90°, 3 deep, is 6 wide at the surface. That of the second hole is fed from −10 to −18: where the floor is that it
+    /// counts from, is unknown.
+    #[test]
+    fn a_cone_below_the_surface_has_no_width() {
+        let tool = |kind: &str| format!("[[tool]]\nkind = \"{kind}\"\n");
+        let head = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n";
+        let stock = "[stock]\nkind = \"box\"\nmin = [0.0, 0.0, -40.0]\nmax = [50.0, 20.0, 0.0]\n";
+        let spot = tool("spot-drill") + "number = 1\ndiameter = 10.0\npoint_angle = 90.0\n";
+        let drill = tool("drill") + "number = 2\ndiameter = 5.0\npoint_angle = 180.0\n";
+        let machine = Machine::parse(&format!("{head}{stock}{spot}{drill}")).unwrap();
+        let text = "O1\nT1 M06\nS1000 M03\nG90 G54 G00 X10. Y10. Z50.\nG98 G81 Z-3. R2. F100.\nX30. Z-18. R-10.\nG80\n\
+                    T2 M06\nS1000 M03\nG98 G81 X10. Y10. Z-10. R2. F100.\nX30. Z-25. R-10.\nG80\nM30\n";
+        let request = gcode_session::Request::new("O1.nc", text.as_bytes(), machine);
+        let simulation =
+            gcode_session::simulate(&request, &mut gcode_lang::program::NoLibrary, None).unwrap();
+        let made = features_made(&simulation, &request.machine);
+        let cone = |hole: usize| made[hole].iter().find(|made| made.kind == FeatureKind::Countersink);
+        assert_eq!((made.len(), cone(0).map(|cone| cone.diameter.round()), cone(1)), (2, Some(6.0), None));
     }
 
     #[test]

@@ -39,6 +39,7 @@
 #![warn(missing_docs)]
 
 pub mod budget;
+pub mod drawn_move;
 pub mod findings;
 pub mod flutes;
 pub mod holes;

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use nalgebra::{Point3, Unit, Vector3};
 
+use crate::drawn_move::{PathKind, for_each_drawn_pose, is_placed, moved_axes, moves};
 use crate::holes::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, HeadMessage, Machine, Pose, Setup};
-use gcode_lang::motion::{CallChain, Event, EventKind, EventSink, MAX_AXES, PlanarArc, Position, StopKind};
+use crate::machine::{AxisMotion, HeadMessage, Machine, Setup};
+use gcode_lang::motion::{CallChain, Event, EventKind, EventSink, PlanarArc, Position, StopKind};
 use gcode_lang::source::Span;
 
 /// Largest deviation of a curved path from its chords, mm.
@@ -35,7 +36,7 @@ pub struct ToolPath {
     pub moves: Vec<PathMove>,
     /// Operator stops.
     pub stops: Vec<PathStop>,
-    /// Tip of the tool at the end of the run; `None` if its position is unknown or nothing has moved.
+    /// Tip of the tool at the end of the run; `None` if G28, G30 or G53 has sent it to an unknown place, or nothing has moved.
     pub end: Option<[f64; 3]>,
     /// Feeds between positions that are unknown on the part, not recorded.
     pub unplaced_feeds: u64,
@@ -47,17 +48,6 @@ pub struct ToolPath {
     oblique_axes: BTreeMap<(usize, bool), u64>,
     /// The same, of moves of a tool whose direction is unknown.
     supposed_axes: BTreeMap<usize, u64>,
-}
-
-/// Kind of a move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PathKind {
-    /// Rapid move.
-    Rapid,
-    /// Feed or arc.
-    Feed,
-    /// Probing move, G31.
-    Probe,
 }
 
 /// Direction of the tool on the part in a stretch of feeds.
@@ -179,29 +169,6 @@ fn most<K: Copy + Ord>(counts: &BTreeMap<K, u64>) -> Option<K> {
     counts.iter().max_by_key(|(_, count)| **count).map(|(key, _)| *key)
 }
 
-/// Calls `each` with poses of the tool on the part along a motion, from start to end; of a grinder with the points of the
-/// wheel's contact.
-pub fn for_each_drawn_pose(
-    machine: &Machine,
-    setup: &Setup,
-    travel: &AxisMotion<'_>,
-    tolerance: f64,
-    mut each: impl FnMut(Pose),
-) {
-    let Some(wheel) = &machine.wheel else {
-        return machine.for_each_pose(travel, setup, tolerance, each);
-    };
-    let rotary = (0..MAX_AXES).filter(|axis| machine.axes.is_rotary(*axis));
-    let turned: f64 = rotary.map(|axis| (travel.to[axis] - travel.from[axis]).abs()).sum();
-    let sweep = travel.arc.map_or(0.0, |arc| arc.sweep.0.abs());
-    // A chord of 3° is 1.4 µm off a circle of 4 mm, a burr's.
-    let chords = ((turned + sweep) / 3.0).ceil().clamp(1.0, 1000.0) as u32;
-    for part in 0..=chords {
-        let tip = machine.contact(wheel, &travel.position(f64::from(part) / f64::from(chords)));
-        each(Pose { tip, axis: None });
-    }
-}
-
 /// Sink for the events of a run that records the path of the tool.
 #[derive(Debug)]
 pub struct PathRecorder<'m> {
@@ -229,7 +196,11 @@ impl<'m> PathRecorder<'m> {
 
     /// Returns the recorded path.
     pub fn finish(mut self) -> ToolPath {
-        self.path.end = self.path.end.and_then(|_| self.tip());
+        // An axis that no block of the run has commanded counts as known, as in the path.
+        let unknown = self.positions.unknown_axes();
+        let is_known = is_placed(self.machine, unknown, PathKind::Rapid, 0);
+        let tip = self.machine.forward(&self.at, &self.setup).tip.coords.into();
+        self.path.end = self.path.end.filter(|_| is_known).map(|_| tip);
         self.path
     }
 
@@ -242,14 +213,13 @@ impl<'m> PathRecorder<'m> {
     fn motion(&mut self, event: &Event<'_>, kind: PathKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = std::mem::replace(&mut self.at, *to);
         let (was, is) = self.positions.advance(self.machine);
-        let moved =
-            (0..MAX_AXES).filter(|axis| from[*axis] != to[*axis] || arc.is_some_and(|arc| moves(arc, *axis)));
-        let moved = moved.fold(0, |axes, axis| axes | 1u8 << axis) & self.machine.used_axes();
+        let travel = AxisMotion { from: &from, to, arc };
+        let moved = moved_axes(&travel) & self.machine.used_axes();
         if moved == 0 {
             return;
         }
         self.suppose_axis(kind, arc, moved);
-        if was.union(is).all() & moved != 0 {
+        if !is_placed(self.machine, was.union(is), kind, moved) {
             self.path.unplaced_feeds += u64::from(kind == PathKind::Feed);
             return;
         }
@@ -257,7 +227,6 @@ impl<'m> PathRecorder<'m> {
             self.path.omitted_moves += 1;
             return;
         }
-        let travel = AxisMotion { from: &from, to, arc };
         let feed = event.kind.rate().map_or(0.0, |rate| rate.0);
         let path = &mut self.path;
         let first = path.points.len();
@@ -344,10 +313,6 @@ fn axis_of(direction: &Unit<Vector3<f64>>) -> Option<(usize, bool)> {
 fn count_axis(counts: &mut BTreeMap<(usize, bool), u64>, direction: &Unit<Vector3<f64>>) {
     let axis = direction.iamax();
     *counts.entry((axis, 0.0 < direction[axis])).or_default() += 1;
-}
-
-fn moves(arc: &PlanarArc, axis: usize) -> bool {
-    arc.plane.0 == axis || arc.plane.1 == axis
 }
 
 fn distance(from: [f64; 3], to: [f64; 3]) -> f64 {
@@ -475,6 +440,24 @@ mod tests {
         let script = EventScript::new().with(unknown(1)).with(unknown(0)).then("feed X10; feed X20; feed Y5");
         let path = path(&upright(), &script);
         assert_eq!((path.unplaced_feeds, path.moves.len(), path.points[0]), (1, 2, [10.0, 0.0, 0.0]));
+    }
+
+    /// Z goes to machine zero, X follows there, and Z comes back: three rapids without a place. A feed across at that height keeps its
+    /// x; a path that ends there has no end.
+    #[test]
+    fn rapids_at_an_unknown_machine_position_are_not_recorded() {
+        let home = |axes: u8| EventKind::PositionUnknown {
+            axes: UnknownAxes { at_machine_position: axes, ..UnknownAxes::default() },
+        };
+        let there =
+            EventScript::new().with(home(0)).then("rapid Z5").with(home(4)).then("rapid Z0; rapid X10");
+        let path = |script: EventScript| path(&upright(), &script);
+        let lost = path(there.clone());
+        assert_eq!((lost.moves.len(), lost.end), (1, None));
+        let back = path(there.clone().with(home(0)).then("rapid Z5; rapid X20"));
+        assert_eq!((back.moves.len(), back.end), (2, Some([20.0, 0.0, 5.0])));
+        assert_eq!(back.points[back.stretches[1].points.clone()], [[10.0, 0.0, 5.0], [20.0, 0.0, 5.0]]);
+        assert_eq!(path(there.then("feed X30")).moves.len(), 2);
     }
 
     /// The direction of the default machine's tool is unknown: two rapids along z and one along x.

@@ -101,7 +101,10 @@ fn check_features(hole: &Hole) -> Result<(), String> {
     hole.features.iter().try_for_each(|feature| feature.check(&walls))?;
     let is_own = |diameter: f64| hole.features.iter().any(|feature| feature.diameter == diameter);
     match hole.diameter.filter(|diameter| !hole.features.is_empty() && !is_own(*diameter)) {
-        Some(diameter) => Err(format!("the diameter is {diameter}, which no feature has: leave it out")),
+        Some(diameter) => Err(format!(
+            "the diameter is {diameter}, which no feature has: if it is drilled, it is a feature too, \
+             drill, and its column in a list is 'drill'"
+        )),
         None => Ok(()),
     }
 }
@@ -225,7 +228,7 @@ mod tests {
             ("id,x,y,depth,through\n1,0,0,,true\n".to_owned(), "line 2: column 'depth' is ''"),
             (
                 "id,x,y,z,i,j,k,depth,diameter,features\n1,0,0,0,0,1,0,15,7,drill 6 15\n".to_owned(),
-                "line 2: hole 1 (id '1'): the diameter is 7, which no feature has: leave it out",
+                "line 2: hole 1 (id '1'): the diameter is 7, which no feature has: if it is drilled, it is a feature too, drill",
             ),
             (
                 HOLE.replace("[1, 2, 3]", "[1, 2, 6e307]"),

@@ -12,7 +12,7 @@ use super::hole_groups::{
 use super::hole_order::hole_order;
 use super::kinds;
 use super::pass_changes::pass_changes;
-use super::passes::{Passes, in_words, more_or_fewer};
+use super::passes::{Passes, other_tools};
 use super::program_text::cause;
 use super::record::Record;
 use super::steps::{Step, StepKind, difference, near};
@@ -202,16 +202,7 @@ impl HoleComparer<'_> {
         {
             tool_differences.push((&kinds::HOLE_DIAMETER, format!("Φ{now} instead of Φ{before}")));
         }
-        let (was, is) = (&self.passes[0].tools[hole], &self.passes[1].tools[other]);
-        let made = more_or_fewer(was, is).or_else(|| {
-            let swapped: BTreeSet<_> = was.iter().zip(is).filter(|(before, now)| before != now).collect();
-            match swapped.iter().collect::<Vec<_>>()[..] {
-                [] => None,
-                // The same for holes that other tools make as well.
-                [(before, now)] => Some(format!("made by T{now} instead of T{before}")),
-                _ => Some(format!("made by {} instead of {}", in_words(is), in_words(was))),
-            }
-        });
+        let made = other_tools(&self.passes[0].tools[hole], &self.passes[1].tools[other]);
         tool_differences.extend(made.map(|text| (&kinds::HOLE_TOOL, text)));
         HoleDifference {
             moved: far(offset.entry.norm()).then_some(offset.entry),

@@ -1,5 +1,6 @@
 //! Passes that make each hole and their tools: all passes on its line, repeated ones as well.
-use super::common_sequence::common;
+use std::collections::BTreeSet;
+
 use super::record::Record;
 use super::steps::StepKind;
 
@@ -60,33 +61,17 @@ impl Record {
     }
 }
 
-/// Describes lost and added passes; `None` if their number is unchanged or unknown.
-pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
-    if was.len() == is.len() || was.is_empty() || is.is_empty() {
+/// Describes other tools or another number of passes; `None` if they are unchanged or unknown.
+pub(super) fn other_tools(was: &[u32], is: &[u32]) -> Option<String> {
+    if was.is_empty() || is.is_empty() || was == is {
         return None;
     }
-    let common = common(was.len(), is.len(), |i, j| was[i] == is[j]);
-    let of = |all: &[u32], kept: &dyn Fn(usize) -> bool| -> Vec<u32> {
-        all.iter().enumerate().filter(|(k, _)| !kept(*k)).map(|(_, tool)| *tool).collect()
-    };
-    let gone = of(was, &|k| common.iter().any(|(i, _)| *i == k));
-    let new = of(is, &|k| common.iter().any(|(_, j)| *j == k));
-    let mut words = Vec::new();
-    if !gone.is_empty() {
-        let times = if gone.iter().any(|tool| is.contains(tool)) { "fewer passes" } else { "no longer made" };
-        words.push(format!("{times} by {}", in_words(&gone)));
-    }
-    if !new.is_empty() {
-        let again = new.iter().any(|tool| was.contains(tool));
-        words.push(match (again, is) {
-            (true, [_, _]) => "now made twice".to_owned(),
-            (true, _) if new.len() == 1 => format!("one more pass by {}", in_words(&new)),
-            (true, _) => format!("{} more passes, by {}", new.len(), in_words(&new)),
-            (false, _) => format!("also made by {}", in_words(&new)),
-        });
-    }
-    words.push(format!("in total by {}", in_words(is)));
-    Some(words.join(", "))
+    let swapped: BTreeSet<_> = was.iter().zip(is).filter(|(before, now)| before != now).collect();
+    Some(match swapped.iter().collect::<Vec<_>>()[..] {
+        // The same for holes that other tools make as well.
+        [(before, now)] if was.len() == is.len() => format!("made by T{now} instead of T{before}"),
+        _ => format!("made by {} instead of {}", in_words(is), in_words(was)),
+    })
 }
 
 /// Formats tools as `T1`, `T1 and T2`, `T1, T2 and T1`; consecutive passes of one tool as `T1 and T2 (3 times)`.

@@ -1,18 +1,18 @@
 //! Path of the tool on the part, move by move, for drawings.
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::ops::RangeInclusive;
 
 use nalgebra::Point3;
 
 use super::block_location::BlockLocation;
 use super::first_command::CommandKind;
+use super::leg::{Leg, UnplacedEnd, is_same_feed};
 use super::record::Record;
 use super::steps::StepKind;
+use gcode_inspect::drawn_move::{PathKind, for_each_drawn_pose, is_placed, moved_axes};
 use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};
-use gcode_inspect::tool_path::for_each_drawn_pose;
-use gcode_lang::motion::{AxisIndex, Position, StopKind};
+use gcode_lang::motion::{AxisIndex, StopKind};
 
 /// Largest deviation of a curved path from its chords, mm.
 const CHORD: f64 = 0.05;
@@ -22,74 +22,6 @@ const FINE_CHORD: f64 = 0.001;
 
 /// Tolerance at which a path is not simplified further, mm.
 const MAX_SIMPLIFICATION: f64 = 100.0;
-
-/// One move in the frame of the part; of a grinder the path of the wheel's contact.
-#[derive(Clone, Debug)]
-pub struct Leg {
-    /// Numbers of its steps in the record: one, or several moves of one kind that are drawn together.
-    pub steps: RangeInclusive<usize>,
-    /// Number of moves.
-    pub moves: usize,
-    /// `rapid`, `feed`, `arc` or `probing move`.
-    pub kind: &'static str,
-    /// Feed of a cut, mm/min.
-    pub feed: Option<f64>,
-    /// True for a move that cuts a hole, or leaves one along the path of its cut.
-    pub is_of_hole: bool,
-    /// Number of its block in [`Record::block_location`].
-    pub block_number: usize,
-    /// Points from start to end, mm; the end alone if an axis has not been commanded before the move.
-    pub points: Vec<Point3<f64>>,
-    /// Largest distance of the path from the line through `points`, mm; 0 of straight moves that are all there.
-    pub deviation: f64,
-    /// Points that deviate from the path by at most 0.001 mm; empty if `points` are these, or if there are too many.
-    pub exact: Vec<Point3<f64>>,
-}
-
-impl Leg {
-    /// Appends a move that follows.
-    fn join(&mut self, next: Leg) {
-        self.steps = *self.steps.start()..=*next.steps.end();
-        self.moves += next.moves;
-        self.is_of_hole |= next.is_of_hole;
-        if next.points.len() == 1 {
-            (self.points, self.exact, self.deviation) = (next.points, next.exact, next.deviation);
-            return;
-        }
-        let is_exact = |leg: &Leg| !leg.exact.is_empty();
-        if (is_exact(self) || self.deviation == 0.0) && (is_exact(&next) || next.deviation == 0.0) {
-            if is_exact(self) || is_exact(&next) {
-                if !is_exact(self) {
-                    self.exact.clone_from(&self.points);
-                }
-                let more = if is_exact(&next) { &next.exact } else { &next.points };
-                self.exact.extend(more.iter().skip(1));
-            }
-        } else {
-            self.exact.clear();
-        }
-        self.deviation = self.deviation.max(next.deviation);
-        self.points.extend(next.points.into_iter().skip(1));
-    }
-
-    /// Leaves out points that are no farther from the line than `tolerance`. They stay in `exact` if `room` points allow it;
-    /// returns the rest of it.
-    fn simplify(&mut self, tolerance: f64, room: usize) -> usize {
-        let few = simplified(&self.points, tolerance);
-        if few.len() == self.points.len() {
-            return room;
-        }
-        let all = std::mem::replace(&mut self.points, few);
-        let is_complete = self.deviation == 0.0;
-        self.deviation += tolerance;
-        if !is_complete || room < all.len() {
-            return room;
-        }
-        let rest = room - all.len();
-        self.exact = all;
-        rest
-    }
-}
 
 impl Record {
     /// Returns a block by its number.
@@ -110,7 +42,12 @@ impl Record {
         let mut all: Vec<Leg> = Vec::new();
         for next in self.legs(machine, usize::MAX, usize::MAX, exact_points) {
             match all.last_mut() {
-                Some(leg) if leg.kind == next.kind && is_same_feed(leg, &next) && leg.moves < joined => {
+                Some(leg)
+                    if leg.kind == next.kind
+                        && is_same_feed(leg, &next)
+                        && leg.moves < joined
+                        && leg.unplaced == next.unplaced =>
+                {
                     leg.join(next);
                 }
                 _ => all.push(next),
@@ -137,7 +74,8 @@ impl Record {
         let of_holes: BTreeSet<usize> = self.feeds.iter().flatten().copied().collect();
         let mut legs: Vec<Leg> = Vec::new();
         let mut setup = Setup::default();
-        let mut from = Position::default();
+        let (mut from, mut unknown) = (self.start.at, self.start.unknown);
+        let mut last_placed = None;
         let (mut left, mut exact_left) = (points, exact_points);
         let unknown_starts = self.unknown_axes(machine).iter().map(|(_, moves)| moves + 1).max().unwrap_or(0);
         let mut move_number = 0;
@@ -151,8 +89,30 @@ impl Record {
                 };
                 let travel = AxisMotion { from: &from, to: &to, arc };
                 let mut points_of_move = move_points(machine, &setup, &travel, CHORD);
-                if move_number < unknown_starts {
-                    points_of_move.drain(..points_of_move.len() - 1);
+                let kind = path_kind(step.kind);
+                let moved = moved_axes(&travel);
+                let is_lost = |unknown, number: usize| {
+                    number < unknown_starts || !is_placed(machine, unknown, kind, moved)
+                };
+                let ends = [
+                    is_lost(unknown, move_number),
+                    is_lost(self.steps.unknown_after(index), move_number + 1),
+                ];
+                let unplaced = match ends {
+                    [true, true] => Some(UnplacedEnd::Both),
+                    [true, false] => Some(UnplacedEnd::Start),
+                    [false, true] => Some(UnplacedEnd::End),
+                    [false, false] => None,
+                };
+                match unplaced {
+                    Some(UnplacedEnd::End) => points_of_move.truncate(1),
+                    Some(_) => points_of_move.drain(..points_of_move.len() - 1).for_each(drop),
+                    None => {}
+                }
+                match (unplaced, last_placed) {
+                    (Some(UnplacedEnd::Both), Some(last)) => points_of_move = vec![last],
+                    (Some(UnplacedEnd::Both), None) => {}
+                    _ => last_placed = points_of_move.last().copied(),
                 }
                 let is_curved = 2 < points_of_move.len();
                 let mut exact = Vec::new();
@@ -174,12 +134,13 @@ impl Record {
                     feed: step.kind.rate(),
                     is_of_hole: of_holes.contains(&index) || back,
                     block_number: step.block_number,
+                    unplaced,
                     points: points_of_move,
                     deviation: if is_curved { CHORD } else { 0.0 },
                     exact,
                 });
             }
-            from = to;
+            (from, unknown) = (to, self.steps.unknown_after(index));
         }
         legs
     }
@@ -214,40 +175,6 @@ impl Record {
     }
 }
 
-/// Returns true if two moves have the same feed, to the rounding of a rate computed from a path and a time.
-fn is_same_feed(one: &Leg, other: &Leg) -> bool {
-    match (one.feed, other.feed) {
-        (Some(one), Some(other)) => (one - other).abs() <= 1e-9 * one.abs(),
-        (one, other) => one == other,
-    }
-}
-
-/// Returns the points of a line that are farther than `tolerance` from the line without them, and its ends (Douglas and Peucker).
-fn simplified(points: &[Point3<f64>], tolerance: f64) -> Vec<Point3<f64>> {
-    let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
-    let mut is_kept = vec![false; points.len()];
-    is_kept[0] = true;
-    is_kept[last] = true;
-    let mut open = vec![(0, last)];
-    while let Some((from, to)) = open.pop() {
-        let away = |index: &usize| distance_to_line(&points[*index], &points[from], &points[to]);
-        let farthest = (from + 1..to).max_by(|a, b| away(a).total_cmp(&away(b)));
-        if let Some(farthest) = farthest.filter(|index| tolerance < away(index)) {
-            is_kept[farthest] = true;
-            open.extend([(from, farthest), (farthest, to)]);
-        }
-    }
-    points.iter().zip(is_kept).filter(|(_, is_kept)| *is_kept).map(|(point, _)| *point).collect()
-}
-
-/// Returns the distance of a point from the line between two others, mm.
-fn distance_to_line(point: &Point3<f64>, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
-    let along = to - from;
-    let length = along.norm_squared();
-    let part = if length == 0.0 { 0.0 } else { ((point - from).dot(&along) / length).clamp(0.0, 1.0) };
-    (point - (from + along * part)).norm()
-}
-
 /// Returns true if a path ends where the path before starts.
 fn is_back(before: &[Point3<f64>], now: &[Point3<f64>]) -> bool {
     before.first().zip(now.last()).is_some_and(|(begin, end)| (begin - end).norm() < 1e-6)
@@ -267,6 +194,14 @@ fn set_up(setup: &mut Setup, kind: &StepKind) {
     }
 }
 
+fn path_kind(kind: &StepKind) -> PathKind {
+    match kind {
+        StepKind::Rapid => PathKind::Rapid,
+        StepKind::Probe(_) => PathKind::Probe,
+        _ => PathKind::Feed,
+    }
+}
+
 /// Returns the points of a move on the part.
 fn move_points(machine: &Machine, setup: &Setup, travel: &AxisMotion<'_>, chord: f64) -> Vec<Point3<f64>> {
     let mut points = Vec::new();
@@ -276,6 +211,7 @@ fn move_points(machine: &Machine, setup: &Setup, travel: &AxisMotion<'_>, chord:
 
 #[cfg(test)]
 mod tests {
+    use super::UnplacedEnd;
     use crate::Revision;
     use gcode_inspect::machine::Machine;
     use gcode_lang::program::NoLibrary;
@@ -396,6 +332,59 @@ mod tests {
         assert_eq!(counts(""), [1, 1, 2, 2]);
         assert_eq!(counts("[start]\nX = 1.0\nY = 1.0\n"), [1, 1, 2, 2]);
         assert_eq!(counts("[start]\nX = 1.0\nY = 1.0\nZ = 100.0\n"), [2, 2, 2, 2]);
+    }
+
+    /// G28 sends Z to machine zero, and X and Y follow there: without G54 this place on the part is unknown, and the ends that are
+    /// known remain. With G54 its zero is at Z −400 of the machine, so that Z is 400 less the tool's 120.
+    #[test]
+    fn a_move_to_a_machine_position_without_its_offset_has_no_end() {
+        let text =
+            "O1\nG90 G54 G0 X5. Y0\nG43 H1 Z50.\nG91 G28 Z0\nG90 X9.\nG43 H1 Z50.\nX7.\nG91 G28 Z0\nM30\n";
+        let legs = |offsets: &str| -> Vec<_> {
+            let head = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n[[tool]]\nnumber = 1\nlength = 120.0\n";
+            let machine = Machine::parse(&format!("{head}{offsets}")).unwrap();
+            let text = text.replace("O1\n", "O1\nT1 M6\n");
+            let request = Request::new("O1.nc", text.into_bytes(), machine);
+            let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
+            let path = revision.record.path(&request.machine, 10, 1000);
+            path.iter().map(|leg| (leg.unplaced, leg.points.last().unwrap().z, leg.points.len())).collect()
+        };
+        let (start, end, both) = (Some(UnplacedEnd::Start), Some(UnplacedEnd::End), Some(UnplacedEnd::Both));
+        let unknown = legs("");
+        let placed = [
+            (start, 50.0, 1),
+            (end, 50.0, 1),
+            (both, 50.0, 1),
+            (start, 50.0, 1),
+            (None, 50.0, 2),
+            (end, 50.0, 1),
+        ];
+        assert_eq!(unknown[1..], placed);
+        let offsets = "[part]\norigin = [0.0, 0.0, -400.0]\n[offsets.G54]\nX = 0.0\nY = 0.0\nZ = -400.0\n";
+        let known: Vec<_> =
+            legs(offsets).iter().map(|(unplaced, z, points)| (*unplaced, z.round(), *points)).collect();
+        let placed = [
+            (start, 50.0, 1),
+            (None, 280.0, 2),
+            (None, 280.0, 2),
+            (None, 50.0, 2),
+            (None, 50.0, 2),
+            (None, 280.0, 2),
+        ];
+        assert_eq!(known[1..], placed);
+    }
+
+    /// `[start]` is Z 250: the first rapid comes from there, not from machine zero.
+    #[test]
+    fn a_stated_start_is_where_the_path_begins() {
+        let head =
+            "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n[start]\nX = -5.0\nY = 0.0\nZ = 250.0\n";
+        let text = "O1\nG90 G54 G0 X5. Y0\nM30\n";
+        let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::parse(head).unwrap());
+        let revision = Revision::of(&request, &mut NoLibrary, None).unwrap();
+        let path = revision.record.path(&request.machine, 10, 1000);
+        let ends: Vec<[f64; 3]> = path[0].points.iter().map(|point| point.coords.into()).collect();
+        assert_eq!(ends, [[-5.0, 0.0, 250.0], [5.0, 0.0, 250.0]]);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::block_location::BlockLocation;
 use super::first_command::FirstCommand;
 use super::kinds;
 use super::modal_conditions::ModalConditions;
-use super::recorder::{MOST_STEPS, Recorder, SharedRecorder};
+use super::recorder::{MOST_STEPS, Recorder, RunStart, SharedRecorder};
 use super::step_list::StepList;
 use super::steps::StepKind;
 use gcode_control::{Control, Observer, Outcome, ResidualKind, ResidualValue};
@@ -28,6 +28,8 @@ use gcode_session::{Criteria, HoleJudgement, Request, Run, SessionError, Simulat
 #[derive(Clone, Debug)]
 pub struct Record {
     pub(super) axes: Axes,
+    /// Axes before the first step; at 0 and known in an accepted result, which does not record them.
+    pub(super) start: RunStart,
     pub(super) steps: StepList,
     /// In the order of their first feeds.
     pub(super) holes: Vec<DrilledHole>,
@@ -179,7 +181,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
     let ending = ending(run, &recorder);
-    let Recorder { steps, numbers, mut conditions, first_commands, .. } = recorder;
+    let Recorder { start, steps, numbers, mut conditions, first_commands, .. } = recorder;
     if conditions.is_empty() {
         conditions.push(ModalConditions::default());
     }
@@ -196,6 +198,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
         first_commands: Some(first_commands.into_values().collect()),
         program: Some(memory.get(memory.main()).label()),
         conditions,
+        start,
         steps,
         holes,
         feeds,

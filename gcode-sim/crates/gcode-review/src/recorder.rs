@@ -13,7 +13,7 @@ use gcode_control::{
     BlockCommands, Control, Modal, Observer, ResidualKind, ResidualValue, UnsimulatedCodes, Value,
     modal_code, mode_name,
 };
-use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, Position, SpindleDirection};
+use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::program::modes::GROUPS;
 use gcode_lang::source::Span;
 
@@ -56,6 +56,9 @@ pub(super) struct Recorder {
     block: Option<PendingBlock>,
     at: Position,
     length: Position,
+    /// Axes whose position on the part is unknown after the next step.
+    unknown: UnknownAxes,
+    pub start: RunStart,
     /// Last executed block, and the way in which the run ends there.
     pub last: Option<Backtrace>,
     pub end: &'static str,
@@ -69,6 +72,15 @@ pub(super) struct Recorder {
     commanded: ([bool; 6], Vec<u32>),
     /// Last blocks with what they leave: a move may wait until the blocks after it are read.
     recent: VecDeque<(Span, BlockContext)>,
+}
+
+/// Axes before the first step of a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RunStart {
+    /// Machine position; 0 for the unknown ones.
+    pub at: Position,
+    /// Axes whose position on the part is unknown.
+    pub unknown: UnknownAxes,
 }
 
 /// What a block leaves: the number of its modal conditions, and the work zero.
@@ -203,8 +215,8 @@ impl Recorder {
         let set = is_speed.then(|| (UnsimulatedKind::Speed, format!("S{speed}")));
         for (what, text) in called.into_iter().chain(set) {
             let (kind, block_number) = (StepKind::Silent(what, text), self.numbers.number(backtrace));
-            let zero = Position::default();
-            let step = NewStep { kind, at, length, zero, block_number, set_by: None, condition: 0 };
+            let (zero, unknown) = (Position::default(), self.unknown);
+            let step = NewStep { kind, at, length, zero, unknown, block_number, set_by: None, condition: 0 };
             self.pending.insert(0, (step, backtrace.block));
         }
     }
@@ -299,7 +311,8 @@ impl Recorder {
             let set_by = self.set_by(&kind, backtrace);
             let block_number = self.numbers.number(backtrace);
             let (at, length, zero) = (self.at, self.length, Position::default());
-            let step = NewStep { kind, at, length, zero, block_number, set_by, condition: 0 };
+            let unknown = self.unknown;
+            let step = NewStep { kind, at, length, zero, unknown, block_number, set_by, condition: 0 };
             self.pending.push((step, backtrace.block));
         }
     }
@@ -371,9 +384,16 @@ impl Recorder {
                 self.length = *offset;
                 StepKind::Length(Box::new(*offset))
             }
-            EventKind::Start { .. } | EventKind::PositionUnknown { .. } | EventKind::ToolSelected { .. } => {
+            EventKind::Start { at, unknown } => {
+                self.start = RunStart { at: *at, unknown: *unknown };
+                (self.at, self.unknown) = (*at, *unknown);
                 return;
             }
+            EventKind::PositionUnknown { axes } => {
+                self.unknown = *axes;
+                return;
+            }
+            EventKind::ToolSelected { .. } => return,
             EventKind::Spindle { direction, speed, .. } => {
                 // The speed of a stopped spindle is recorded when it starts.
                 let is_off = *direction == SpindleDirection::Off;

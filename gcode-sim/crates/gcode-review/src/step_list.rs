@@ -5,7 +5,7 @@ use super::kind_numbers::KindNumbers;
 use super::positions::Positions;
 use super::runs::{CountingRuns, Runs};
 use super::steps::{Step, StepKind, difference};
-use gcode_lang::motion::Position;
+use gcode_lang::motion::{Position, UnknownAxes};
 
 /// Steps by their numbers.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +20,8 @@ pub(super) struct StepList {
     lengths: Runs<Position>,
     /// Work zero of each step; 0 in an accepted result, which does not record it.
     zeros: Runs<Position>,
+    /// Axes whose position on the part is unknown after each step; none in an accepted result, which does not record them.
+    unknown: Runs<UnknownAxes>,
     block_numbers: CountingRuns,
     set_by: Runs<Option<u32>>,
     conditions: Runs<u32>,
@@ -35,6 +37,8 @@ pub(super) struct NewStep {
     pub length: Position,
     /// Zero of the work coordinate system in force, in machine coordinates.
     pub zero: Position,
+    /// Axes whose position on the part is unknown after it.
+    pub unknown: UnknownAxes,
     pub block_number: usize,
     pub set_by: Option<usize>,
     pub condition: usize,
@@ -43,12 +47,13 @@ pub(super) struct NewStep {
 impl StepList {
     /// Appends a step.
     pub(super) fn push(&mut self, step: NewStep) {
-        let NewStep { kind, at, length, zero, block_number, set_by, condition } = step;
+        let NewStep { kind, at, length, zero, unknown, block_number, set_by, condition } = step;
         let kind = self.kind_number(kind);
         self.of_step.push(kind);
         self.at.push(at);
         self.lengths.push(length);
         self.zeros.push(zero);
+        self.unknown.push(unknown);
         self.block_numbers.push(block_number);
         self.set_by.push(set_by.map(|number| number as u32));
         self.conditions.push(condition as u32);
@@ -120,6 +125,11 @@ impl StepList {
         difference(&difference(&self.at.get(number), self.lengths.get(number)), self.zeros.get(number))
     }
 
+    /// Returns the axes whose position on the part is unknown after a step.
+    pub(super) fn unknown_after(&self, number: usize) -> UnknownAxes {
+        *self.unknown.get(number)
+    }
+
     /// Returns the number of the block of a step.
     pub(super) fn block_number(&self, number: usize) -> usize {
         self.block_numbers.get(number)
@@ -165,6 +175,7 @@ impl StepList {
                 at: step.at,
                 length: *self.lengths.get(number),
                 zero: *self.zeros.get(number),
+                unknown: self.unknown_after(number),
                 block_number: step.block_number,
                 set_by: step.set_by,
                 condition: step.condition,

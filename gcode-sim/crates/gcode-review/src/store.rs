@@ -12,6 +12,7 @@ use super::first_command::FirstCommand;
 use super::legacy_records::present_words;
 use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
 use super::record::{EndState, Record, Totals};
+use super::recorder::RunStart;
 use super::step_list::{NewStep, StepList};
 use super::steps::{Step, StepKind, UnsimulatedKind};
 use gcode_inspect::holes::{DrilledHole, PassCut};
@@ -267,6 +268,7 @@ impl Record {
         ending.words = present_words(&ending.words);
         Ok(Self {
             axes,
+            start: RunStart::default(),
             steps,
             holes,
             feeds,
@@ -388,6 +390,7 @@ impl Steps<'_> {
             at: self.at,
             length: self.length,
             zero: Position::default(),
+            unknown: UnknownAxes::default(),
             block_number,
             set_by,
             condition: self.conditions.len() - 1,

@@ -68,6 +68,13 @@ impl Search {
             if !self.seen.insert(input::canonical(&folder)?) {
                 continue;
             }
+            if !folder.is_dir() {
+                let of_file = input::folder_of(&folder).display().to_string();
+                return Err(UsageError::new(format!(
+                    "{} is a file: test takes folders with programs; write {of_file}",
+                    folder.display()
+                )));
+            }
             let entries = input::folder(&folder)?;
             let accepted: Vec<String> = entries.iter().filter_map(|path| accepted_label(path)).collect();
             let programs: Vec<PathBuf> =

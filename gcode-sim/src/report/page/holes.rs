@@ -63,7 +63,7 @@ impl HoleTable {
                     } @else {
                         "Without a reference a hole begins where the cutting feed begins, and its depth counts from there. "
                     }
-                    "Click a row to go to the block that made the hole, a column head to sort."
+                    span.screen { "Click a row to go to the block that made the hole, a column head to sort." }
                 }
                 @if self.cut > 0 {
                     p.note { (count(self.cut as u64)) " rows are omitted: a page holds " (MOST_ROWS) ", the most relevant first." }

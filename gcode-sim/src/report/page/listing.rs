@@ -39,7 +39,10 @@ pub(super) fn listing(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
             code { "#1 5" } " is a variable's value before the block, " code { "#1 ← 5" } " its value after the block, "
             code { "→ #1 5" } " an argument of the called program; "
             code { "5 … 9 (3×)" } " are the first and the last of several values."
-            span.paper { " Lines that neither program executed are omitted in print." }
+            span.paper {
+                @if sides.len() == 1 { " Lines that were not executed are omitted in print." }
+                @else { " Lines that neither program executed are omitted in print." }
+            }
         }
         @for pair in pairs(sides) {
             (program(&pair, sides, &done, &mut left))

@@ -94,13 +94,18 @@
     const points = isOne ? exact : side.xyz;
     const point = (at) => [0, 1, 2].map((axis) => `${"xyz"[axis]} ${points[3 * at + axis].toFixed(3)}`).join(" ");
     const [first, last] = isOne ? [part, part + 1] : [side.starts[move], side.starts[move + 1] - 1];
-    const way = first < last ? `from ${point(first)} to ${point(last)}` : `to ${point(last)}, from an unknown position`;
+    const open = {
+      start: `to ${point(last)} mm, from an unknown position`,
+      end: `from ${point(last)} mm to an unknown position`,
+      both: "between unknown positions",
+    }[side.unplaced[move]];
+    const way = open ?? `from ${point(first)} to ${point(last)} mm`;
     const all = numbers(side, move);
     const which = isOne && exact.length > 6 ? `move ${side.firsts[move] + part}` : all;
     // Inside a line of several moves the display is that at its end.
     const shown = isOne && exact.length > 6 ? "" : `, to ${display(side, move)} on the position display`;
     const others = which === all ? "" : `, one of ${all}, which begin at the block`;
-    describe(`${name(side)}${which} of ${side.all_moves}, ${side.kinds[side.kind[move]]}${shown}; on the part ${way} mm${others}`, side, linesOf(viewer.pick));
+    describe(`${name(side)}${which} of ${side.all_moves}, ${side.kinds[side.kind[move]]}${shown}; on the part ${way}${others}`, side, linesOf(viewer.pick));
     const [anchor, ...callers] = anchorsOf(viewer.pick);
     mark(anchor, callers);
     scrollTo(anchor);
@@ -288,17 +293,25 @@
   box("rapids", "rapids");
   box("changed-only", "changedOnly");
 
-  // A sticky drawing covers lines: the target of a link is scrolled to below it.
+  // A sticky drawing covers lines: the target of a link is scrolled to below it. A long page is slow to lay out again, and a long path
+  // to draw, where nothing has changed.
+  let measured = null;
   function measure() {
     const element = document.getElementById("viewer");
-    const sticks = getComputedStyle(element).position === "sticky";
-    document.documentElement.style.setProperty("--viewer", sticks ? `${element.offsetHeight}px` : "0px");
+    const sizes = [element, ...sides.map((side) => side.canvas)].map((one) => `${one.offsetWidth} ${one.offsetHeight}`).join();
+    if (sizes === measured) return;
+    measured = sizes;
+    const { style } = document.documentElement;
+    const height = getComputedStyle(element).position === "sticky" ? `${element.offsetHeight}px` : "0px";
+    if (height !== (style.getPropertyValue("--viewer") || "0px")) style.setProperty("--viewer", height);
     viewer.fit();
   }
   new ResizeObserver(measure).observe(document.getElementById("viewer"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => viewer.ask());
   const paper = (on) => {
     document.documentElement.classList.toggle("paper", on);
+    viewer.isOnPaper = on;
+    viewer.scales = null;
     viewer.draw();
   };
   addEventListener("beforeprint", () => paper(true));

@@ -15,7 +15,7 @@ use crate::report::work_zeros::zeros;
 use gcode_draw::{HoleStatus, Mark, Pen, Scene, Shape, Stroke};
 use gcode_inspect::machine::{HeadKind, Machine};
 use gcode_part::{Hole, MM_PER_INCH};
-use gcode_review::{BlockLocation, Leg};
+use gcode_review::{BlockLocation, Leg, UnplacedEnd};
 
 /// Numbers of moves and points drawn; the page must rotate without delay.
 const MOST_MOVES: usize = 40_000;
@@ -93,6 +93,11 @@ struct SidePath {
     display: Vec<Vec<(usize, f64)>>,
     /// Unit of lengths on the position display, `mm` or `inch`.
     display_unit: &'static str,
+    /// Strokes that are one point, since an end of the move has no place on the part, with that end.
+    unplaced: BTreeMap<usize, &'static str>,
+    /// Moves to machine coordinates that have no place on the part.
+    #[serde(skip)]
+    unplaced_moves: usize,
     /// Number of moves.
     all_moves: usize,
     /// Number of moves of each stroke; empty if each stroke is one.
@@ -107,6 +112,15 @@ struct SidePath {
     /// True if the run ends at the last move with an alarm.
     ends_with_alarm: bool,
     all_holes: usize,
+}
+
+impl SidePath {
+    /// Returns true if the end of the path is marked.
+    fn has_end(&self) -> bool {
+        let last = self.scene.strokes.len().checked_sub(1);
+        let is_placed = |last| !matches!(self.unplaced.get(&last), Some(&("end" | "both")));
+        !self.ends_with_alarm && last.is_some_and(is_placed)
+    }
 }
 
 /// Links of a hole.
@@ -220,7 +234,13 @@ fn drawn(
     };
     let joined: Vec<usize> =
         if legs.len() < all_moves { legs.iter().map(|leg| leg.moves).collect() } else { Vec::new() };
+    let unplaced = |leg: &Leg| leg.unplaced.map(unplaced_word);
+    // Before the first known position nothing is left out of a path.
+    let begun = legs.iter().skip_while(|leg| leg.unplaced.is_some());
+    let unplaced_moves = begun.filter(|leg| leg.unplaced.is_some()).map(|leg| leg.moves).sum();
     SidePath {
+        unplaced: legs.iter().enumerate().filter_map(|(at, leg)| Some((at, unplaced(leg)?))).collect(),
+        unplaced_moves,
         word: side.word,
         axes: (0..page.machine.axes.len()).map(|axis| page.machine.axes.letter(axis).to_string()).collect(),
         display: changes_of_display(&record.displays(page.machine, &legs), page.machine, is_inch),
@@ -260,6 +280,15 @@ fn changes_of_display(
         shown.filter(|(axis, at)| before.insert(*axis, *at) != Some(*at)).collect()
     };
     displays.iter().map(changes).collect()
+}
+
+/// Returns the unknown end of a move as the script names it.
+fn unplaced_word(end: UnplacedEnd) -> &'static str {
+    match end {
+        UnplacedEnd::Start => "start",
+        UnplacedEnd::End => "end",
+        UnplacedEnd::Both => "both",
+    }
 }
 
 fn stroke(leg: &Leg) -> Stroke<3> {
@@ -377,7 +406,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                 @if data.sides.iter().any(|side| !side.scene.strokes.is_empty()) {
                     li.start { "start" }
                 }
-                @if data.sides.iter().any(|side| !side.scene.strokes.is_empty() && !side.ends_with_alarm) {
+                @if data.sides.iter().any(SidePath::has_end) {
                     li.end { "end" }
                 }
                 @if data.sides.iter().any(|side| side.ends_with_alarm) { li.alarm-end { "where the run stopped" } }
@@ -423,6 +452,14 @@ fn left_out(side: &ReviewSide<'_>, sides: &[ReviewSide<'_>], drawn: &SidePath) -
                 " lines, consecutive moves of one kind together"
                 @if drawn.hidden_deviation == 0.0 { "; zoomed in, the path itself is drawn" }
                 "."
+            }
+        }
+        @if 0 < drawn.unplaced_moves {
+            p.note {
+                (heading(side, sides)) ": " (count(drawn.unplaced_moves as u64))
+                @if drawn.unplaced_moves == 1 { " move is" } @else { " moves are" }
+                " not drawn: without the work offset ([offsets] in the machine file) the places that G28, G30 and G53 "
+                "lead to are unknown on the part."
             }
         }
         @if 0.0 < drawn.hidden_deviation {

@@ -7,6 +7,10 @@ const MOST_LETTERS = 1.6e6;
 const STRIP = 40;
 // Half the length of the cross in place of a ring that is wider than the canvas, pixels.
 const CROSS = 10;
+// Width of a printed page, pixels; the style sheet has the heights of the canvases there.
+const PAPER_WIDTH = 703;
+// Half the width of a ring that has room for names inside, pixels.
+const BIG = 60;
 // Number of shades of the feeds by their height.
 const SHADES = 6;
 
@@ -75,9 +79,11 @@ class Side {
     Object.assign(this, data, { canvas, context: canvas.getContext("2d"), moves: scene.strokes });
     this.starts = new Uint32Array(this.moves.length + 1);
     this.moves.forEach(({ line }, move) => (this.starts[move + 1] = this.starts[move] + line.length / 3));
-    // The point at which the known path begins: a move from an unknown position is its end alone.
+    // The point at which the known path begins: a move with an unknown end is one point.
     const known = this.moves.findIndex(({ line }) => 3 < line.length);
     this.first = known < 0 ? this.starts[this.moves.length] - 1 : this.starts[known];
+    // The last move ends at an unknown place.
+    this.isLost = ["end", "both"].includes(this.unplaced[this.moves.length - 1]);
     this.xyz = Float64Array.from(this.moves.flatMap(({ line }) => line));
     this.isChanged = new Set(changed);
     // Exact points by move, and those in sight on the canvas.
@@ -272,7 +278,7 @@ class Side {
     }
     this.drawHoles(colours, pick);
     this.drawZeros(colours);
-    this.drawEnds(colours, this.ends_with_alarm && upTo === null);
+    this.drawEnds(colours, this.isLost || (this.ends_with_alarm && upTo === null));
     if (this.ends_with_alarm && upTo === null) this.drawAlarm(colours);
     if (upTo !== null) this.drawTool(colours, upTo);
     this.drawAxes(colours);
@@ -318,8 +324,9 @@ class Side {
     return [x, x > width - 145 && y > height - 36 ? height - 46 : y];
   }
 
-  // Marks the start of the path by a triangle and, unless an alarm ends it, its end by a square: holes are rings.
-  drawEnds(colours, hasAlarm) {
+  // Marks the start of the path by a triangle and, unless an alarm ends it or its place is unknown, its end by a square: holes
+  // are rings.
+  drawEnds(colours, hasNoEnd) {
     if (this.moves.length === 0) return;
     const context = this.context;
     const last = 2 * (this.starts[this.moves.length] - 1);
@@ -327,7 +334,7 @@ class Side {
     const [endX, endY] = this.inside(last);
     const [startX, startY] = this.inside(2 * this.first);
     context.beginPath();
-    if (!hasAlarm) context.rect(endX - 5, endY - 5, 10, 10);
+    if (!hasNoEnd) context.rect(endX - 5, endY - 5, 10, 10);
     context.stroke();
     context.fill();
     // Open, so that it is seen on the black quarters of a work zero.
@@ -465,8 +472,13 @@ class Side {
       this.strokeHoles(groups.get(name), role !== "hole");
       context.setLineDash([]);
     }
-    // The most important labels are placed first.
-    const taken = [];
+    // The most important labels are placed first, clear of the marks and of the rings that are no frames for them.
+    const taken = this.marked();
+    for (const hole of this.holes) {
+      const [x, y] = this.point(hole.entry);
+      const [wide, high] = this.reach(hole);
+      if (wide < BIG && high < BIG) taken.push([x - wide, y - high, x + wide, y + high]);
+    }
     context.font = "12px system-ui, sans-serif";
     for (const name of [...groups.keys()].sort((a, b) => (order(a) < order(b) ? 1 : -1))) {
       const [away, role] = name.split(" ");
@@ -479,22 +491,40 @@ class Side {
     context.globalAlpha = 1;
   }
 
-  // Writes a hole's name beside it at the first free position; without one, a click on the hole shows it.
+  // Returns the boxes of start, end and work zeros on the canvas: left, top, right, bottom.
+  marked() {
+    const ends = this.moves.length === 0 ? [] : [2 * this.first, ...(this.isLost ? [] : [2 * (this.starts[this.moves.length] - 1)])];
+    const places = [...ends.map((at) => this.inside(at)), ...this.zeros.map(([, at]) => this.point(at))];
+    return places.map(([x, y]) => [x - 9, y - 9, x + 9, y + 9]);
+  }
+
+  // Half the width and the height of a hole's ring on the canvas.
+  reach(hole) {
+    const [along, across, angle] = this.isBeyond(hole) ? [CROSS, CROSS, 0] : this.ring(hole, this.radius(hole));
+    const half = (one, other) => Math.hypot(along * one, across * other);
+    return [half(Math.cos(angle), Math.sin(angle)), half(Math.sin(angle), Math.cos(angle))];
+  }
+
+  // Writes a hole's name close to it at the first free position; without one, a click on the hole shows it.
   label(hole, taken, colours, always) {
     const [x, y] = this.point(hole.entry);
-    const [wide, high] = [this.context.measureText(hole.id).width, 13];
-    const [along, across, angle] = this.isBeyond(hole) ? [CROSS, CROSS, 0] : this.ring(hole, this.radius(hole));
-    const away = 6 + Math.hypot(along * Math.cos(angle), across * Math.sin(angle));
-    const rise = 6 + Math.hypot(along * Math.sin(angle), across * Math.cos(angle));
-    const [right, left] = [x + away, x - away - wide];
-    const corners = [y - rise + 3, y + rise + high - 6, y + high / 2 - 2, y - rise - high + 3, y + rise + 2 * high - 6];
-    const places = corners.flatMap((bottom) => [[right, bottom], [left, bottom]]);
-    const isFree = ([at, bottom]) =>
-      0 <= at && at + wide <= this.view.width && high <= bottom && bottom <= this.view.height &&
-      taken.every(([other, low, width]) => at + wide < other || other + width < at || Math.abs(bottom - low) >= high);
+    const [wide, high] = [this.context.measureText(hole.id).width, 12];
+    const [along, rise] = this.reach(hole);
+    const [right, left, middle] = [x + along + 4, x - along - 4 - wide, x - wide / 2];
+    // Above to the right and the left, beside, below, and centred above and below.
+    const places = [
+      [right, y - rise + 2], [left, y - rise + 2], [right, y + high / 2 - 2], [left, y + high / 2 - 2],
+      [right, y + rise + high - 4], [left, y + rise + high - 4], [middle, y - rise - 4], [middle, y + rise + high + 2],
+    ];
+    const box = ([at, bottom]) => [at, bottom - high + 2, at + wide, bottom + 2];
+    const isFree = (place) => {
+      const [from, top, to, bottom] = box(place);
+      if (from < 0 || top < 0 || this.view.width < to || this.view.height < bottom) return false;
+      return taken.every((other) => to < other[0] || other[2] < from || bottom < other[1] || other[3] < top);
+    };
     const place = places.find(isFree) ?? (always ? places[0] : null);
     if (!place) return;
-    taken.push([...place, wide]);
+    taken.push(box(place));
     this.write(hole.id, ...place, colours);
   }
 
@@ -676,6 +706,13 @@ class Viewer {
     return { factor: this.fitting(rows, width, height + STRIP), centre: this.middle };
   }
 
+  // Returns width and height of a canvas in its pixels, and the dots of a pixel: on paper those of the printed page, whatever the
+  // screen has.
+  size(canvas) {
+    if (this.isOnPaper) return [this.sides.length === 1 ? PAPER_WIDTH : PAPER_WIDTH / 2, this.sides.length === 1 ? 416 : 265, 3];
+    return [canvas.clientWidth, canvas.clientHeight, window.devicePixelRatio || 1];
+  }
+
   fit() {
     this.scales = null;
     this.ask();
@@ -694,14 +731,13 @@ class Viewer {
     for (let shade = 0; shade < SHADES; shade++) names.push(`depth-${shade}`);
     const colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
     const rows = this.camera.axes();
-    this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight));
+    this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, ...this.size(canvas)));
     const fitting = Math.min(...this.scales);
-    const dots = window.devicePixelRatio || 1;
     const scale = fitting * this.camera.zoom;
     this.camera.scale = scale;
     const middle = this.middle.map((mm, axis) => mm + this.camera.offset[axis]);
     for (const side of this.sides) {
-      const { clientWidth: width, clientHeight: height } = side.canvas;
+      const [width, height, dots] = this.size(side.canvas);
       if (!width || !height) continue;
       if (side.canvas.width !== Math.round(width * dots) || side.canvas.height !== Math.round(height * dots)) {
         side.canvas.width = Math.round(width * dots);
@@ -710,7 +746,7 @@ class Viewer {
       side.context.setTransform(dots, 0, 0, dots, 0, 0);
       side.project({ rows, middle, scale, width, height, zoom: this.camera.zoom, cx: width / 2, cy: (height - STRIP) / 2 });
     }
-    const drawn = this.sides.filter((side) => side.view && side.canvas.clientWidth && side.canvas.clientHeight);
+    const drawn = this.sides.filter((side) => side.view && this.size(side.canvas).every((length) => length > 0));
     for (const side of drawn) side.draw(colours, this.options, this.pick, drawn.find((other) => other !== side));
     this.drawn?.();
   }

@@ -21,7 +21,7 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     let (letter, sign) = arrangement.top.axis_of_coordinate(2).unwrap_or(('z', 1.0));
     let axis = ['x', 'y', 'z'].iter().position(|name| *name == letter).unwrap_or(2);
     let tools = tool_order(path);
-    let shades = ShadeScale::of(path, arrangement.color_by, |point| point[axis] * sign);
+    let shades = ShadeScale::of(path, arrangement.color_by, &frames, |point| point[axis] * sign);
     let drawer = PathDrawer {
         path,
         color_by: arrangement.color_by,
@@ -276,6 +276,7 @@ mod tests {
     use super::*;
     use crate::scene::Point;
     use crate::side::Side;
+    use gcode_part::{Stock, StockAxis};
 
     /// A slot of 10 mm along x at z −2 from (0, 0) to (100, 40), reached by a rapid from z 300.
     fn slot() -> PathView {
@@ -317,6 +318,42 @@ mod tests {
         strokes
             .filter_map(|stroke| if let Shape::Line(points) = &stroke.shape { Some(points) } else { None })
             .collect()
+    }
+
+    /// The lower rim of an upright cylinder is open to the reader on one side and hidden on the other, each half as long; seen
+    /// from the front it is one line.
+    #[test]
+    fn the_far_half_of_a_cylinders_far_rim_is_dashed() {
+        let stock = Stock::Cylinder {
+            axis: StockAxis::Z,
+            diameter: 80.0,
+            from: -20.0,
+            to: 0.0,
+            pocket: Vec::new(),
+            void: Vec::new(),
+        };
+        let path = PathView { stock: Some(stock), ..slot() };
+        let lines = |view, pen| {
+            let picture = picture(&path, &[view], Projection::Third);
+            let strokes = picture.scene.strokes.into_iter().filter(move |stroke| stroke.pen == pen);
+            let points =
+                strokes.filter_map(
+                    |stroke| if let Shape::Line(points) = stroke.shape { Some(points) } else { None },
+                );
+            points.collect::<Vec<_>>()
+        };
+        let [dashed] = &lines(StandardView::Isometric, Pen::Construction)[..] else {
+            panic!("one hidden line")
+        };
+        // Its ends are at the sides of the outline, a diameter apart, which an isometric drawing enlarges by √1.5; all of it is above
+        // the line through them: farther off.
+        let (first, last) = (dashed[0], dashed[dashed.len() - 1]);
+        let middle = dashed[dashed.len() / 2];
+        assert!((libm::hypot(first[0] - last[0], first[1] - last[1]) - 80.0 * 1.5f64.sqrt()).abs() < 1e-9);
+        assert!(first[1].max(last[1]) < middle[1], "{first:?} {middle:?} {last:?}");
+        // Upper rim, half of the lower one, two sides.
+        assert_eq!(lines(StandardView::Isometric, Pen::Outline).len(), 4);
+        assert_eq!(lines(StandardView::Front, Pen::Construction).len(), 0);
     }
 
     #[test]

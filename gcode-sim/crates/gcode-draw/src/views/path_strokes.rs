@@ -3,8 +3,9 @@ use std::collections::BTreeMap;
 
 use super::drawn_lines::{DrawnCells, DrawnSegments, SAME_LINE, distance};
 use super::path_view::{ColorBy, PathRun, PathView, RunAxis, RunKind, StandardView};
-use super::view_frames::{PlacedView, axis_index};
+use super::view_frames::{Frames, PlacedView, axis_index};
 use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint, arc};
+use gcode_lang::units::Deg;
 use gcode_part::Stock;
 use nalgebra::Vector3;
 
@@ -23,15 +24,28 @@ pub(super) struct ShadeScale {
 }
 
 impl ShadeScale {
-    /// Returns the range of the values of the feeds; `None` if the colours stand for classes.
-    pub(super) fn of(path: &PathView, color_by: ColorBy, depth: impl Fn([f64; 3]) -> f64) -> Option<Self> {
+    /// Returns the range of the values of the feeds; `None` if the colours stand for classes. Heights are those of lines in a
+    /// view: a feed along the line of sight is a point.
+    pub(super) fn of(
+        path: &PathView,
+        color_by: ColorBy,
+        frames: &Frames,
+        depth: impl Fn([f64; 3]) -> f64,
+    ) -> Option<Self> {
+        let is_line = |pair: &&[[f64; 3]]| {
+            frames.views.iter().any(|view| {
+                let ends = [view.side.project(pair[0]), view.side.project(pair[1])];
+                RESOLUTION * frames.extent < distance(ends[0], ends[1])
+            })
+        };
         let feeds = || path.runs.iter().filter(|run| run.kind == RunKind::Feed);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut add = |value: f64| (low, high) = (low.min(value), high.max(value));
         match color_by {
             ColorBy::Depth => {
                 let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-                for pair in feeds().flat_map(|run| path.points[run.points.clone()].windows(2)) {
+                let pairs = feeds().flat_map(|run| path.points[run.points.clone()].windows(2));
+                for pair in pairs.filter(is_line) {
                     let ends = [depth(pair[0]), depth(pair[1])];
                     lowest = lowest.min(ends[0]).min(ends[1]);
                     highest = highest.max(ends[0]).max(ends[1]);
@@ -338,17 +352,27 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
         Stock::Cylinder { axis, diameter, from, to, .. } => {
             let (along, radius) = (axis_index(*axis), diameter / 2.0);
             let (first, second) = ((along + 1) % 3, (along + 2) % 3);
-            let rim = |end: f64| -> Vec<[f64; 3]> {
+            let rim = |end: f64, angles: [f64; 2]| -> Vec<[f64; 3]> {
                 let place = |[a, b]: Point| {
                     let mut point = [end; 3];
                     (point[first], point[second]) = (a, b);
                     point
                 };
-                arc([0.0, 0.0], [radius, radius], [0.0, 360.0]).into_iter().map(place).collect()
+                arc([0.0, 0.0], [radius, radius], angles).into_iter().map(place).collect()
             };
-            let rims = [rim(*from), rim(*to)];
-            // The outline runs along the generators that are farthest apart across the line of sight.
             let towards = view.side.towards();
+            let (near, far) = if towards[along] < 0.0 { (*from, *to) } else { (*to, *from) };
+            let facing = Deg::atan2(towards[second], towards[first]).0;
+            // The wall hides the half of the far rim that is turned away from the reader.
+            let is_half_hidden = view.kind == StandardView::Isometric;
+            let far_rims = match is_half_hidden {
+                true => vec![
+                    edge(&rim(far, [facing - 90.0, facing + 90.0])),
+                    line(Pen::Construction, &rim(far, [facing + 90.0, facing + 270.0])),
+                ],
+                false => vec![edge(&rim(far, [0.0, 360.0]))],
+            };
+            // The outline runs along the generators that are farthest apart across the line of sight.
             let across = libm::hypot(towards[first], towards[second]);
             let sides = [1.0, -1.0].into_iter().filter(|_| 1e-6 < across).map(|sign| {
                 let end = |end: f64| {
@@ -359,7 +383,7 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
                 };
                 edge(&[end(*from), end(*to)])
             });
-            rims.iter().map(|rim| edge(rim)).chain(sides).collect()
+            far_rims.into_iter().chain([edge(&rim(near, [0.0, 360.0]))]).chain(sides).collect()
         }
         Stock::Surface { .. } => Vec::new(),
     }
@@ -367,7 +391,39 @@ pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::path_view::Arrangement;
+    use super::super::top::TopView;
+    use super::super::view_frames::ViewBox;
     use super::*;
+    use crate::side::{Projection, Side};
+
+    /// A drilled feed to z −20 is a point in the top view, where the slot at z −2 is the only line; from the front it is a line.
+    #[test]
+    fn the_scale_of_heights_is_that_of_the_lines_in_a_view() {
+        let run = |points| PathRun {
+            kind: RunKind::Feed,
+            tool: 0,
+            program: 0,
+            feed: 100.0,
+            axis: RunAxis::Along(2),
+            points,
+        };
+        let points = vec![[5.0, 5.0, 0.0], [5.0, 5.0, -20.0], [0.0, 0.0, -2.0], [40.0, 0.0, -2.0]];
+        let path = PathView { points, runs: vec![run(0..2), run(2..4)], ..PathView::default() };
+        let scale = |view| {
+            let arrangement = Arrangement {
+                top: Side::Z,
+                views: vec![view],
+                projection: Projection::Third,
+                color_by: ColorBy::Depth,
+            };
+            let frames = Frames::of(ViewBox::of(Side::Z, &TopView::default(), &path), &arrangement);
+            let scale = ShadeScale::of(&path, ColorBy::Depth, &frames, |at| at[2]).unwrap();
+            [scale.low, scale.high]
+        };
+        assert_eq!(scale(StandardView::Top), [-2.0, -2.0]);
+        assert_eq!(scale(StandardView::Front), [-20.0, -2.0]);
+    }
 
     /// From (−10, 5) to (30, 25) the line enters a square of 0 to 20 at (0, 10) and leaves it at (20, 20).
     #[test]

@@ -70,7 +70,9 @@ impl HoleExtractor<'_> {
                 let hole = self.metal.hole_at(&at.point).filter(|_| !is_stock);
                 let reach = self.tool_radius().unwrap_or(MAX_RADIUS);
                 let pocket = self.metal.distance_from_pocket(&at.point).filter(|distance| *distance <= reach);
+                let above = self.hole_above(&at.point);
                 let place = match (hole, pocket, part) {
+                    _ if above.is_some() => format!("below hole {}", above.unwrap_or_default()),
                     (Some(id), ..) => format!("beside hole {id}"),
                     (None, Some(distance), ToolRegion::Tip) => format!("{distance:.3} mm outside its pocket"),
                     (None, Some(_), _) => "the part beside its pocket".to_owned(),
@@ -78,6 +80,10 @@ impl HoleExtractor<'_> {
                 };
                 let what = if matches!(part, ToolRegion::Side) { "the side of the tool" } else { "the feed" };
                 let help = match is_stock {
+                    _ if above.is_some() => {
+                        "mill no deeper than the hole, or correct its depth in the list: it is full to the deepest whole circle, which \
+                         a helix lacks at its end"
+                    }
                     true => {
                         "keep the tool's radius away from what has to stay, or state in [[stock.pocket]] what the \
                          program mills besides the holes"
@@ -103,6 +109,20 @@ impl HoleExtractor<'_> {
         Some(format!(
             "{what} cuts {distance:.3} mm outside the nearest pocket, {depth:.3} mm below the surface at {point}"
         ))
+    }
+
+    /// Returns the id of the nominal hole within whose diameter a point lies, deeper than the hole.
+    fn hole_above(&self, p: &Point3<f64>) -> Option<&str> {
+        let holes = self.metal.holes.as_deref()?;
+        let mut found = None;
+        holes.below(p, p, (MAX_OPEN_RADIUS, 0.0), &mut |hole| {
+            let collar = holes.collar(hole);
+            let is_inside = collar.has_diameter && collar.from_axis(p) < collar.hole_radius;
+            if is_inside && collar.max_depth() < collar.depth(p) {
+                found = Some(hole);
+            }
+        });
+        found.map(|hole| holes.id(hole))
     }
 
     /// Returns true if a point is beside a nominal hole without a diameter, and no deeper than that.

@@ -107,7 +107,7 @@ impl PositionTracker {
 }
 
 /// Returns the unknown axes without the uncommanded rotaries of the default machine.
-pub(super) fn without_assumed(axes: UnknownAxes, machine: &Machine) -> UnknownAxes {
+pub(crate) fn without_assumed(axes: UnknownAxes, machine: &Machine) -> UnknownAxes {
     UnknownAxes { uncommanded: axes.uncommanded & !machine.assumed_rotary_axes(), ..axes }
 }
 

@@ -1,4 +1,5 @@
 //! The columns of a list: the separator, their names, and what a list without some of them means.
+use super::Cells;
 use crate::feature::FeatureKind;
 use crate::hole::{MM_PER_INCH, Unit};
 use gcode_lang::similar;
@@ -23,6 +24,8 @@ const COLUMNS: [(&str, &[&str]); 11] = [
             "hole id",
             "pos",
             "pos.",
+            "item",
+            "bohrung",
             "孔号",
             "序号",
         ],
@@ -93,7 +96,7 @@ const COLUMNS: [(&str, &[&str]); 11] = [
 ];
 
 /// Other names of the columns of features, which `thread depth` begins with too.
-const FEATURE_NAMES: [(&str, FeatureKind); 7] = [
+const FEATURE_NAMES: [(&str, FeatureKind); 8] = [
     ("thread", FeatureKind::Tap),
     ("cbore", FeatureKind::Counterbore),
     ("c'bore", FeatureKind::Counterbore),
@@ -101,6 +104,7 @@ const FEATURE_NAMES: [(&str, FeatureKind); 7] = [
     ("c'sink", FeatureKind::Countersink),
     ("csk", FeatureKind::Countersink),
     ("tap drill", FeatureKind::Drill),
+    ("bohrer", FeatureKind::Drill),
 ];
 
 /// Further values of a feature with columns of its own: `tap pitch`.
@@ -191,33 +195,54 @@ pub(super) fn example(names: &[String], separator: char) -> String {
         );
     }
     let point = if separator == ',' { "." } else { "," };
+    let has = |wanted: &str| names.iter().any(|name| name == wanted);
     // A diameter beside features is that of one of them.
-    let has_features = names.iter().any(|name| matches!(name.as_str(), "tap" | "counterbore"));
+    let has_features = FeatureKind::ALL.iter().any(|kind| has(kind.name()));
     let cell = |name: &String| match name.as_str() {
         "id" | "k" => "1".to_owned(),
         "x" => format!("30{point}5"),
         "y" => "10".to_owned(),
         "z" | "i" | "j" => "0".to_owned(),
-        "depth" => "15".to_owned(),
+        "depth" | "drill depth" => "15".to_owned(),
         "diameter" if !has_features => "6".to_owned(),
         "through" => "false".to_owned(),
         "features" => "drill 6 15".to_owned(),
+        "drill" => format!("6{point}8"),
+        "ream" | "bore" => "8".to_owned(),
         "tap" => "M8".to_owned(),
-        "tap depth" => "12".to_owned(),
+        "ream depth" | "bore depth" | "tap depth" | "countersink" => "12".to_owned(),
         "counterbore" => "14".to_owned(),
         "counterbore depth" => "5".to_owned(),
+        "countersink angle" => "90".to_owned(),
         _ => String::new(),
     };
-    // A tap and a counterbore have depths of their own.
+    // A drilled diameter beside a thread is a feature.
     let mut all = names.to_vec();
-    for kind in ["tap", "counterbore"] {
-        let depth = format!("{kind} depth");
-        if let Some(place) = all.iter().position(|name| name == kind).filter(|_| !all.contains(&depth)) {
-            all.insert(place + 1, depth);
+    if (has("tap") || has("counterbore"))
+        && !has("drill")
+        && let Some(place) = names.iter().position(|name| name == "diameter")
+    {
+        "drill".clone_into(&mut all[place]);
+    }
+    // Each feature has a depth of its own, but for a drill that goes to the depth of the hole, and a cone.
+    for kind in FeatureKind::ALL {
+        let value = if kind == FeatureKind::Countersink { "angle" } else { "depth" };
+        let own = format!("{} {value}", kind.name());
+        let is_deep = kind == FeatureKind::Drill && has("depth");
+        if let Some(place) = all.iter().position(|name| name == kind.name())
+            && !is_deep
+            && !all.contains(&own)
+        {
+            all.insert(place + 1, own);
         }
     }
+    // A cone alone has no depth.
+    let is_deep = |kind: &FeatureKind| *kind != FeatureKind::Countersink && has(kind.name());
+    if has("countersink") && !has("depth") && !has("features") && !FeatureKind::ALL.iter().any(is_deep) {
+        all.push("depth".to_owned());
+    }
     let line: Vec<_> = all.iter().map(cell).collect();
-    match all.len() == names.len() {
+    match all == names {
         true => format!("a right line: {}", line.join(&text)),
         false => format!("right columns: {}, and a right line: {}", all.join(&text), line.join(&text)),
     }
@@ -315,7 +340,8 @@ impl Columns {
     }
 
     /// Returns what the reader takes for granted.
-    pub(super) fn note(&self, has_open_depths: bool, has_comma: bool, shallow: &[String]) -> Option<String> {
+    pub(super) fn note(&self, has_open_depths: bool, cells: &Cells<'_>) -> Option<String> {
+        let Cells { has_comma, has_hole_deep_drill, shallow, .. } = cells;
         let mut facts = Vec::new();
         if self.unit == Unit::Inch {
             facts.push("lengths are in inches".to_owned());
@@ -329,6 +355,9 @@ impl Columns {
         if has_open_depths {
             facts.push("depths that are left out are not compared".to_owned());
         }
+        if *has_hole_deep_drill {
+            facts.push("a drill without a depth of its own is as deep as its hole".to_owned());
+        }
         if let Some(first) = shallow.first() {
             let others =
                 if shallow.len() == 1 { String::new() } else { format!(" and {} others", shallow.len() - 1) };
@@ -336,7 +365,7 @@ impl Columns {
                 "the depth of hole {first}{others} is less than that of a feature: the feature counts"
             ));
         }
-        if has_comma {
+        if *has_comma {
             facts.push("commas in numbers are decimal commas".to_owned());
         }
         if !self.unused.is_empty() {

@@ -90,6 +90,7 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         record: csv::StringRecord::new(),
         has_comma: false,
         has_point: false,
+        has_hole_deep_drill: false,
         shallow: Vec::new(),
     };
     // A line is counted from the start of the text, only for an error.
@@ -122,9 +123,32 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         let example = example(&columns.names, separator);
         return Err(error(None, format!("no hole after the header: one line for each; {example}")));
     }
-    let Cells { has_comma, shallow, .. } = cells;
-    list.note = columns.note(!list.open_depths.is_empty(), has_comma, &shallow);
+    list.note = columns.note(!list.open_depths.is_empty(), &cells);
+    check_levels(&list, &columns, separator)?;
     Ok(list)
+}
+
+/// Refuses a list without depths whose holes all begin below z 0: its z is the depth, as in many tables of drawings.
+fn check_levels(list: &CsvList, columns: &Columns, separator: char) -> Result<(), FileError> {
+    let holes = &list.holes.holes;
+    let is_plain = columns.has("z") && !columns.has("i") && list.open_depths.len() == holes.len();
+    let Some(first) = holes.first().filter(|_| is_plain && holes.iter().all(|hole| hole.entry[2] < 0.0))
+    else {
+        return Ok(());
+    };
+    let names: Vec<String> = columns.names.iter().filter(|name| *name != "depth").cloned().collect();
+    let names: Vec<String> =
+        names.into_iter().map(|name| if name == "z" { "depth".to_owned() } else { name }).collect();
+    let example = example(&names, separator);
+    Err(error(
+        None,
+        format!(
+            "column 'z' is below 0 in all holes, {} in the first, and no depth is given: z is where a hole begins, 0 on most \
+             plates, and its depth is a number above 0 in a column 'depth'; right columns: {}, and {example}",
+            first.entry[2],
+            names.join(&separator.to_string()),
+        ),
+    ))
 }
 
 /// A hole of a list.
@@ -140,6 +164,8 @@ struct Cells<'c> {
     record: csv::StringRecord,
     has_comma: bool,
     has_point: bool,
+    /// A drill has no depth of its own, and is as deep as its hole.
+    has_hole_deep_drill: bool,
     /// Holes whose depth is less than that of a feature.
     shallow: Vec<String>,
 }
@@ -195,6 +221,12 @@ impl Cells<'_> {
         let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
         let axis =
             [self.required("i", Some(0.0))?, self.required("j", Some(0.0))?, self.required("k", Some(1.0))?];
+        if is_through(self.text("depth")) {
+            return Err(format!(
+                "column 'depth' is '{}': the thickness of the part is required, and true in a column 'through'",
+                self.text("depth")
+            ));
+        }
         let mut hole = Hole {
             id: Some(self.text("id").to_owned()).filter(|id| !id.is_empty()),
             entry,
@@ -208,12 +240,6 @@ impl Cells<'_> {
             },
             ..Hole::default()
         };
-        if is_through(self.text("depth")) {
-            return Err(format!(
-                "column 'depth' is '{}': the thickness of the part is required, and true in a column 'through'",
-                self.text("depth")
-            ));
-        }
         let depth = self.number("depth")?;
         if let Some(depth) = depth.filter(|_| !hole.through)
             && hole.features.iter().any(|feature| exceeds(feature.bottom() - depth, 0.0))
@@ -287,7 +313,10 @@ impl Cells<'_> {
         }
         let depth = own("depth");
         let written = self.text(name).to_owned();
-        let is_deep = self.number(&depth)?.is_some() || kind == FeatureKind::Countersink;
+        let of_hole = if kind == FeatureKind::Drill { self.number("depth")? } else { None };
+        let own_depth = self.number(&depth)?;
+        self.has_hole_deep_drill |= own_depth.is_none() && of_hole.is_some();
+        let is_deep = own_depth.or(of_hole).is_some() || kind == FeatureKind::Countersink;
         if !is_deep && self.columns.has(&depth) {
             return Err(format!("column '{depth}' is empty: {name} {written} needs a depth of its own"));
         }
@@ -298,7 +327,7 @@ impl Cells<'_> {
         let hand = own("hand");
         let feature = Feature {
             diameter,
-            depth: self.number(&depth)?,
+            depth: own_depth.or(of_hole),
             angle: self.number(&own("angle"))?,
             pitch: own_pitch.or(thread.map(|thread| thread.pitch)),
             to: match self.text(&to) {

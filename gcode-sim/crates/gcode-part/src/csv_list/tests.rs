@@ -179,14 +179,68 @@ fn an_error_shows_a_line_that_is_right() {
         ),
         (
             "x,y,countersink\n1,2,10\n",
-            "line 2: column 'depth' is missing: a hole of countersinks alone needs it; a right line: ",
+            "line 2: column 'depth' is missing: a hole of countersinks alone needs it; right columns: \
+             x,y,countersink,countersink angle,depth, and a right line: 30.5,10,12,90,15",
         ),
         ("x,y,depth,tap,thread\n1,2,20,M10,M10\n", "line 1: column 'tap' is there twice; "),
+        (
+            "id,x,y,drill\n1,2,3,6.8\n",
+            "line 2: column 'drill depth' is missing: drill 6.8 needs a depth of its own; right columns: \
+             id,x,y,drill,drill depth, and a right line: 1,30.5,10,6.8,15",
+        ),
+        (
+            "id,x,y,dia,depth,tap,tap depth\n1,2,3,6.8,18,M8,14\n",
+            "line 2: hole 1 (id '1'): the diameter is 6.8, which no feature has: if it is drilled, it is a feature too, drill, \
+             and its column in a list is 'drill'; right columns: id,x,y,drill,depth,tap,tap depth, and a right line: \
+             1,30.5,10,6.8,15,M8,12",
+        ),
+        (
+            "x,y,drill,depth\n1,2,6.8,THRU\n",
+            "line 2: column 'depth' is 'THRU': the thickness of the part is required, and true in a column 'through'",
+        ),
+        (
+            "hole,x,y,z,dia\n1,15,15,-18,6.8\n2,20,15,-20,8.5\n",
+            "column 'z' is below 0 in all holes, -18 in the first, and no depth is given: z is where a hole begins, 0 on most \
+             plates, and its depth is a number above 0 in a column 'depth'; right columns: id,x,y,depth,diameter, and a right \
+             line: 1,30.5,10,15,6",
+        ),
         ("x,y,tap,tap depth\n1,2,10,15\n", "line 2: hole 1: its tap has no pitch: give it in mm; "),
         ("x,y,depth\n", "no hole after the header: one line for each; a right line: 30.5,10,15"),
     ] {
         let found = refused(text);
         assert!(found.starts_with(expected), "{text}\n  says {found:?}\n  not  {expected:?}");
+    }
+}
+
+/// A drill without a depth of its own goes to the depth of its hole, 18 here, and a tap has its own.
+#[test]
+fn a_drill_is_as_deep_as_its_hole() {
+    let plain =
+        read("id,x,y,depth,drill,drill depth,tap,tap depth\n1,15,10,18,6.8,18,M8,14\n2,5,10,20,8.5,20,,\n");
+    for text in [
+        "Hole,X,Y,Drill,Depth,Tap,Tap depth\n1,15,10,6.8,18,M8,14\n2,5,10,8.5,20,,\n",
+        "Nr;X;Y;Bohrer;Bohrer depth;Tiefe;Tap;Tap depth\n1;15;10;6,8;;18;M8;14\n2;5;10;8,5;20;20;;\n",
+    ] {
+        let list = read(text);
+        assert_eq!(list.holes, plain.holes, "{text}");
+        assert!(
+            list.note.unwrap().contains("a drill without a depth of its own is as deep as its hole"),
+            "{text}"
+        );
+    }
+    assert!(!plain.note.unwrap().contains("as deep as its hole"));
+}
+
+/// z is the level of the entries where a depth is given, where one hole begins at 0, or where the axis is given.
+#[test]
+fn holes_below_zero_with_a_depth_are_read() {
+    for text in [
+        "x,y,z,depth\n15,15,-18,5\n20,15,-18,\n",
+        "x,y,z\n15,15,-18\n20,15,0\n",
+        "x,y,z,i,j,k\n15,15,-18,0,0,1\n",
+        "x,y,z,drill,drill depth\n15,15,-18,6.8,5\n",
+    ] {
+        assert!(read(text).holes.holes[0].entry[2] < 0.0, "{text}");
     }
 }
 
@@ -199,11 +253,22 @@ fn the_right_line_is_read() {
         "id\tx\ty\tfeatures",
         "x,y,depth,tap,tap depth,counterbore,counterbore depth",
         "nr;x;y;diameter;tap;tap depth;tap pitch",
+        "nr;x;y;dia;cbore;countersink",
+        "nr,x,y,csk",
+        "nr,x,y,drill",
+        "nr,x,y,drill,depth,ream,bore depth,bore",
     ] {
         let separator = separator(header);
         let names: Vec<String> = header.split(separator).map(column_name).collect();
-        let line = example(&names, separator);
-        let text = format!("{header}\n{}\n", line.strip_prefix("a right line: ").unwrap());
+        let columns = Columns::new(names, separator, Unit::Mm).unwrap().names;
+        let line = example(&columns, separator);
+        let text = match line
+            .strip_prefix("right columns: ")
+            .and_then(|rest| rest.split_once(", and a right line: "))
+        {
+            Some((header, line)) => format!("{header}\n{line}\n"),
+            None => format!("{header}\n{}\n", line.strip_prefix("a right line: ").unwrap()),
+        };
         assert_eq!(read(&text).holes.holes[0].entry[0], 30.5, "{text}");
     }
 }

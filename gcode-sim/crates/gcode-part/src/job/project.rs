@@ -95,7 +95,18 @@ impl ProjectFile {
     /// A syntax error, or a key that is unknown or has a value that is not allowed, with its line.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let reader = Reader { text };
-        let file: Self = reader.parse()?;
+        let file: Self = reader.parse().map_err(|error| {
+            match error.message.strip_prefix("key 'references' is string ") {
+                Some(_) => FileError {
+                    message: format!(
+                        "{}; write [references] and below it \"O1001.nc\" = \"O1001.csv\"",
+                        error.message
+                    ),
+                    ..error
+                },
+                None => error,
+            }
+        })?;
         let dialects = file.folder.iter().map(|folder| ("folder.dialect", &folder.dialect));
         for (key, dialect) in std::iter::once(("dialect", &file.dialect)).chain(dialects) {
             if let Some(dialect) = dialect {
@@ -122,6 +133,15 @@ impl ProjectFile {
             entry.libraries.splice(0..0, folder.libraries.iter().cloned());
         }
         entry
+    }
+
+    /// Returns a path among the references that has the name of a program without a reference, in another folder or case.
+    pub fn misnamed_reference(&self, program: &Path) -> Option<&Path> {
+        let name = program.file_name()?;
+        let is_like =
+            |other: &&PathBuf| other.file_name().is_some_and(|other| other.eq_ignore_ascii_case(name));
+        let is_known = self.references.contains_key(program);
+        self.references.keys().find(is_like).map(PathBuf::as_path).filter(|_| !is_known)
     }
 
     /// Returns true if the findings of a rule are left out in a file, by its path below the folder of the project's file.

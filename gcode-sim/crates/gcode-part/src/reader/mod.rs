@@ -91,10 +91,9 @@ impl Reader<'_> {
             return FileError { line: Some(line), message };
         }
         let message = error.message().trim();
-        let list =
-            error.span().and_then(|span| wording::list_of_wrong_length(self.text, span.start, message));
-        let line = list.as_ref().map(|list| self.line(list.start)).or(line);
-        FileError { line, message: wording::reword(self.text, list.or(error.span()), message) }
+        let place = error.span().and_then(|span| wording::place_in_section(self.text, span.start, message));
+        let line = place.as_ref().map(|place| self.line(place.start)).or(line);
+        FileError { line, message: wording::reword(self.text, place.or(error.span()), message) }
     }
 
     /// Returns an error at the line of a value.

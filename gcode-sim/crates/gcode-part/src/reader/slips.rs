@@ -8,7 +8,7 @@ use toml::Table;
 type Repair = (&'static str, fn(&str) -> Option<String>);
 
 /// Repairs of a value.
-const OF_VALUE: [Repair; 13] = [
+const OF_VALUE: [Repair; 14] = [
     ("text has straight quotes on both sides", straight_quotes),
     ("a line ends without a comma", |value| value.strip_suffix(',').map(|rest| rest.trim().to_owned())),
     ("a number has a point, not a comma", decimal_point),
@@ -20,6 +20,7 @@ const OF_VALUE: [Repair; 13] = [
     ("a comment begins with #", with_comment),
     ("a number has no unit", without_unit),
     ("'=' stands once", |value| value.strip_prefix('=').map(|rest| rest.trim().to_owned())),
+    ("a number has a point, not a comma", decimal_points_in_brackets),
     ("what is in brackets is separated by commas, and text has quotes", in_brackets),
     ("text has quotes on both sides", with_quotes),
 ];
@@ -31,8 +32,8 @@ pub(super) fn syntax_slip(text: &str, line: usize) -> Option<(usize, String)> {
     let at = |line: usize| lines.get(line.checked_sub(1)?).copied().filter(|line| !line.trim().is_empty());
     let before = (1..line).rev().find(|line| at(*line).is_some());
     std::iter::once(line).chain(before).find_map(|line| {
-        let slip = doubled_table(&lines, line).or_else(|| of_line(at(line)?, section(&lines[..line])))?;
-        Some((line, slip))
+        let slip = || Some((line, of_line(at(line)?, section(&lines[..line]))?));
+        doubled_table(&lines, line).or_else(slip)
     })
 }
 
@@ -43,13 +44,25 @@ fn section(lines: &[&str]) -> String {
     name.map(|name| format!("{}.", name.trim())).unwrap_or_default()
 }
 
-/// Returns the slip of a header of a table that is there twice: a list has double brackets.
-fn doubled_table(lines: &[&str], line: usize) -> Option<String> {
+/// Returns the slip of a header of a table that is there twice, with its line: a list has double brackets in all of them.
+fn doubled_table(lines: &[&str], line: usize) -> Option<(usize, String)> {
     let header = |line: &str| line.split('#').next().map(|head| head.trim().to_owned());
     let own = header(lines.get(line.checked_sub(1)?)?).filter(|own| own.starts_with('['))?;
-    let others = lines[..line - 1].iter().filter_map(|other| header(other));
-    let is_twice = !own.starts_with("[[") && others.into_iter().any(|other| other == own);
-    is_twice.then(|| format!("{own} is there twice: a table of a list has double brackets; write [{own}]"))
+    let (name, is_list) = match own.strip_prefix("[[").and_then(|rest| rest.strip_suffix("]]")) {
+        Some(name) => (name.to_owned(), true),
+        None => (own.strip_prefix('[')?.strip_suffix(']')?.to_owned(), false),
+    };
+    let (single, double) = (format!("[{name}]"), format!("[[{name}]]"));
+    let place = |of: &str| lines[..line - 1].iter().position(|other| header(other).as_deref() == Some(of));
+    let slip = |line: usize, fault: &str| {
+        Some((line, format!("{single} {fault}: a table of a list has double brackets; write {double}")))
+    };
+    match (is_list, place(&single), place(&double)) {
+        (true, Some(other), _) => slip(other + 1, &format!("is {double} in line {line}")),
+        (false, Some(_), _) => slip(line, "is there twice"),
+        (false, None, Some(other)) => slip(line, &format!("is {double} in line {}", other + 1)),
+        _ => None,
+    }
 }
 
 /// Returns the slip of one line.
@@ -67,6 +80,13 @@ fn of_line(line: &str, section: String) -> Option<String> {
         let closed = format!("{}{brackets}", head.trim().trim_end_matches(']'));
         return is_toml(&closed)
             .then(|| format!("{}: a table ends with its bracket; write {closed}", head.trim()));
+    }
+    if let Some((key, value)) = line.split_once('=')
+        && key.contains(['/', '\\'])
+        && !key.contains('"')
+    {
+        let right = format!("\"{}\" = {}", key.trim().replace('\\', "/"), value.trim());
+        return is_toml(&right).then(|| format!("{}: a path has quotes; write {right}", key.trim()));
     }
     let is_key = |key: &str| {
         !key.is_empty()
@@ -226,6 +246,30 @@ fn in_brackets(value: &str) -> Option<String> {
     Some(if closing == '}' { format!("{{ {items} }}") } else { format!("[{items}]") })
 }
 
+/// Returns an inline table with a point in each number that has a comma: `{ diameter = 125,5, holes = 8 }`.
+fn decimal_points_in_brackets(value: &str) -> Option<String> {
+    let inside = value.strip_prefix('{')?.strip_suffix('}')?;
+    let is_whole = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+    let mut items: Vec<String> = Vec::new();
+    let mut is_changed = false;
+    for item in inside.split(',').map(str::trim) {
+        match items.last_mut() {
+            Some(last)
+                if is_whole(item)
+                    && last
+                        .split_once('=')
+                        .is_some_and(|(_, value)| is_whole(value.trim().trim_start_matches('-'))) =>
+            {
+                last.push('.');
+                last.push_str(item);
+                is_changed = true;
+            }
+            _ => items.push(item.to_owned()),
+        }
+    }
+    is_changed.then(|| format!("{{ {} }}", items.join(", ")))
+}
+
 fn with_quotes(value: &str) -> Option<String> {
     let word = value.trim_matches(['"', '\'']);
     let is_number = word.starts_with(|c: char| c.is_ascii_digit()) && word.contains([' ', '.']);
@@ -342,6 +386,15 @@ mod tests {
                 "key 'drill.origin' is [-400. 0, -250.0, 3]: -400. 0 is no number; write its digits without a gap, with one \
                  point",
             ),
+            (
+                "circle = { diameter = 125,5, holes = 8 }",
+                "key 'drill.circle' is { diameter = 125,5, holes = 8 }: a number has a point, not a comma; write circle = \
+                 { diameter = 125.5, holes = 8 }",
+            ),
+            (
+                "parts/O1001.nc = \"drawings/O1001.csv\"",
+                "parts/O1001.nc: a path has quotes; write \"parts/O1001.nc\" = \"drawings/O1001.csv\"",
+            ),
             ("[tool", "[tool: a table ends with its bracket; write [tool]"),
             ("[[tool]", "[[tool]: a table ends with its bracket; write [[tool]]"),
         ];
@@ -364,6 +417,12 @@ mod tests {
         );
         let text = "[hole] # first\nx = 1\n[hole]\nx = 2\n";
         let slip = "[hole] is there twice: a table of a list has double brackets; write [[hole]]";
+        assert_eq!(syntax_slip(text, 3), Some((3, slip.to_owned())));
+        let text = "\n[hole] # first\nx = 1\n[[hole]]\nx = 2\n";
+        let slip = "[hole] is [[hole]] in line 4: a table of a list has double brackets; write [[hole]]";
+        assert_eq!(syntax_slip(text, 4), Some((2, slip.to_owned())));
+        let text = "[[hole]]\nx = 1\n[hole]\nx = 2\n";
+        let slip = "[hole] is [[hole]] in line 1: a table of a list has double brackets; write [[hole]]";
         assert_eq!(syntax_slip(text, 3), Some((3, slip.to_owned())));
     }
 

@@ -6,6 +6,18 @@ use toml::de::{DeTable, DeValue};
 use super::keys::OUT_OF_RANGE;
 use gcode_lang::similar;
 
+/// Names of tools in catalogues, with their kinds in a machine file.
+const OTHER_NAMES: [(&str, &str); 8] = [
+    ("face-mill", "end-mill"),
+    ("shell-mill", "end-mill"),
+    ("ball-mill", "end-mill"),
+    ("thread-mill", "end-mill"),
+    ("chamfer-mill", "countersink"),
+    ("center-drill", "spot-drill"),
+    ("centre-drill", "spot-drill"),
+    ("spotdrill", "spot-drill"),
+];
+
 /// Rewords `message` about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
     // A key missing from the root is reported with an empty span.
@@ -48,7 +60,12 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         let (found, allowed) =
             (found.replace('`', ""), allowed.trim_start_matches("one of ").replace('`', ""));
         let allowed = allowed.replace(" or ", ", ");
-        let meant = similar(&found, allowed.split(", ")).map(|meant| format!(" (did you mean '{meant}'?)"));
+        let other_name =
+            OTHER_NAMES.iter().find(|(name, _)| *name == found.to_lowercase().replace([' ', '_'], "-"));
+        let other_name =
+            other_name.map(|(_, meant)| *meant).filter(|meant| allowed.split(", ").any(|one| one == *meant));
+        let meant = other_name.or_else(|| similar(&found, allowed.split(", ")));
+        let meant = meant.map(|meant| format!(" (did you mean '{meant}'?)"));
         return format!("key '{name}' is '{found}'{}; allowed: {allowed}", meant.unwrap_or_default());
     }
     if let Some(wrong) = message.strip_prefix(OUT_OF_RANGE) {
@@ -84,49 +101,73 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     format!("key '{name}' is {found}: {expected} is required{advice}")
 }
 
-/// Returns the place of the only list in a section that has as many values as the message says: of a section whose key
-/// decides which others it has, the reader of TOML knows no more than the section. `None` for another message or place.
-pub(super) fn list_of_wrong_length(text: &str, start: usize, message: &str) -> Option<Range<usize>> {
-    fn lists(value: &toml::Spanned<DeValue<'_>>, length: usize, found: &mut Vec<Range<usize>>) {
-        match value.get_ref() {
-            DeValue::Table(inner) => inner.values().for_each(|value| lists(value, length, found)),
+/// Returns the place of the key or the list that a message is about within a section: of a section whose key `kind` decides which
+/// others it has, the reader of TOML knows no more than the section. `None` for another message or place.
+pub(super) fn place_in_section(text: &str, start: usize, message: &str) -> Option<Range<usize>> {
+    let whole = DeTable::parse(text).ok()?;
+    let section = section_at(whole.get_ref(), start)?;
+    let mut found = Vec::new();
+    if let Some((length, _)) =
+        message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
+    {
+        let length: usize = length.parse().ok()?;
+        each_value(section, &mut |value| match value.get_ref() {
             DeValue::Array(all) if all.len() == length && all.iter().all(is_number) => {
                 found.push(value.span())
             }
-            DeValue::Array(all) => all.iter().for_each(|item| lists(item, length, found)),
             _ => {}
-        }
+        });
+    } else if let Some(field) = quoted(message, "unknown field ") {
+        let allowed = message.split_once("expected ").map_or("", |(_, rest)| rest);
+        let is_allowed = |key: &str| key == "kind" || key == field || allowed.contains(&format!("`{key}`"));
+        let mut all = Vec::new();
+        let mut in_table = |table: &DeTable<'_>| {
+            let is_of_message = table.iter().all(|(key, _)| is_allowed(key.get_ref()));
+            let own = table.iter().find(|(key, _)| key.get_ref() == field);
+            all.extend(own.map(|(key, _)| (is_of_message, key.span())));
+        };
+        section.as_table().into_iter().for_each(&mut in_table);
+        each_value(section, &mut |value| value.get_ref().as_table().into_iter().for_each(&mut in_table));
+        let is_only = all.len() == 1;
+        let of_message = all.into_iter().filter(|(is_of_message, _)| is_only || *is_of_message);
+        found.extend(of_message.map(|(_, span)| span));
+    } else if message.starts_with("invalid type: map, expected a sequence") {
+        let table = section.as_table().filter(|table| table.contains_key("kind"))?;
+        found.extend(table.iter().filter(|(_, value)| value.get_ref().is_table()).map(|(key, _)| key.span()));
     }
-    fn is_number(value: &toml::Spanned<DeValue<'_>>) -> bool {
-        matches!(value.get_ref(), DeValue::Integer(_) | DeValue::Float(_))
-    }
-    fn sections<'t, 'd>(
-        table: &'t DeTable<'d>,
-        start: usize,
-        found: &mut Vec<&'t toml::Spanned<DeValue<'d>>>,
-    ) {
-        for (key, value) in table.iter() {
-            let items = match value.get_ref() {
-                DeValue::Array(all) => all.iter().collect(),
-                _ => vec![value],
-            };
-            for item in items {
-                if let DeValue::Table(inner) = item.get_ref() {
-                    if [key.span().start, item.span().start].contains(&start) {
-                        found.push(item);
-                    }
-                    sections(inner, start, found);
-                }
-            }
-        }
-    }
-    let (length, _) = message.strip_prefix("invalid length ")?.split_once(", expected ")?;
-    let length = length.parse().ok()?;
-    let (mut named, mut found) = (Vec::new(), Vec::new());
-    let whole = DeTable::parse(text).ok()?;
-    sections(whole.get_ref(), start, &mut named);
-    named.first().into_iter().for_each(|section| lists(section, length, &mut found));
     found.pop().filter(|_| found.is_empty())
+}
+
+fn is_number(value: &toml::Spanned<DeValue<'_>>) -> bool {
+    matches!(value.get_ref(), DeValue::Integer(_) | DeValue::Float(_))
+}
+
+/// Returns the table that begins at a byte, or whose key does; of a list its item.
+fn section_at<'t, 'd>(table: &'t DeTable<'d>, start: usize) -> Option<&'t DeValue<'d>> {
+    table.iter().find_map(|(key, value)| {
+        let items = match value.get_ref() {
+            DeValue::Array(all) => all.iter().collect(),
+            _ => vec![value],
+        };
+        items.into_iter().find_map(|item| {
+            let inner = item.get_ref().as_table()?;
+            let is_own = [key.span().start, item.span().start].contains(&start);
+            if is_own { Some(item.get_ref()) } else { section_at(inner, start) }
+        })
+    })
+}
+
+/// Calls `each` with all values below one.
+fn each_value(value: &DeValue<'_>, each: &mut impl FnMut(&toml::Spanned<DeValue<'_>>)) {
+    let below: Vec<&toml::Spanned<DeValue<'_>>> = match value {
+        DeValue::Table(inner) => inner.values().collect(),
+        DeValue::Array(all) => all.iter().collect(),
+        _ => Vec::new(),
+    };
+    for value in below {
+        each(value);
+        each_value(value.get_ref(), each);
+    }
 }
 
 /// Returns the path of the key that begins at this byte, or whose value or an item of it does.
@@ -199,6 +240,12 @@ mod tests {
                 "1.0",
                 "invalid type: floating point `1.0`, expected u32",
                 "key 'hole.radius' is floating point 1.0: a whole number is required; write 1",
+            ),
+            (
+                "[[tool]]\nkind = \"Face mill\"\n",
+                "\"Face",
+                "unknown variant `Face mill`, expected one of `drill`, `end-mill`",
+                "key 'tool.kind' is 'Face mill' (did you mean 'end-mill'?); allowed: drill, end-mill",
             ),
             (JOB, "radius", "duplicate key", "duplicate key"),
             (

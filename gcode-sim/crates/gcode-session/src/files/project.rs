@@ -110,6 +110,13 @@ impl Project {
         entry.reference.map(|path| self.shown(&path))
     }
 
+    /// Returns a path among the references of the project's file that names no file, but is like that of the program; with the
+    /// program's own.
+    pub fn misnamed_reference(&self, files: &impl FileAccess) -> Option<(&Path, &Path)> {
+        let other = self.found.as_ref()?.file.misnamed_reference(&self.program)?;
+        (!files.is_file(&self.shown(other))).then_some((other, &self.program))
+    }
+
     /// Returns the folder of the project's file, with links resolved.
     pub fn folder(&self) -> Option<&Path> {
         self.found.as_ref().map(|found| found.folder.as_path())

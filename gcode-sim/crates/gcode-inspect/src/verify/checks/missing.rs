@@ -13,6 +13,9 @@ const DIRECTION_STEPS: f64 = 100.0;
 /// Largest distance from the axis of a hole at which a feed is on it, mm.
 const ON_AXIS: f64 = 0.5;
 
+/// Largest distance between two bottoms that are one, mm.
+const SAME_POINT: f64 = 0.01;
+
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let comparison = &inspection.comparison;
     // A repeated hole is not a missing one in a wrong position.
@@ -43,6 +46,17 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                     finding
                         .note(format!("the feed on its axis ends {height:.3} mm above its entry"))
                         .help("check Z and R of the cycle: in G91 R counts from the level before it, and Z from R")
+                        .with_backtrace(extra[near].backtrace.clone())
+                } else if let Some(below) = below_entry(&comparison.nominal[*nominal], extra[near], &off) {
+                    finding
+                        .note(format!(
+                            "a hole on its axis ends at the same bottom; only the entries differ: that of the list is {below:.3} mm above \
+                             the start of the feed"
+                        ))
+                        .help(
+                            "if the program mills down to there first, the hole begins at that floor: correct z and the depths of the \
+                             list; otherwise begin the feed above the entry",
+                        )
                         .with_backtrace(extra[near].backtrace.clone())
                 } else {
                     finding
@@ -81,4 +95,11 @@ fn height_above(nominal: &Hole, off: &Vector3<f64>) -> Option<f64> {
     let out = Vector3::from(nominal.axis);
     let (height, aside) = (off.dot(&out) - nominal.depth, off.cross(&out).norm());
     (0.0 < height && aside <= ON_AXIS).then_some(height)
+}
+
+/// Returns how far below the entry of a hole a feed on its axis begins that ends at its bottom.
+fn below_entry(nominal: &Hole, actual: &DrilledHole, off: &Vector3<f64>) -> Option<f64> {
+    let out = Vector3::from(nominal.axis);
+    let below = (Point3::from(nominal.entry) - actual.entry).dot(&out);
+    (0.0 < below && off.norm() <= SAME_POINT && COS_30 < actual.axis.dot(&out)).then_some(below)
 }
