@@ -24,6 +24,7 @@ use super::planner::Planner;
 use super::words::{BlockWords, CallingWord};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::EventSink;
+use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::modes::{CutterSide, Motion};
 use gcode_lang::program::{
     CallCode, DialectSyntax, GuardedOp, Library, Memory, Op, OpBody, OpIndex, OpKind, Program, Words,
@@ -251,7 +252,9 @@ impl Planner<'_> {
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
         // The builder's logic, often a macro, changes the tool.
-        let changes_tool = || self.words.m_codes.iter().map(|(code, _)| code).find(|code| **code == 6);
+        let is_change =
+            |code: &u32| m_codes::find(*code, self.data.settings.dialect) == Some(MCodeEffect::ToolChange);
+        let changes_tool = || self.words.m_codes.iter().map(|(code, _)| code).find(|code| is_change(code));
         match plan.builder_m_codes.last().or_else(changes_tool) {
             None if moves_straight && matches!(letter, 'P' | 'Q') => {
                 plan.notes.push(Note::WordIgnored(letter));

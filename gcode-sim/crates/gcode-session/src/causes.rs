@@ -5,14 +5,17 @@ use gcode_control::{Control, Outcome, UnsetWorkOffset, Value};
 use gcode_inspect::findings::{MAIN_PROGRAM, WORK_OFFSET};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, AnyVerdict, Verdict};
+use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_lang::program::modes::WorkSystem;
 use gcode_lang::program::{Memory, NoLibrary};
 use gcode_lang::source::Span;
-use gcode_lang::syntax::ast::{BinaryOp, Expr, ExprKind, Item, Statement};
+use gcode_lang::syntax::ast::{BinaryOp, Block, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
-use gcode_lint::{ControlKnowledge, check_loaded, main_programs, programs_called_by_others, rules};
+use gcode_lint::{
+    ControlKnowledge, check_loaded, main_programs, programs_called_by_others, rules, variables_read,
+};
 
 /// Rules about what a run does not show, or shows better: it finds the programs that it calls, and alarms at their end.
 const LEFT_OUT: [&str; 2] = ["missing-program", "missing-end"];
@@ -139,14 +142,8 @@ fn offset_finding(unset: &UnsetWorkOffset, machine: &Machine, made: &str) -> Dia
 
 /// Returns `#8=#8+#7 adds nothing: #7 is 0` for the blocks from `first` to `last` of one file.
 pub(super) fn unchanged_counter(control: &Control, first: Span, last: Span) -> Option<String> {
-    if first.source != last.source {
-        return None;
-    }
     let sources = control.memory().sources();
-    let programs = parse(first.source, &sources.get(first.source).bytes);
-    let blocks = programs.iter().flat_map(|program| &program.blocks);
-    let looped = blocks.filter(|block| first.start <= block.span.start && block.span.end <= last.end);
-    looped.flat_map(|block| &block.items).find_map(|item| {
+    looped_blocks(control, first, last).iter().flat_map(|block| &block.items).find_map(|item| {
         let Item::Statement(statement) = item else { return None };
         let Statement::Assign { target, value } = &statement.node else { return None };
         let ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, counter, step) = &value.kind else { return None };
@@ -159,6 +156,35 @@ pub(super) fn unchanged_counter(control: &Control, first: Span, last: Span) -> O
         let written = sources.text(statement.span);
         (target == counter).then(|| format!("{} adds nothing: #{step} is {value}", written.trim()))
     })
+}
+
+/// Returns the help for blocks that repeat without change: how the variable of a wait gets a value.
+pub(super) fn endless_help(control: &Control, first: Span, last: Span) -> String {
+    let looped = looped_blocks(control, first, last);
+    let read: Vec<u32> = looped.iter().flat_map(variables_read).collect();
+    let input = read.iter().find(|number| Settings::is_input(**number));
+    let common = || read.iter().find(|number| (100..1000).contains(*number));
+    match (input, common()) {
+        (Some(input), _) => format!("end the wait for the input with --input '#{input}=1'"),
+        (None, Some(common)) => format!(
+            "the machine's logic or another device changes #{common} during such a wait, which a run can't: leave the wait out with / \
+             or a condition"
+        ),
+        (None, None) => {
+            "end a wait for an input with --input '#1005=1', a main program's M99 P with --cycles 1"
+                .to_owned()
+        }
+    }
+}
+
+/// Returns the blocks of a loop in one text.
+fn looped_blocks(control: &Control, first: Span, last: Span) -> Vec<Block> {
+    if first.source != last.source {
+        return Vec::new();
+    }
+    let programs = parse(first.source, &control.memory().sources().get(first.source).bytes);
+    let blocks = programs.into_iter().flat_map(|program| program.blocks);
+    blocks.filter(|block| first.start <= block.span.start && block.span.end <= last.end).collect()
 }
 
 /// Returns the number of a variable with a literal index.

@@ -491,9 +491,7 @@ impl Run {
             Some(why) => {
                 finding.note(why).help("check where the step gets its value: a step of 0 makes no progress")
             }
-            None => finding.help(
-                "end a wait for an input with --input '#1005=1', a main program's M99 P with --cycles 1",
-            ),
+            None => finding.help(causes::endless_help(&self.control, first, last)),
         }
     }
 }

@@ -58,6 +58,11 @@ impl MachineValues {
         self.0.get(&(number, item)).copied()
     }
 
+    /// Returns true for a variable that may hold such a value.
+    pub(super) fn holds(number: u32) -> bool {
+        RANGES.iter().any(|(from, to)| (*from..=*to).contains(&number))
+    }
+
     /// Returns the variable and item of a key without its `#`; `None` for a variable without such a value.
     pub(super) fn key(text: &str) -> Option<Key> {
         let (number, item) = match text.split_once('.') {
@@ -65,8 +70,7 @@ impl MachineValues {
             None => (text, None),
         };
         let number = number.parse().ok()?;
-        let is_known = RANGES.iter().any(|(from, to)| (*from..=*to).contains(&number));
-        (is_known && (item.is_none() || has_items(number))).then_some((number, item))
+        (Self::holds(number) && (item.is_none() || has_items(number))).then_some((number, item))
     }
 
     /// States a value; `None` for a text that is no value.

@@ -396,6 +396,11 @@ with_defaults! {
 }
 
 impl Settings {
+    /// Returns true for a variable of a signal or a setting that the caller may state.
+    pub fn is_input(number: u32) -> bool {
+        (1000..=1031).contains(&number) || 1031 < number && MachineValues::holds(number)
+    }
+
     /// Iterates over the axes that roll over; usually none.
     pub fn rollover_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
         let some = self.rolls_over != [false; MAX_AXES];

@@ -104,6 +104,7 @@ pub const M_CODES: &[MCodeRow] = &[
     row(30, MCodeEffect::End, "program end, rewind"),
     row(48, MCodeEffect::NoEffect, "overrides on"),
     row(49, MCodeEffect::NoEffect, "overrides off"),
+    haas(16, MCodeEffect::ToolChange, "tool change"),
     haas(59, MCodeEffect::Output { is_on: true }, "output on"),
     haas(69, MCodeEffect::Output { is_on: false }, "output off"),
     haas(75, MCodeEffect::SkipReference, "reference point of G35 and G136"),
@@ -120,9 +121,10 @@ pub const M_CODES: &[MCodeRow] = &[
 ];
 
 /// M codes of a Haas's machine that move no axis of a program and change nothing that a program reads: brakes of the rotary
-/// axes, chip conveyor, coolant spigot, air, coolant through the spindle, display, spindle speed variation.
+/// axes, chip conveyor, coolant spigot, pallet ready, door, air, coolant through the spindle, sleep, probe arm, display, spindle
+/// speed variation.
 const AUXILIARY_OF_HAAS: &[u32] =
-    &[10, 11, 12, 13, 31, 33, 34, 35, 73, 74, 83, 84, 88, 89, 130, 131, 138, 139];
+    &[10, 11, 12, 13, 31, 33, 34, 35, 36, 73, 74, 80, 81, 83, 84, 88, 89, 95, 104, 105, 130, 131, 138, 139];
 
 /// Returns true for a code that the machine's logic executes without an effect on path and variables.
 pub fn is_auxiliary(code: u32, dialect: Dialect) -> bool {

@@ -30,14 +30,20 @@ impl ProgramName {
     }
 }
 
+/// Folders of a control's memory that lie in no other one.
+const TOP_FOLDERS: [&str; 4] = ["USER", "MTB1", "MTB2", "SYSTEM"];
+
 /// Folder of a control's memory, without slashes at its ends: `CNC_MEM/USER/PATH1`.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Folder(String);
 
 impl Folder {
-    /// Reads a path of a folder line; letter case, surrounding spaces and slashes at the ends do not matter.
+    /// Reads a path of a folder line; letter case, surrounding spaces and slashes at the ends do not matter. The control's memory
+    /// is the device of a path that names none: `/USER/PATH1/`.
     pub fn new(path: &str) -> Self {
-        Self(path.trim().trim_matches('/').to_ascii_uppercase())
+        let path = path.trim().trim_matches('/').to_ascii_uppercase();
+        let top = path.split('/').next().unwrap_or_default();
+        Self(if TOP_FOLDERS.contains(&top) { format!("CNC_MEM/{path}") } else { path })
     }
 
     /// Returns the path without slashes at its ends.
@@ -89,7 +95,9 @@ mod tests {
         assert_eq!(path(" 12 "), Some((None, "O0012".into())));
         assert_eq!(path("<bracket-op1>"), Some((None, "<BRACKET-OP1>".into())));
         let folder = Some("//CNC_MEM/USER/PATH1/".into());
-        assert_eq!(path("/cnc_mem/user/path1/o7"), Some((folder, "O0007".into())));
+        assert_eq!(path("/cnc_mem/user/path1/o7"), Some((folder.clone(), "O0007".into())));
+        assert_eq!(path("/user/path1/o7"), Some((folder, "O0007".into())));
+        assert_eq!(path("/JOBS/o7"), Some((Some("//JOBS/".into()), "O0007".into())));
         assert_eq!(path("//CNC_MEM/"), None);
     }
 }

@@ -1,7 +1,7 @@
 //! Rule: a loop that never ends, because no block changes its exit conditions or because it has no exit.
 use std::collections::{BTreeMap, BTreeSet};
 
-use gcode_lang::program::LoweredWord;
+use gcode_lang::program::{LoweredWord, WordOperand, Words};
 use gcode_lang::syntax::ast::{Condition, Statement};
 
 use crate::control_flow::{Jump, raises_alarm};
@@ -12,6 +12,9 @@ use crate::vacancy::{Locals, truth};
 use crate::variables::{self, VariableUses};
 
 pub(super) static RULE: Rule = Rule::new("endless-loop", Severity::Warning, "a loop that never ends", find);
+
+/// First common variable.
+const FIRST_COMMON: u32 = 100;
 
 /// First system variable. System variables may change by themselves.
 const FIRST_SYSTEM: u32 = 1000;
@@ -117,6 +120,8 @@ fn has_exit(
     contains: impl Fn(OpIndex) -> bool,
 ) -> bool {
     let mut written = None;
+    // Blocks that only ask and dwell wait: the machine's logic or another device changes a common variable meanwhile.
+    let is_wait = || inside.iter().all(|block| only_waits(unit.op(*block).kind()));
     inside.iter().copied().any(|block| {
         let op = unit.op(block);
         let ways = &unit.flow.block_successors[block];
@@ -133,16 +138,46 @@ fn has_exit(
         }
         match condition(unit, block) {
             Some(condition) => {
+                let uses = VariableUses::of(condition_expressions(condition));
+                if is_wait()
+                    && uses.reads.iter().any(|read| (FIRST_COMMON..FIRST_SYSTEM).contains(&read.number))
+                {
+                    return true;
+                }
                 let leaves_when =
                     !matches!(variables::statement(&unit.blocks, block), Some(Statement::While { .. }));
                 truth(condition, &Locals::ANYTHING) == Some(leaves_when)
                     || written
                         .get_or_insert_with(|| WrittenVariables::collect(context, unit, inside))
-                        .changes(&VariableUses::of(condition_expressions(condition)))
+                        .changes(&uses)
             }
             None => true,
         }
     })
+}
+
+/// Returns true for a block that asks, jumps or dwells, and does nothing else.
+fn only_waits(kind: &OpKind) -> bool {
+    use gcode_lang::program::Statement;
+    let is_dwell = |words: &Words| {
+        let is_g04 = |word: &LoweredWord| matches!(word.value, WordOperand::G(40, _));
+        let is_time = |word: &LoweredWord| matches!(word.letter, b'P' | b'X' | b'U');
+        words.list.iter().any(is_g04) && words.list.iter().all(|word| is_g04(word) || is_time(word))
+    };
+    match kind {
+        OpKind::Empty => true,
+        OpKind::Words(words) => is_dwell(words),
+        OpKind::Statement(Statement::IfThen { then, .. }) => matches!(**then, Statement::Goto(_)),
+        OpKind::Statement(statement) => matches!(
+            statement,
+            Statement::Goto(_)
+                | Statement::IfGoto { .. }
+                | Statement::While { .. }
+                | Statement::Do { .. }
+                | Statement::End { .. }
+        ),
+        OpKind::AssignDirect(_) | OpKind::If { .. } | OpKind::Alarm(_) => false,
+    }
 }
 
 /// Returns true if the block waits for the operator: M00, M01, `#3006`.
@@ -253,6 +288,16 @@ mod tests {
         assert_eq!(lines(&RULE, &text("501")), NOWHERE);
         assert_eq!(lines(&RULE, &text("#500")), NOWHERE, "it may be any");
         assert_eq!(lines(&RULE, &text("502")), [4]);
+    }
+
+    /// A handshake: the machine's logic sets a common variable while the program does nothing.
+    #[test]
+    fn a_wait_for_a_common_variable_may_end() {
+        assert_eq!(lines(&RULE, "O1\nWHILE[#500 EQ 0]DO1\nEND1\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\n#590=6\nN1 IF[#590 EQ 3]GOTO2\nG04 P1000\nGOTO1\nN2 M30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nWHILE[#500 EQ 0]DO1\nG91 X1.\nEND1\nM30\n"), [2]);
+        assert_eq!(lines(&RULE, "O1\nWHILE[#500 EQ 0]DO1\n#1=1\nEND1\nM30\n"), [2]);
+        assert_eq!(lines(&RULE, "O1\nWHILE[#1 EQ #0]DO1\nEND1\nM30\n"), [2], "nothing else sets a local");
     }
 
     #[test]
