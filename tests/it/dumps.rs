@@ -46,6 +46,11 @@ fn a_call_finds_the_programs_of_its_folder_and_then_the_common_ones() {
         second,
         "O2 of the library"
     );
+    // The folders of the memory need no name of the device.
+    let short = DUMP.replace("CNC_MEM/", "");
+    let place = folder(&[("ALL-PROG.TXT", short.as_bytes())]);
+    assert_eq!(commons("ALL-PROG.TXT --program /USER/PATH1/O1", place.path()), first);
+    assert_eq!(commons("ALL-PROG.TXT --program //CNC_MEM/USER/PATH2/O1", place.path()), second);
 }
 
 #[test]
