@@ -55,6 +55,10 @@ fn a_common_changes_in_all_files() {
     assert!(refused(text, "#7").contains("#7 is a local variable"));
     assert!(refused(text, "#5001").contains("not such a variable"));
     assert!(refused(text, "#34").contains("not such a variable"));
+    let reason = "#500 keeps its value when the power is off, #101 doesn't: write #100 to #199";
+    assert_eq!(refused(text, "#500"), reason);
+    let reason = "#500 keeps its value when the power is off, #150 doesn't: write #500 to #999";
+    assert_eq!(refused("O1\n#$0500=5\nM30\n", "#150"), reason);
     assert!(refused(text, "X").contains("write a variable"));
 }
 

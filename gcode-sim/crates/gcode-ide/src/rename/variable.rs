@@ -1,4 +1,5 @@
 //! Rename of a local within its macro level, and of a common in the whole project.
+use gcode_lang::control::Dialect;
 use gcode_lang::program::{ArgumentLocals, argument_letter};
 
 use super::{digits_in, file_edit};
@@ -13,6 +14,9 @@ use crate::text::{FileEdit, Refusal, TextRange};
 
 /// Commons that SETVN can name.
 const NAMED_COMMONS: std::ops::RangeInclusive<u32> = 500..=549;
+
+/// First common variable of a Fanuc that keeps its value when the power is off (operator's manual, macro variables).
+const FIRST_KEPT: u32 = 500;
 
 impl Project {
     /// Refuses a variable that cannot be renamed, whatever its new number.
@@ -92,6 +96,20 @@ impl Project {
             let kind =
                 if new_scope == VariableScope::Local { "a local variable" } else { "not such a variable" };
             let reason = format!("#{number} is a {}, #{new} is {kind}: write {range}", scope.name());
+            return Err(Refusal::new(reason));
+        }
+        // A Haas saves all common variables (Mill Operator's Manual, macro variables).
+        let keeps_all = self.settings().dialect == Dialect::HaasNgc;
+        let is_plain = number.max(new) < 1000;
+        if scope == VariableScope::Common
+            && is_plain
+            && !keeps_all
+            && (number < FIRST_KEPT) != (new < FIRST_KEPT)
+        {
+            let (kept, cleared) = (number.max(new), number.min(new));
+            let range = if FIRST_KEPT <= number { "#500 to #999" } else { "#100 to #199" };
+            let reason =
+                format!("#{kept} keeps its value when the power is off, #{cleared} doesn't: write {range}");
             return Err(Refusal::new(reason));
         }
         if canonical(new, self.settings()) != new {
