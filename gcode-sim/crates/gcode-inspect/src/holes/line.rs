@@ -4,6 +4,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::cut_states::{CutStates, StateCut};
 use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent};
 use super::drill_pass::{DrillPass, PITCH_TOLERANCE, PassCut, TapRetract};
+use super::unsized_tool::StartInside;
 use super::{HoleExtractor, MotionKind};
 use gcode_lang::motion::{Backtrace, Event, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
@@ -63,6 +64,8 @@ pub(super) struct CuttingLine {
     uneven_retract: Option<TapRetract>,
     /// True if a tool that only widens or threads a hole is fed into solid metal.
     pub enters_solid: bool,
+    /// Start of the feed inside a hole that it widens.
+    pub start_inside: Option<StartInside>,
     /// Largest change of the spindle while the tool was in the hole.
     pub spindle: SpindleInHole,
     /// Deepest point of the finished strokes.
@@ -144,6 +147,7 @@ impl CuttingLine {
             is_tapping: false,
             uneven_retract: None,
             enters_solid: false,
+            start_inside: None,
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
@@ -469,7 +473,7 @@ impl HoleExtractor<'_> {
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.record_line_feed(event, &mut line, &start);
-            self.check_start_inside(&line);
+            self.note_start_inside(&mut line);
             line
         });
     }
