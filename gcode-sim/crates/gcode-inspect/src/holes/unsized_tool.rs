@@ -78,7 +78,11 @@ impl HoleExtractor<'_> {
     /// Returns the radius that a tool of unknown diameter has in a stroke on the axis of nominal holes; `None` beside all of them.
     fn width_on_axis(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> Option<StrokeWidth> {
         let (mut least, mut most, mut end): (Option<f64>, Option<f64>, Option<f64>) = (None, None, None);
-        self.metal.around(travel, &mut |collar: &Collar| {
+        // A hole that the tip has left is above it.
+        let up = axis.into_inner() * self.metal.removed.height_of_metal(&travel[1], axis);
+        let way = [travel[0].inf(&travel[1]), travel[0].sup(&travel[1])];
+        let way = [way[0].inf(&(way[0] + up)), way[1].sup(&(way[1] + up))];
+        self.metal.around(&way, &mut |collar: &Collar| {
             let aside = travel.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
             if !collar.is_parallel(axis) || ON_AXIS < aside {
                 return;
@@ -97,7 +101,7 @@ impl HoleExtractor<'_> {
                 least = Some(least.unwrap_or(f64::INFINITY).min(narrowest));
             }
             if let Some(radius) = collar.radius_ending_at(deepest).filter(|_| is_into) {
-                end = Some(end.unwrap_or(0.0).max(radius - aside));
+                end = Some(end.unwrap_or(f64::INFINITY).min(radius - aside));
             }
         });
         Some(StrokeWidth { through: least.or(most)?, end })
