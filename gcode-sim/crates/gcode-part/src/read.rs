@@ -82,7 +82,10 @@ fn find_fault(hole: &Hole) -> Option<String> {
     if (length - 1.0).abs() > 1e-3 {
         return Some(format!("the axis has the length {length:.7}: divide i, j, k by it"));
     }
-    if hole.depth <= 0.0 {
+    if hole.depth == 0.0 {
+        return Some("the depth is left out or 0: a number above 0 is required, or features".to_owned());
+    }
+    if hole.depth < 0.0 {
         return Some(format!("the depth is {}: a number above 0 is required", hole.depth));
     }
     if let Some(diameter) = hole.diameter.filter(|diameter| *diameter <= 0.0) {
@@ -196,6 +199,10 @@ mod tests {
             (
                 row("1,0,0,0,0,1,0,-5,6"),
                 "line 3: hole 2 (id '1'): the depth is -5: a number above 0 is required",
+            ),
+            (
+                row("1,0,0,0,0,1,0,0,6"),
+                "line 3: hole 2 (id '1'): the depth is left out or 0: a number above 0 is required, or features",
             ),
             (
                 row("0,0,0,0,0,1,0,5,6"),

@@ -105,7 +105,9 @@ impl HoleExtractor<'_> {
         };
         let side = FeedPart::Side { radius: self.body_radius(), slope: 0.0 };
         match at.and_then(|at| self.metal.gouge(&[at, at], side)) {
-            Some(at) => self.report_gouge(&event.backtrace(), &[self.pose.tip], Gouge { at, part: ToolRegion::Side }),
+            Some(at) => {
+                self.report_gouge(&event.backtrace(), &[self.pose.tip], Gouge { at, part: ToolRegion::Side })
+            }
             None => self.unsearched_feeds.count(|| event.backtrace()),
         }
     }

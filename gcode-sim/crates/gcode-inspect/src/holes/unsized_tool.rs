@@ -310,8 +310,8 @@ impl HoleExtractor<'_> {
         let above = start + axis.into_inner() * depth;
         let is_cut =
             |offset: Vector3<f64>| self.metal.cuts(&(start + offset), &(above + offset)) == Some(true);
-        let is_widened = !is_cut(Vector3::zeros())
-            && rim(axis, &Vector3::zeros(), radius - FIT).into_iter().any(is_cut);
+        let is_widened =
+            !is_cut(Vector3::zeros()) && rim(axis, &Vector3::zeros(), radius - FIT).into_iter().any(is_cut);
         is_widened.then_some(StartInside { depth, radius })
     }
 }

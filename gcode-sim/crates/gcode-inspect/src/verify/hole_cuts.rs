@@ -27,6 +27,8 @@ pub(super) struct Cut<'a> {
     pub point: PointShape,
     /// Helix of a mill along a thread; `None` if it makes none.
     pub thread: Option<Helix>,
+    /// True for a void of the stock, which was there before the program.
+    pub is_void: bool,
 }
 
 impl<'a> Cut<'a> {
@@ -55,6 +57,7 @@ impl<'a> Cut<'a> {
                 kind: tool.and_then(|tool| tool.kind).or(is_end_mill.then_some(ToolKind::EndMill)),
                 hand: tool.and_then(|tool| tool.hand),
                 point,
+                is_void: false,
             }
         };
         drilled.passes().map(cut).collect()
@@ -77,9 +80,9 @@ impl<'a> Cut<'a> {
         (self.pass.tool, self.pass.diameter) == (other.tool, other.diameter)
     }
 
-    /// Returns true if the program makes another pass before this one.
+    /// Returns true if another pass is made before this one.
     pub(super) fn follows(&self, other: &Self) -> bool {
-        other.pass.cut.order < self.pass.cut.order
+        other.is_void || other.pass.cut.order < self.pass.cut.order
     }
 
     /// Returns true if a mill goes round the axis; false for a stroke.
@@ -115,7 +118,7 @@ impl<'a> Cut<'a> {
 
     /// Returns the name of the tool, `T1`, with its diameter.
     pub(super) fn name(&self) -> String {
-        let tool = tool_name(self.pass.tool);
+        let tool = if self.is_void { "the void".to_owned() } else { tool_name(self.pass.tool) };
         self.pass.diameter.map_or(tool.clone(), |diameter| format!("{tool}, Φ{diameter},"))
     }
 

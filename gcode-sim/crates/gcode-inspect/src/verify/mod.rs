@@ -24,6 +24,7 @@ mod tests;
 mod transformation;
 mod verdict;
 mod verdict_finding;
+mod voids;
 
 pub use assumption::{denied_assumptions, denied_words};
 pub use completion::{AnyVerdict, VerdictParts};
@@ -44,13 +45,14 @@ use self::not_checked::NotChecked;
 use self::rounding::RoundingDeviation;
 use self::rows::PatternRows;
 use self::transformation::Transformation;
+use self::voids::Blank;
 use crate::findings::START_UNKNOWN;
 use crate::holes::HoleExtraction;
 use crate::machine::Machine;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
-use gcode_part::{Hole, Reference, Surface};
+use gcode_part::{Hole, Reference, Stock, Surface};
 use nalgebra::{Point3, Vector3};
 
 /// Tolerance of the diameter of a hole, either way, mm.
@@ -117,9 +119,11 @@ pub fn verify(
         None => Transformation::of(&comparison, machine, &extraction.feeds_in_air),
     };
     let stock = reference.stock.as_ref().or(machine.stock.as_ref());
+    let voids = stock.map(Stock::voids).unwrap_or_default();
     let openings: Vec<Surface> =
-        stock.into_iter().flat_map(|stock| stock.pockets().into_iter().chain(stock.voids())).collect();
-    let features = judge_all(&comparison, body, &openings, machine);
+        stock.map(Stock::pockets).into_iter().flatten().chain(voids.iter().copied()).collect();
+    let blank = Blank { body, openings: &openings, voids: &voids };
+    let features = judge_all(&comparison, blank, machine);
     let inspection = HoleInspection {
         comparison,
         rows,

@@ -210,7 +210,10 @@ mod tests {
         let below = CutShape { start: 5.0, ..cut(10.0, 20.0, PointShape::Flat) };
         assert!(!below.covers(&spot, f64::INFINITY), "it begins in the hole");
         let inside = CutShape { start: 3.5, ..spot };
-        assert!(!cut(7.9, 20.0, PointShape::Flat).covers(&inside, f64::INFINITY), "its cone cuts above its tip");
+        assert!(
+            !cut(7.9, 20.0, PointShape::Flat).covers(&inside, f64::INFINITY),
+            "its cone cuts above its tip"
+        );
     }
 
     /// A cone of Φ12 at 90° meets Φ6 at 3. A 90° tool with its tip at 6 fits exactly; a 120° tool with its tip at 3 has a

@@ -6,7 +6,7 @@ use crate::findings::{DRILL_FEED, DRILL_PECK, DRILL_SPEED, JOB_TOOL, LENGTH_OFFS
 use crate::holes::{CutConditions, OffsetOrigin};
 use crate::machine::{ToolKind, tool_name};
 use gcode_lang::motion::{LengthCompensation, SpindleDirection};
-use gcode_part::Hand;
+use gcode_part::{FeatureKind, Hand};
 
 /// Relative deviation of S and F without a finding: rounding of an inch value.
 const ROUNDING_ALLOWANCE: f64 = 0.005;
@@ -43,9 +43,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let (conditions, limits) = (&inspection.extraction.cut_conditions, &inspection.reference.process_limits);
     let mut reported = CutFindings::default();
     let offsets = offsets_of_tools(conditions);
+    let described = described_taps(inspection);
     for check in [reversed, speed, feed, feed_per_turn, rubbing_feed, peck, fine_peck, length, tool] {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
+            if finding.kind == &SPINDLE_REVERSED && cut.is_tapping && described.contains(&cut.tool) {
+                continue;
+            }
             // Lengths that the machine file states are compared.
             let is_open = finding.kind == &LENGTH_OFFSET && inspection.machine.length_of(cut.tool).is_none();
             let finding = match owner_of_length(cut, &offsets).filter(|_| is_open) {
@@ -91,6 +95,27 @@ impl CutFindings {
             findings.add(Subject::Motion, note.into_iter().fold(finding, Diagnostic::note));
         }
     }
+}
+
+/// Returns the taps of unknown hand that cut only holes whose threads the reference describes: their hand is compared there.
+fn described_taps(inspection: &HoleInspection<'_>) -> BTreeSet<Option<u32>> {
+    let HoleInspection { comparison, machine, .. } = inspection;
+    let hand = |tool: Option<u32>| tool.and_then(|number| machine.find_tool(number)?.hand);
+    let has_thread = |hole: &Hole| hole.features.iter().any(|feature| feature.kind == FeatureKind::Tap);
+    let taps = |hole: &DrilledHole| -> Vec<Option<u32>> {
+        hole.passes().filter(|pass| pass.cut.is_tapping).map(|pass| pass.tool).collect()
+    };
+    let mut described = BTreeSet::new();
+    for (_, _, drilled) in comparison.matched().filter(|(_, nominal, _)| has_thread(nominal)) {
+        described.extend(taps(drilled).into_iter().filter(|tool| hand(*tool).is_none()));
+    }
+    for (_, _, drilled) in comparison.matched().filter(|(_, nominal, _)| !has_thread(nominal)) {
+        taps(drilled).iter().for_each(|tool| _ = described.remove(tool));
+    }
+    for extra in &comparison.extra {
+        taps(&comparison.actual[*extra]).iter().for_each(|tool| _ = described.remove(tool));
+    }
+    described
 }
 
 /// Returns the first cut of each tool with each length offset.

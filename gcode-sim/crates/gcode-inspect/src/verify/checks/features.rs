@@ -5,6 +5,7 @@ use crate::machine::{PointShape, ToolKind};
 use crate::verify::followers::Follower;
 use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
 use crate::verify::outline::{CutShape, Outline};
+use crate::verify::voids::Blank;
 use gcode_part::{Feature, FeatureKind, MAX_EDGE_BREAK, POINT_LENGTH};
 
 /// What the end of a tool leaves open, by the tool's number.
@@ -46,8 +47,7 @@ pub(super) struct Judgement<'c> {
     pub far: Vec<Cut<'c>>,
     /// Nominal holes that follow a through hole on its axis.
     pub followers: Vec<Follower>,
-    /// Stated pockets of the stock.
-    pub pockets: &'c [Surface],
+    pub blank: Blank<'c>,
     pub findings: Vec<Diagnostic>,
     pub gaps: Vec<ShapeGap>,
 }
@@ -63,12 +63,11 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
 /// Judges the features of all holes; returns those with findings or gaps.
 pub(in crate::verify) fn judge_all(
     comparison: &Comparison<'_>,
-    surface: Option<Surface>,
-    pockets: &[Surface],
+    blank: Blank<'_>,
     machine: &Machine,
 ) -> Vec<FeatureFindings> {
     let judge = |pair: &HolePair| {
-        let Judgement { findings, gaps, .. } = judge(comparison, pair, (surface, pockets), machine)?;
+        let Judgement { findings, gaps, .. } = judge(comparison, pair, blank, machine)?;
         let is_whole = findings.is_empty() && gaps.is_empty();
         (!is_whole).then_some(FeatureFindings { nominal: pair.nominal, findings, gaps })
     };
@@ -79,7 +78,7 @@ pub(in crate::verify) fn judge_all(
 fn judge<'c>(
     comparison: &'c Comparison<'_>,
     pair: &HolePair,
-    (surface, pockets): (Option<Surface>, &'c [Surface]),
+    blank: Blank<'c>,
     machine: &Machine,
 ) -> Option<Judgement<'c>> {
     let (nominal, drilled) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
@@ -102,7 +101,8 @@ fn judge<'c>(
     }
     let id = comparison.id(pair.nominal);
     let (findings, gaps) = (Vec::new(), Vec::new());
-    let mut judged = Judgement { comparison, nominal, id, near, far, followers, pockets, findings, gaps };
+    let mut judged = Judgement { comparison, nominal, id, near, far, followers, blank, findings, gaps };
+    let surface = blank.body;
     if nominal.features.is_empty() {
         judged.judge_one_diameter(drilled, surface);
     } else {
@@ -112,9 +112,9 @@ fn judge<'c>(
     judged.judge_both_sides();
     judged.judge_break_through(surface);
     judged.judge_next_holes(drilled, machine);
-    threads::judge(&mut judged);
     let on_axis = earlier_on_axis(&judged, drilled, machine);
-    tool_kinds::judge(&mut judged, surface.is_some(), &on_axis);
+    threads::judge(&mut judged, &on_axis);
+    tool_kinds::judge(&mut judged, &on_axis);
     Some(judged)
 }
 
@@ -135,6 +135,15 @@ fn earlier_on_axis<'c>(judged: &Judgement<'c>, drilled: &DrilledHole, machine: &
         })
     });
     cuts.filter(is_before).collect()
+}
+
+impl<'c> Judgement<'c> {
+    /// Returns the voids on the axis of a hole in which a cut works that needs a hole before it: those that leave it metal.
+    pub(super) fn voids_before(&self, nominal: &Hole, cut: &Cut<'c>) -> Vec<Cut<'c>> {
+        let mut voids = Cut::of_voids(nominal, self.blank, self.comparison.tolerances, cut.pass.backtrace);
+        voids.retain(|void| void.is_void_within(cut));
+        voids
+    }
 }
 
 impl Judgement<'_> {

@@ -91,12 +91,14 @@ pub(super) fn feed_words(feed: f64, speed: f64) -> String {
 }
 
 /// Reports a tap in a hole that is narrower than the thread's own core: a warning where it may be that of a taper pipe thread.
-pub(super) fn narrow(judged: &Judgement<'_>, feature: &Feature, tap: &Cut<'_>) -> Option<Diagnostic> {
+pub(super) fn narrow<'c>(judged: &Judgement<'c>, feature: &Feature, tap: &Cut<'c>) -> Option<Diagnostic> {
     let pitch = feature.pitch.filter(|_| tap.thread.is_none())?;
     // A wider drill behind the tap has its own finding.
     let drilled = judged.near.iter().filter(|cut| tap.tip * CORE_SHARE <= cut.tip);
     let from_far_side = judged.far.iter().filter(|cut| judged.nominal.depth * CORE_SHARE <= cut.tip);
-    let drilled = drilled.chain(from_far_side).filter(|cut| !cut.is_thread());
+    let voids = judged.voids_before(judged.nominal, tap);
+    let voids = voids.iter().filter(|void| tap.tip * CORE_SHARE <= void.tip);
+    let drilled = drilled.chain(from_far_side).filter(|cut| !cut.is_thread()).chain(voids);
     let widths: Option<Vec<f64>> = drilled.map(|cut| cut.pass.diameter).collect();
     let widest = widths?.into_iter().reduce(f64::max)?;
     let missing = |depth: f64| feature.diameter - depth * pitch - widest;

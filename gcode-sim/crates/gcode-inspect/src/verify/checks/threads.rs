@@ -18,15 +18,21 @@ pub(super) const LEAD_TOLERANCE: f64 = 0.00127;
 /// Turns that a comb mill makes at most without a step: one, and its lead-in and lead-out.
 const MAX_COMB_TURNS: f64 = 2.0;
 
-/// Adds the findings on the threads of a hole, from both sides of a through hole.
-pub(super) fn judge(judged: &mut Judgement<'_>) {
+/// Adds the findings on the threads of a hole, from both sides of a through hole. `on_axis` are the cuts of other holes of the list on
+/// the same axis that are made before.
+pub(super) fn judge<'c>(judged: &mut Judgement<'c>, on_axis: &[Cut<'c>]) {
+    let nominal = judged.nominal.from_far_side();
     let mut findings = Vec::new();
-    for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
-        findings.extend(cuts.iter().filter_map(|cut| drilled_depth(judged, cut, cuts, others)));
+    for cut in judged.near.iter().filter(|cut| cut.is_thread()) {
+        let earlier = [on_axis, &judged.voids_before(judged.nominal, cut)].concat();
+        findings.extend(drilled_depth(judged, cut, (&judged.near, &judged.far), &earlier));
+    }
+    for cut in judged.far.iter().filter(|cut| cut.is_thread()) {
+        let earlier = judged.voids_before(&nominal, cut);
+        findings.extend(drilled_depth(judged, cut, (&judged.far, &judged.near), &earlier));
     }
     judged.findings.extend(findings);
     judge_side(judged);
-    let nominal = judged.nominal.from_far_side();
     let Judgement { comparison, id, .. } = *judged;
     let (near, far) = (judged.far.clone(), judged.near.clone());
     let mut from_far_side = Judgement {
@@ -36,7 +42,7 @@ pub(super) fn judge(judged: &mut Judgement<'_>) {
         near,
         far,
         followers: Vec::new(),
-        pockets: judged.pockets,
+        blank: judged.blank,
         findings: Vec::new(),
         gaps: Vec::new(),
     };
@@ -57,7 +63,10 @@ fn judge_side(judged: &mut Judgement<'_>) {
     findings
         .extend((0..judged.near.len()).find_map(|cut| drilled_after(nominal, id, &judged.near, cut, width)));
     judged.gaps.extend(open_depths(&judged.near));
-    let wide: Vec<WideCut> = judged.near.iter().filter_map(|cut| wide_cut(judged, cut)).collect();
+    let voids = judged.near.iter().filter(|cut| cut.is_thread()).map(|cut| judged.voids_before(nominal, cut));
+    let before = voids.max_by_key(Vec::len).unwrap_or_default();
+    let wide: Vec<WideCut> =
+        before.iter().chain(&judged.near).filter_map(|cut| wide_cut(judged, cut)).collect();
     for cut in wide {
         match cut {
             WideCut::Fault(finding) => findings.push(finding),
@@ -136,8 +145,12 @@ fn wide_cut(judged: &Judgement<'_>, cut: &Cut<'_>) -> Option<WideCut> {
         let is_spot_drill = cut.kind.is_none() && cut.point == PointShape::Unknown && is_wide(cut.tip);
         return is_spot_drill.then_some(WideCut::SpotDrill(cut.pass.tool));
     }
+    let made = match cut.is_void {
+        true => format!("is {full:.3} mm deep"),
+        false => format!("cuts {full:.3} mm deep at its full diameter"),
+    };
     let message = format!(
-        "hole {}: {} cuts {full:.3} mm deep at its full diameter, {:.3} mm wider than the hole for the thread",
+        "hole {}: {} {made}, {:.3} mm wider than the hole for the thread",
         judged.id,
         cut.name(),
         excess(full)
@@ -200,15 +213,15 @@ fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
     Some(finding.help(format!("{remedy}, or correct the hand of the thread in the reference")))
 }
 
-/// Reports a thread that ends no higher than what is drilled before it. A thread in a hole that the program doesn't drill is
-/// left open.
+/// Reports a thread that ends no higher than what is drilled before it, from its side and from the other one; `earlier` is there
+/// before all of them. A thread in a hole that the program doesn't drill is left open.
 fn drilled_depth(
     judged: &Judgement<'_>,
     tap: &Cut<'_>,
-    cuts: &[Cut<'_>],
-    others: &[Cut<'_>],
+    (cuts, others): (&[Cut<'_>], &[Cut<'_>]),
+    earlier: &[Cut<'_>],
 ) -> Option<Diagnostic> {
-    if !tap.is_thread() || !cuts.iter().chain(others).any(|cut| !cut.is_thread()) {
+    if !cuts.iter().chain(others).chain(earlier).any(|cut| !cut.is_thread()) {
         return None;
     }
     let (nominal, id) = (judged.nominal, judged.id);
@@ -216,7 +229,7 @@ fn drilled_depth(
     let deepest = |cuts: &[Cut<'_>]| {
         cuts.iter().filter(|cut| !cut.is_thread() && tap.follows(cut)).map(depth).fold(0.0, f64::max)
     };
-    let (drilled, from_other_side) = (deepest(cuts), deepest(others));
+    let (drilled, from_other_side) = (deepest(cuts).max(deepest(earlier)), deepest(others));
     // A mill needs no room below the thread.
     let room = if tap.thread.is_some() { -NOISE } else { NOISE };
     if judged.is_drilled_through(drilled, from_other_side) || tap.tip + room < drilled {

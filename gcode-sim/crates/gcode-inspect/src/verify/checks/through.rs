@@ -137,9 +137,9 @@ impl Judgement<'_> {
         let (nominal, slack) = (self.nominal, self.comparison.tolerances.depth);
         let radius = nominal.widest_diameter().unwrap_or(0.0) / 2.0;
         let is_last = self.followers.is_empty();
-        let ends_there = || is_last && ends_in_pocket(self.pockets, nominal, radius);
+        let ends_there = || is_last && ends_in_pocket(self.blank.openings, nominal, radius);
         let Some(surface) = surface.filter(|_| ends_there()) else { return };
-        let body = (&surface, self.pockets);
+        let body = (&surface, self.blank.openings);
         let metal =
             |cut: &Cut<'_>| metal_below(body, nominal, cut.tip).filter(|at| exceeds(cut.tip - at, slack));
         let Some((cut, at)) = self.near.iter().find_map(|cut| Some((cut, metal(cut)?))) else { return };
@@ -221,7 +221,7 @@ impl Judgement<'_> {
         // A coaxial hole from the far side is the rest of this one, and above one that follows it the part is open.
         let depth = depth.min(self.comparison.counter_depth(self.nominal, diameter));
         let is_open =
-            !self.followers.is_empty() || ends_in_pocket(self.pockets, self.nominal, diameter / 2.0);
+            !self.followers.is_empty() || ends_in_pocket(self.blank.openings, self.nominal, diameter / 2.0);
         let depth = match self.comparison.bore_at_end(self.nominal) {
             _ if is_open => depth.min(self.nominal.depth),
             Some(bore) => depth.min(bore.opens),

@@ -72,19 +72,20 @@ fn cone(judged: &Judgement<'_>) -> Option<Diagnostic> {
 /// Adds the findings on the kinds of the tools that cut a hole, and the tools whose hole the program doesn't drill.
 /// The part is solid where its stock or surface is known. `on_axis` are the cuts of other holes of the list on the same axis that are
 /// made before: a stepped hole may be several holes.
-pub(super) fn judge(judged: &mut Judgement<'_>, is_solid: bool, on_axis: &[Cut<'_>]) {
+pub(super) fn judge<'c>(judged: &mut Judgement<'c>, on_axis: &[Cut<'c>]) {
     let (mut findings, mut gaps) = (Vec::new(), Vec::new());
-    for (cuts, others) in [(&judged.near, &judged.far), (&judged.far, &judged.near)] {
+    let (near, far) = (judged.nominal, &judged.nominal.from_far_side());
+    for (side, cuts, others) in [(near, &judged.near, &judged.far), (far, &judged.far, &judged.near)] {
         for (index, cut) in cuts.iter().enumerate() {
             findings.extend(sideways(judged.id, cut));
             if !needs_earlier_cut(cut) || cut.is_circle() {
                 continue;
             }
             let makes_hole = |other: &Cut<'_>| !needs_earlier_cut(other);
-            let before: Vec<Cut<'_>> = on_axis.iter().chain(&cuts[..index]).copied().collect();
-            if !cuts.iter().chain(others).chain(on_axis).any(makes_hole) {
+            let before = [on_axis, &judged.voids_before(side, cut), &cuts[..index]].concat();
+            if !cuts.iter().chain(others).chain(&before).any(makes_hole) {
                 // A tool of unknown kind may as well be a drill.
-                match cut.kind.filter(|_| is_solid) {
+                match cut.kind.filter(|_| judged.blank.body.is_some()) {
                     Some(kind) => findings.push(undrilled(judged.id, cut, kind)),
                     None => gaps.push(ShapeGap::Undrilled(cut.pass.tool)),
                 }
@@ -108,7 +109,7 @@ fn undrilled(id: &str, cut: &Cut<'_>, kind: ToolKind) -> Diagnostic {
         format!("hole {id}: {} is a {kind} and goes {:.3} mm into the solid part", cut.name(), cut.tip);
     Diagnostic::new(&TOOL_KIND, message)
         .with_backtrace(cut.pass.backtrace.clone())
-        .help("drill the hole before it; if another program drills it, leave out [stock]")
+        .help("drill the hole before it; if another program drills it, state it as a [[stock.void]]")
 }
 
 /// Reports a circle by a tool without cutting edges on its side.
