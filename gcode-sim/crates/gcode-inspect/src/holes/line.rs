@@ -4,7 +4,6 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::cut_states::{CutStates, StateCut};
 use super::cutting::{CuttingState, FeedAtSpeed, PeckExtent};
 use super::drill_pass::{DrillPass, PITCH_TOLERANCE, PassCut, TapRetract};
-use super::unsized_tool::StartInside;
 use super::{HoleExtractor, MotionKind};
 use gcode_lang::motion::{Backtrace, Event, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::source::Span;
@@ -95,6 +94,15 @@ pub(super) enum SpindleInHole {
     /// Stopped, and started again in its former direction.
     Restarted,
     Reversed,
+}
+
+/// Start of a feed inside a hole that it widens.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StartInside {
+    /// Depth at which it begins, mm.
+    pub depth: f64,
+    /// Radius to which it widens the hole, mm.
+    pub radius: f64,
 }
 
 /// Feeds inwards without a retract between them.

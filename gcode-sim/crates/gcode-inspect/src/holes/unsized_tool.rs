@@ -3,7 +3,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::feed_law::{FIT, ON_AXIS, is_along};
-use super::line::CuttingLine;
+use super::line::{CuttingLine, StartInside};
 use super::profile::Profile;
 use super::strip::Line;
 use super::swept_tool::rim;
@@ -45,14 +45,6 @@ struct StrokeWidth {
     through: f64,
     /// That of the feature that ends where the stroke does.
     end: Option<f64>,
-}
-
-/// Start of a feed inside a hole that it widens.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct StartInside {
-    depth: f64,
-    /// Radius to which it widens the hole, mm.
-    radius: f64,
 }
 
 impl UnsizedStroke {
