@@ -299,23 +299,26 @@ impl Collar {
         self.narrowest_radius.min(self.hole_radius)
     }
 
-    /// Returns the largest radius of a tool of unknown diameter whose stroke on the axis ends at a depth, mm: that of the features
-    /// that end there, else that of the narrowest, for a wider tool would spoil it.
-    pub fn radius_of_stroke(&self, depth: f64) -> f64 {
-        let made = self.steps_ending_at(depth).map(|step| step.taper.radius);
-        made.fold(self.narrowest_radius, f64::max).min(self.hole_radius)
+    /// Returns the radius of the widest of the features that end where a stroke on the axis does, mm; `None` if none does.
+    pub fn radius_ending_at(&self, depth: f64) -> Option<f64> {
+        let end = |step: &&Step| match self.is_far(step) {
+            true => (self.rod.length <= depth + NOISE).then_some(0.0),
+            false => Some((step.max_depth - depth).abs()).filter(|gap| *gap <= SAME_END),
+        };
+        let nearest = self.steps.iter().filter_map(|step| end(&step)).reduce(f64::min)?;
+        let made = self.steps.iter().filter(|step| end(step).is_some_and(|gap| gap <= nearest + NOISE));
+        made.map(|step| step.taper.radius.min(self.hole_radius)).reduce(f64::max)
     }
 
-    /// Returns the radius of the widest cylinder of the hole that ends at a depth, mm; `None` if none does, or if it is the
-    /// narrowest of the hole.
-    pub fn widened_at(&self, depth: f64) -> Option<f64> {
-        let cylinders = self.steps_ending_at(depth).filter(|step| step.taper.slope == 0.0);
-        let radius = cylinders.map(|step| step.taper.radius).reduce(f64::max)?;
-        (self.narrowest_radius < radius).then_some(radius)
+    /// Returns true if two strokes on the axis end where the same feature does.
+    pub fn have_same_end(&self, one: f64, other: f64) -> bool {
+        let is_beyond = |depth: f64| self.is_through && self.rod.length <= depth + NOISE;
+        (one - other).abs() <= SAME_END || is_beyond(one) && is_beyond(other)
     }
 
-    fn steps_ending_at(&self, depth: f64) -> impl Iterator<Item = &Step> {
-        self.steps.iter().filter(move |step| (step.max_depth - depth).abs() <= SAME_END)
+    /// Returns true for a step that ends on the far side.
+    fn is_far(&self, step: &Step) -> bool {
+        self.is_through && self.rod.length + MAX_BREAK_THROUGH <= step.max_depth + NOISE
     }
 
     /// Returns the largest depth of a feed in the hole, mm.
@@ -365,7 +368,7 @@ fn narrowest_radius(hole: &Hole, radius: f64) -> f64 {
 }
 
 /// Difference in depth up to which a stroke ends where a feature does, its point included, mm.
-const SAME_END: f64 = 1.0;
+pub const SAME_END: f64 = 1.0;
 
 #[cfg(test)]
 mod tests {

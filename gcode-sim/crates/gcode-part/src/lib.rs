@@ -71,7 +71,8 @@ pub use clusters::Clusters;
 pub use contact::Frustum;
 pub use csv_list::STOPPED;
 pub use entry_planes::{
-    Collar, EntryPlanes, MAX_BREAK_THROUGH, MAX_EDGE_BREAK, Metal, PARALLEL_COSINE, POINT_LENGTH, Step,
+    Collar, EntryPlanes, MAX_BREAK_THROUGH, MAX_EDGE_BREAK, Metal, PARALLEL_COSINE, POINT_LENGTH, SAME_END,
+    Step,
 };
 pub use feature::{DepthTo, Feature, FeatureKind};
 pub use flutes::Flutes;

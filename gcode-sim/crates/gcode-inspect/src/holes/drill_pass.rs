@@ -1,7 +1,7 @@
 //! Passes of tools: feeds into the part along one line, and circles of mills.
 use nalgebra::{Point3, Unit, Vector3};
 
-use crate::machine::Machine;
+use crate::machine::{Machine, ToolKind};
 use gcode_lang::motion::{Backtrace, Position, SpindleDirection, UnknownAxes};
 use gcode_lang::units::{Deg, MmPerMin, Rpm};
 
@@ -153,8 +153,12 @@ impl DrillPass {
     }
 
     /// Returns true if the pass cuts at least as wide as another one. Of a tool of unknown diameter only the path counts; of
-    /// two such tools the later one does.
+    /// two such tools the later one does, and so does a reamer or a boring bar, which widens what is there.
     pub(super) fn is_as_wide(&self, other: &Self, machine: &Machine) -> bool {
+        let widens = matches!(machine.kind_of(self.tool), Some(ToolKind::Reamer | ToolKind::BoringBar));
+        if widens && machine.diameter_of(self.tool).is_none() && self.cut.milled.is_none() {
+            return true;
+        }
         let path = |pass: &Self| 2.0 * pass.cut.milled.map_or(0.0, |circle| circle.radius);
         let diameter = |pass: &Self| pass.diameter(machine);
         let is_comparable = self.tool == other.tool || diameter(self).is_some() || diameter(other).is_some();

@@ -2,7 +2,6 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
-use super::axis_box::AxisBox;
 use super::line::CuttingLine;
 use super::metal::PointInMetal;
 use super::near_metal::{Contact, FeedPart, Judged};
@@ -10,8 +9,8 @@ use super::profile::Profile;
 use super::rapids::PLUNGE_COSINE;
 use super::strip::Line;
 use super::swept_tool::{TipPaths, contact, rim};
-use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart};
-use gcode_lang::motion::{Event, Position};
+use crate::machine::{AxisMotion, ToolPart};
+use gcode_lang::motion::Event;
 
 /// Largest deviation of an arc from the chords by which it removes metal, mm.
 pub(super) const CHORD_TOLERANCE: f64 = 0.005;
@@ -166,6 +165,9 @@ impl HoleExtractor<'_> {
                 false => {}
             }
             self.remove(&chord, &axis);
+            if is_plunge {
+                self.note_hole_stroke(&chord, &axis);
+            }
         }
         if is_judged && worst.is_none() {
             worst = self.shank_contact(path);
@@ -179,39 +181,9 @@ impl HoleExtractor<'_> {
     }
 
     /// Counts a feed if a search for what it cuts has been given up.
-    fn count_unsearched_feed(&mut self, event: &Event<'_>) {
+    pub(super) fn count_unsearched_feed(&mut self, event: &Event<'_>) {
         if self.is_feed_unsearched.take() {
             self.unsearched_feeds.count(|| event.backtrace());
-        }
-    }
-
-    /// Checks the body of the tool in a feed while an axis rotates; the feed is counted where it meets metal that may go.
-    pub(super) fn check_turning_feed(&mut self, event: &Event<'_>, (from, to): (&Position, &Position)) {
-        let Some(body) = self.surface else {
-            if self.positions.is_known(self.machine)
-                && let Some(gouge) = self.turned_body_gouge(&AxisMotion { from, to, arc: None })
-            {
-                self.report_gouge(&event.backtrace(), &[self.pose.tip], gouge);
-            }
-            return self.count_unsearched_feed(event);
-        };
-        if !self.has_left_start || self.metal.holes.is_none() {
-            return;
-        }
-        let (setup, axis) = (self.setup, self.pose.axis);
-        let Some(axis) = axis.filter(|_| self.positions.is_known(self.machine)) else { return };
-        let path = AxisBox::line(self.machine, &setup, from, to);
-        let at = match self.body_contact(&path, None, &axis) {
-            Contact::Clear => return,
-            Contact::Metal(at) => Some(at.point).filter(|at| TOUCH_DEPTH < body.depth(at)),
-            Contact::Unknown => None,
-        };
-        let side = FeedPart::Side { radius: self.body_radius(), slope: 0.0 };
-        match at.and_then(|at| self.metal.gouge(&[at, at], side)) {
-            Some(at) => {
-                self.report_gouge(&event.backtrace(), &[self.pose.tip], Gouge { at, part: ToolRegion::Side })
-            }
-            None => self.unsearched_feeds.count(|| event.backtrace()),
         }
     }
 
@@ -269,8 +241,22 @@ impl HoleExtractor<'_> {
         }
         match self.metal.judged_on(travel, Judged::Kept(FeedPart::Tip, sweeps)) {
             Some(at) => Some(Gouge { at, part: ToolRegion::Tip }),
-            None => self.side_gouge(travel, axis, sweeps).or_else(|| self.gouge_beyond(travel)),
+            None => self
+                .side_gouge(travel, axis, sweeps)
+                .or_else(|| self.middle_gouge(travel, axis, sweeps))
+                .or_else(|| self.gouge_beyond(travel)),
         }
+    }
+
+    /// Returns the gouge that the middle of a tool of unknown diameter makes above its tip in a feed across it.
+    fn middle_gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
+        let is_unsized = self.tool_body.is_empty() && self.pose.axis.is_some();
+        if self.surface.is_none() || !is_unsized || is_along(axis, &(travel[1] - travel[0])) {
+            return None;
+        }
+        let middle = ToolPart::flutes(0.0, f64::INFINITY, 0.0);
+        let at = self.contact_in_feed(&middle, axis, travel, Judged::Kept(FeedPart::Tip, sweeps))?;
+        Some(Gouge { at, part: ToolRegion::Tip })
     }
 
     /// Returns the gouge of a tool that is fed beyond the far side of a hole.

@@ -63,6 +63,8 @@ pub(super) struct CuttingLine {
     uneven_retract: Option<TapRetract>,
     /// True if a tool that only widens or threads a hole is fed into solid metal.
     pub enters_solid: bool,
+    /// Start of the feed inside a hole that it widens.
+    pub start_inside: Option<StartInside>,
     /// Largest change of the spindle while the tool was in the hole.
     pub spindle: SpindleInHole,
     /// Deepest point of the finished strokes.
@@ -92,6 +94,15 @@ pub(super) enum SpindleInHole {
     /// Stopped, and started again in its former direction.
     Restarted,
     Reversed,
+}
+
+/// Start of a feed inside a hole that it widens.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StartInside {
+    /// Depth at which it begins, mm.
+    pub depth: f64,
+    /// Radius to which it widens the hole, mm.
+    pub radius: f64,
 }
 
 /// Feeds inwards without a retract between them.
@@ -144,6 +155,7 @@ impl CuttingLine {
             is_tapping: false,
             uneven_retract: None,
             enters_solid: false,
+            start_inside: None,
             spindle: SpindleInHole::default(),
             deepest: StrokeEnd { depth: 0.0, ..end.clone() },
             stroke: Some(PeckStroke { from_depth: 0.0, end }),
@@ -469,7 +481,7 @@ impl HoleExtractor<'_> {
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.record_line_feed(event, &mut line, &start);
-            self.check_start_inside(&line);
+            self.note_start_inside(&mut line);
             line
         });
     }

@@ -47,6 +47,10 @@ impl HoleExtractor<'_> {
         let is_feeding = next == Some(MotionKind::Feed);
         self.record_length_mismatch(&line);
         self.note_cycle_in_air(&line);
+        let goes_on_across = is_feeding && matches!(exit, ToolExit::Sideways { .. });
+        if !goes_on_across {
+            self.report_start_inside(&line);
+        }
         let tilt = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
         self.check_lift(&line);
         // Depth in the part, computed only where it decides.

@@ -57,7 +57,7 @@ impl HoleExtractor<'_> {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) && !line.is_above_cut(&tip) {
                             self.record_line_feed(event, &mut line, &from);
-                            self.check_start_inside(&line);
+                            self.note_start_inside(&mut line);
                         }
                         line.feed_to(&tip, event.backtrace(), &self.axis_position)
                     }
@@ -136,7 +136,9 @@ impl HoleExtractor<'_> {
             let diameter = self.machine.diameter_of(self.setup.tool);
             diameter.is_some_and(|own| ENTRY_FEED_SHARE * own * self.cutting_state.speed.0 < rate.0)
         };
-        let cuts_nothing = || self.cuts_known_metal(from, &tip) == Some(false);
+        let axis = line.tool_axis.unwrap_or(line.out);
+        let cuts_nothing =
+            || !self.is_finishing(&[*from, tip], &axis) && self.cuts_known_metal(from, &tip) == Some(false);
         if is_in_air || may_turn_idle && cuts_nothing() {
             return;
         }

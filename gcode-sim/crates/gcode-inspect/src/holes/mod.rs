@@ -76,7 +76,7 @@ pub(crate) use swept_tool::ring;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
 use std::cell::Cell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Point3;
 
@@ -98,7 +98,7 @@ use self::strokes::Strokes;
 use self::thread_walls::FlankCut;
 use self::tool_change::ChangeRetract;
 use self::unknown_axes::PositionTracker;
-use self::unsized_tool::UnsizedStroke;
+use self::unsized_tool::{HoleStroke, UnsizedStroke};
 use crate::machine::{AxisMotion, Frame, Machine, Pose, RapidPath, Setup, ToolPart};
 use gcode_lang::control::Dialect;
 use gcode_lang::motion::{
@@ -130,6 +130,8 @@ pub struct HoleExtractor<'m> {
     plunge: Option<Plunge>,
     /// Strokes of a tool of unknown diameter that have not ended.
     unsized_stroke: Option<UnsizedStroke>,
+    /// Strokes in each nominal hole, in the order of the program.
+    hole_strokes: BTreeMap<usize, Vec<HoleStroke>>,
     /// Number of feeds with a gouge.
     gouge_count: u32,
     /// Ends of the first feeds along the tool that go beside the part.
@@ -222,6 +224,7 @@ impl<'m> HoleExtractor<'m> {
             profile: None,
             plunge: None,
             unsized_stroke: None,
+            hole_strokes: BTreeMap::new(),
             gouge_count: 0,
             feeds_in_air: Vec::new(),
             cycles_in_air: Findings::default(),

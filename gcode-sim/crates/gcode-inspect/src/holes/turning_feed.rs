@@ -2,11 +2,12 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
-use super::feed_law::{CHORD_TOLERANCE, COARSE_TOLERANCE, Gouge};
-use super::near_metal::Judged;
+use super::axis_box::AxisBox;
+use super::feed_law::{CHORD_TOLERANCE, COARSE_TOLERANCE, Gouge, ToolRegion};
+use super::near_metal::{Contact, FeedPart, Judged};
 use super::strip::Line;
-use crate::machine::{AxisMotion, Pose};
-use gcode_lang::motion::Event;
+use crate::machine::{AxisMotion, Pose, TOUCH_DEPTH};
+use gcode_lang::motion::{Event, Position};
 use gcode_lang::units::MmPerMin;
 
 /// Largest number of chords of a feed that is followed.
@@ -79,6 +80,36 @@ impl HoleExtractor<'_> {
             Some(([pair[0].tip, pair[1].tip], Unit::try_new(axis, 0.1)?))
         };
         poses.windows(2).flat_map(|pair| [chord(pair), stand(&pair[1])]).collect()
+    }
+
+    /// Checks the body of the tool in a feed while an axis rotates; the feed is counted where it meets metal that may go.
+    pub(super) fn check_turning_feed(&mut self, event: &Event<'_>, (from, to): (&Position, &Position)) {
+        let Some(body) = self.surface else {
+            if self.positions.is_known(self.machine)
+                && let Some(gouge) = self.turned_body_gouge(&AxisMotion { from, to, arc: None })
+            {
+                self.report_gouge(&event.backtrace(), &[self.pose.tip], gouge);
+            }
+            return self.count_unsearched_feed(event);
+        };
+        if !self.has_left_start || self.metal.holes.is_none() {
+            return;
+        }
+        let (setup, axis) = (self.setup, self.pose.axis);
+        let Some(axis) = axis.filter(|_| self.positions.is_known(self.machine)) else { return };
+        let path = AxisBox::line(self.machine, &setup, from, to);
+        let at = match self.body_contact(&path, None, &axis) {
+            Contact::Clear => return,
+            Contact::Metal(at) => Some(at.point).filter(|at| TOUCH_DEPTH < body.depth(at)),
+            Contact::Unknown => None,
+        };
+        let side = FeedPart::Side { radius: self.body_radius(), slope: 0.0 };
+        match at.and_then(|at| self.metal.gouge(&[at, at], side)) {
+            Some(at) => {
+                self.report_gouge(&event.backtrace(), &[self.pose.tip], Gouge { at, part: ToolRegion::Side })
+            }
+            None => self.unsearched_feeds.count(|| event.backtrace()),
+        }
     }
 
     /// Returns the first gouge in what has to stay on a path while an axis rotates; `None` without pockets.

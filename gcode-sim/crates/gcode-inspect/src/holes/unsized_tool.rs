@@ -3,13 +3,14 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::feed_law::{FIT, ON_AXIS, is_along};
-use super::line::CuttingLine;
+use super::line::{CuttingLine, StartInside};
 use super::profile::Profile;
 use super::strip::Line;
 use super::swept_tool::rim;
 use crate::findings::RAPID_INTO_PART;
+use crate::machine::ToolKind;
 use gcode_lang::diag::Diagnostic;
-use gcode_part::Collar;
+use gcode_part::{Collar, PARALLEL_COSINE, SAME_END};
 
 /// Depth in a hole from which on the start of a feed is inside it, mm.
 const MIN_START_DEPTH: f64 = 0.1;
@@ -26,6 +27,24 @@ pub(super) const MAX_RADIUS: f64 = 25.0;
 pub(super) struct UnsizedStroke {
     travel: Line,
     axis: Unit<Vector3<f64>>,
+}
+
+/// Strokes of one tool in a nominal hole, until another one comes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HoleStroke {
+    tool: Option<u32>,
+    is_sized: bool,
+    /// Depth of the deepest tip below the entry, mm.
+    depth: f64,
+}
+
+/// Radii of a tool of unknown diameter in a stroke, mm.
+#[derive(Clone, Copy, Debug)]
+struct StrokeWidth {
+    /// That of the narrowest feature of the holes into which it leads.
+    through: f64,
+    /// That of the feature that ends where the stroke does.
+    end: Option<f64>,
 }
 
 impl UnsizedStroke {
@@ -48,28 +67,36 @@ impl UnsizedStroke {
 }
 
 impl HoleExtractor<'_> {
-    /// Returns the largest radius that a tool of unknown diameter may have in a stroke on the axis of a nominal hole: that of the
-    /// feature that ends there; `None` for a travel beside all holes.
-    fn radius_of_stroke(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> Option<f64> {
-        self.radius_on_axis(travel, axis, |collar, depth| collar.radius_of_stroke(depth))
-    }
-
-    /// Returns the largest radius that the holes on whose axis a travel is have for it and its depth.
-    fn radius_on_axis(
-        &self,
-        travel: &Line,
-        axis: &Unit<Vector3<f64>>,
-        radius: impl Fn(&Collar, f64) -> f64,
-    ) -> Option<f64> {
-        let mut widest: Option<f64> = None;
-        self.metal.around(travel, &mut |collar: &Collar| {
+    /// Returns the radius that a tool of unknown diameter has in a stroke on the axis of nominal holes; `None` beside all of them.
+    fn width_on_axis(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> Option<StrokeWidth> {
+        let (mut least, mut most, mut end): (Option<f64>, Option<f64>, Option<f64>) = (None, None, None);
+        // A hole that the tip has left is above it.
+        let up = axis.into_inner() * self.metal.removed.height_of_metal(&travel[1], axis);
+        let way = [travel[0].inf(&travel[1]), travel[0].sup(&travel[1])];
+        let way = [way[0].inf(&(way[0] + up)), way[1].sup(&(way[1] + up))];
+        self.metal.around(&way, &mut |collar: &Collar| {
             let aside = travel.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
-            if collar.is_parallel(axis) && aside <= ON_AXIS {
-                let depth = travel.iter().map(|p| collar.depth(p)).fold(0.0, f64::max);
-                widest = Some(widest.unwrap_or(0.0).max(radius(collar, depth) - aside));
+            if !collar.is_parallel(axis) || ON_AXIS < aside {
+                return;
+            }
+            let depths = travel.map(|p| collar.depth(&p));
+            let (deepest, highest) = (depths[0].max(depths[1]), depths[0].min(depths[1]));
+            let is_into = 0.0 < axis.dot(&collar.rod.axis);
+            // Of holes on one axis those count into which the stroke leads.
+            let is_entered = match is_into {
+                true => SAME_END < deepest,
+                false => highest < collar.rod.length - SAME_END,
+            };
+            let narrowest = collar.narrowest() - aside;
+            most = Some(most.unwrap_or(0.0).max(narrowest));
+            if is_entered {
+                least = Some(least.unwrap_or(f64::INFINITY).min(narrowest));
+            }
+            if let Some(radius) = collar.radius_ending_at(deepest).filter(|_| is_into) {
+                end = Some(end.unwrap_or(f64::INFINITY).min(radius - aside));
             }
         });
-        widest
+        Some(StrokeWidth { through: least.or(most)?, end })
     }
 
     /// Removes what a straight feed of a tool of unknown diameter cuts of a nominal hole: off the axis as far as its wall, on the axis
@@ -83,7 +110,7 @@ impl HoleExtractor<'_> {
                 milled = Some(milled.unwrap_or(0.0).max(collar.hole_radius - aside));
             }
         });
-        let drilled = self.radius_on_axis(travel, axis, |collar, _| collar.narrowest());
+        let drilled = self.width_on_axis(travel, axis).map(|width| width.through);
         if drilled.is_some()
             && !self.unsized_stroke.as_mut().is_some_and(|stroke| stroke.extend(travel, axis))
         {
@@ -108,9 +135,8 @@ impl HoleExtractor<'_> {
     /// Removes what the last strokes of a tool of unknown diameter have cut of the feature that ends where they do.
     pub(super) fn end_unsized_stroke(&mut self) {
         let Some(UnsizedStroke { travel, axis }) = self.unsized_stroke.take() else { return };
-        let narrowest = self.radius_on_axis(&travel, &axis, |collar, _| collar.narrowest());
-        if let Some(radius) = self.radius_of_stroke(&travel, &axis).filter(|radius| narrowest < Some(*radius))
-        {
+        let Some(StrokeWidth { through, end }) = self.width_on_axis(&travel, &axis) else { return };
+        if let Some(radius) = end.filter(|radius| through < *radius) {
             self.metal.removed.add(travel[0], travel[1], axis, &Profile::flat(radius, true));
         }
     }
@@ -121,13 +147,56 @@ impl HoleExtractor<'_> {
         travel: &[Point3<f64>; 2],
         axis: &Unit<Vector3<f64>>,
     ) -> Option<f64> {
-        if self.tool_radius().is_some() { None } else { self.radius_of_stroke(travel, axis) }
+        if self.tool_radius().is_some() {
+            return None;
+        }
+        self.width_on_axis(travel, axis).map(|width| width.end.unwrap_or(width.through))
     }
 
-    /// Reports a tool that begins its feed inside a hole which it widens, where its own diameter or that of the hole is unknown: it has
+    /// Records how deep a feed along the tool goes in the nominal holes on whose axis it is.
+    pub(super) fn note_hole_stroke(&mut self, [from, to]: &Line, axis: &Unit<Vector3<f64>>) {
+        let Some(holes) = self.metal.holes.clone() else { return };
+        let (tool, is_sized) = (self.setup.tool, self.tool_radius().is_some());
+        holes.around(&from.inf(to), &from.sup(to), &mut |hole| {
+            let collar = holes.collar(hole);
+            let is_on_axis = PARALLEL_COSINE <= axis.dot(&collar.rod.axis) && collar.from_axis(to) <= ON_AXIS;
+            let depth = collar.depth(from).max(collar.depth(to));
+            if !is_on_axis || depth <= 0.0 {
+                return;
+            }
+            let strokes = self.hole_strokes.entry(hole).or_default();
+            match strokes.last_mut().filter(|last| last.tool == tool) {
+                Some(last) => last.depth = last.depth.max(depth),
+                None => strokes.push(HoleStroke { tool, is_sized, depth }),
+            }
+        });
+    }
+
+    /// Returns true if the tool goes as deep in a nominal hole as the last other tool, whose diameter is unknown: that one has left it
+    /// metal, for it is there to cut. A thread has metal of its own.
+    pub(super) fn is_finishing(&self, [from, to]: &Line, axis: &Unit<Vector3<f64>>) -> bool {
+        let (tool, kind) = (self.setup.tool, self.machine.kind_of(self.setup.tool));
+        if matches!(kind, Some(ToolKind::Tap | ToolKind::Probe)) {
+            return false;
+        }
+        let Some(holes) = self.metal.holes.as_deref() else { return false };
+        let mut is_finishing = false;
+        holes.around(&from.inf(to), &from.sup(to), &mut |hole| {
+            let collar = holes.collar(hole);
+            let is_on_axis = PARALLEL_COSINE <= axis.dot(&collar.rod.axis) && collar.from_axis(to) <= ON_AXIS;
+            let Some(strokes) = self.hole_strokes.get(&hole).filter(|_| is_on_axis) else { return };
+            let depth = collar.depth(to);
+            let is_before =
+                |stroke: &&HoleStroke| stroke.tool != tool && collar.have_same_end(stroke.depth, depth);
+            is_finishing |= strokes.iter().rfind(is_before).is_some_and(|stroke| !stroke.is_sized);
+        });
+        is_finishing
+    }
+
+    /// Records where a tool begins its feed inside a hole which it widens, where its own diameter or that of the hole is unknown: it has
     /// come down through the metal that it is there to cut.
-    pub(super) fn check_start_inside(&mut self, line: &CuttingLine) {
-        if !line.is_inward() {
+    pub(super) fn note_start_inside(&self, line: &mut CuttingLine) {
+        if !line.is_inward() || line.start_inside.is_some() {
             return;
         }
         let axis = line.tool_axis.unwrap_or(line.out);
@@ -135,7 +204,12 @@ impl HoleExtractor<'_> {
             Some(_) => self.start_in_open_hole(line, &axis),
             None => self.start_of_unsized(line, &axis),
         };
-        let Some((depth, radius)) = widened else { return };
+        line.start_inside = widened.or_else(|| self.start_of_finishing(line, &axis));
+    }
+
+    /// Reports a tool that has begun its feed inside a hole which it widens. A mill that goes on across widens it there.
+    pub(super) fn report_start_inside(&mut self, line: &CuttingLine) {
+        let Some(StartInside { depth, radius }) = line.start_inside else { return };
         self.findings.add(&RAPID_INTO_PART, line.backtrace(), 0, |kind| {
             let name = line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
             let message = format!(
@@ -147,9 +221,30 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Returns the depth at which a tool of known diameter begins in a hole whose diameter the reference doesn't have, and the tool's
-    /// radius there, if no feed has made the hole as wide above it.
-    fn start_in_open_hole(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<(f64, f64)> {
+    /// Returns where a tool begins in the hole that it finishes, if nothing wider is cut above it.
+    fn start_of_finishing(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<StartInside> {
+        let (start, tip) = (line.start, self.pose.tip);
+        if !self.is_finishing(&[start, tip], axis) {
+            return None;
+        }
+        let own = self.tool_radius();
+        let width = self.width_on_axis(&[start, tip], axis)?;
+        let made = width.end.unwrap_or(width.through);
+        let radius = own.unwrap_or(made);
+        let depth = self.depth_on_axis(&start, axis, |_| true).filter(|depth| MIN_START_DEPTH < *depth)?;
+        let above = start + axis.into_inner() * depth;
+        let wider = radius.max(made) + 2.0 * FIT;
+        let is_cut = |offset: Vector3<f64>| {
+            self.metal.cuts(&(start + offset), &(above + offset)) == Some(true)
+                || self.metal.cuts_open_wall(&[start + offset, above + offset], axis, wider)
+        };
+        let rim = rim(axis, &Vector3::zeros(), wider);
+        rim.into_iter().any(is_cut).then_some(StartInside { depth, radius })
+    }
+
+    /// Returns where a tool of known diameter begins in a hole whose diameter the reference doesn't have, if no feed has made the hole
+    /// as wide above it.
+    fn start_in_open_hole(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<StartInside> {
         let depth = self.depth_in_open_hole(&line.start, axis).filter(|depth| MIN_START_DEPTH < *depth)?;
         let (height, radius) = self.widest_in_open_hole(&line.start, axis)?;
         let out = axis.into_inner();
@@ -157,16 +252,26 @@ impl HoleExtractor<'_> {
         let rim = rim(axis, &Vector3::zeros(), radius - FIT);
         let is_cut =
             |offset: Vector3<f64>| self.metal.cuts_open_wall(&[wide + offset, above + offset], axis, radius);
-        rim.into_iter().any(is_cut).then_some((depth, radius))
+        rim.into_iter().any(is_cut).then_some(StartInside { depth, radius })
     }
 
     /// Returns the depth of a tip on the axis of a hole whose diameter the reference doesn't have, mm; `None` beside all of them.
     fn depth_in_open_hole(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<f64> {
+        self.depth_on_axis(tip, axis, |collar| !collar.has_diameter)
+    }
+
+    /// Returns the largest depth of a tip below the entries of the nominal holes that count and on whose axis it is, mm.
+    fn depth_on_axis(
+        &self,
+        tip: &Point3<f64>,
+        axis: &Unit<Vector3<f64>>,
+        is_counted: impl Fn(&Collar) -> bool,
+    ) -> Option<f64> {
         let mut deepest: Option<f64> = None;
         let top = tip + axis.into_inner() * self.metal.removed.height_of_metal(tip, axis);
         self.metal.around(&[*tip, top], &mut |collar| {
             let is_on_axis = collar.is_parallel(axis) && collar.from_axis(tip) <= ON_AXIS;
-            if !collar.has_diameter && is_on_axis {
+            if is_on_axis && is_counted(collar) {
                 deepest = Some(deepest.unwrap_or(0.0).max(collar.depth(tip)));
             }
         });
@@ -188,23 +293,17 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Returns the depth at which a tool of unknown diameter begins in a hole, and the radius to which it widens that, if the metal
-    /// above it is not removed.
-    fn start_of_unsized(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<(f64, f64)> {
+    /// Returns where a tool of unknown diameter begins in a hole that is cut on its axis, if the metal round that is not removed above it.
+    fn start_of_unsized(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<StartInside> {
         let (start, tip) = (line.start, self.pose.tip);
-        let mut begun = None;
-        self.metal.around(&[start, tip], &mut |collar| {
-            let (depth, radius) = (collar.depth(&start), collar.widened_at(collar.depth(&tip)));
-            let is_on_axis = collar.is_parallel(axis) && collar.from_axis(&tip) <= ON_AXIS;
-            if let Some(radius) = radius.filter(|_| is_on_axis && MIN_START_DEPTH < depth) {
-                begun = Some((depth, radius));
-            }
-        });
-        let (depth, radius) = begun?;
+        let radius = self.width_on_axis(&[start, tip], axis)?.end?;
+        let is_into = |collar: &Collar| 0.0 < axis.dot(&collar.rod.axis);
+        let depth = self.depth_on_axis(&start, axis, is_into).filter(|depth| MIN_START_DEPTH < *depth)?;
         let above = start + axis.into_inner() * depth;
-        let rim = rim(axis, &Vector3::zeros(), radius - FIT);
         let is_cut =
             |offset: Vector3<f64>| self.metal.cuts(&(start + offset), &(above + offset)) == Some(true);
-        if rim.into_iter().any(is_cut) { begun } else { None }
+        let is_widened =
+            !is_cut(Vector3::zeros()) && rim(axis, &Vector3::zeros(), radius - FIT).into_iter().any(is_cut);
+        is_widened.then_some(StartInside { depth, radius })
     }
 }

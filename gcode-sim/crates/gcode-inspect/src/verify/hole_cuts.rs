@@ -25,6 +25,8 @@ pub(super) struct Cut<'a> {
     /// Hand of the tool; `None` if the machine file has none.
     pub hand: Option<Hand>,
     pub point: PointShape,
+    /// True for the circle of a mill of unknown kind: it may be a chamfer mill.
+    pub may_be_cone: bool,
     /// Helix of a mill along a thread; `None` if it makes none.
     pub thread: Option<Helix>,
     /// True for a void of the stock, which was there before the program.
@@ -49,6 +51,8 @@ impl<'a> Cut<'a> {
             };
             // A circle is that of an end mill, or of a chamfer mill.
             let is_end_mill = is_milled && point == PointShape::Flat;
+            let may_be_cone = is_milled
+                && tool.is_none_or(|tool| tool.kind.is_none() && tool.point() == PointShape::Unknown);
             Self {
                 pass,
                 thread,
@@ -57,6 +61,7 @@ impl<'a> Cut<'a> {
                 kind: tool.and_then(|tool| tool.kind).or(is_end_mill.then_some(ToolKind::EndMill)),
                 hand: tool.and_then(|tool| tool.hand),
                 point,
+                may_be_cone,
                 is_void: false,
             }
         };
@@ -102,6 +107,9 @@ impl<'a> Cut<'a> {
 
     /// Returns false if a tool of this kind can't make a feature.
     fn can_make(&self, feature: FeatureKind) -> bool {
+        if self.may_be_cone && feature == FeatureKind::Countersink {
+            return self.thread.is_none();
+        }
         self.kind.is_none_or(|kind| match self.thread {
             Some(_) => feature == FeatureKind::Tap && !kind.cuts_with_end(),
             // The flat end of a drill leaves the floor of a counterbore.
@@ -144,9 +152,12 @@ impl<'a> Cut<'a> {
         ))
     }
 
-    /// Returns the depth of the tip; of a cone that is milled round the axis, that of the point of the whole cone.
+    /// Returns the depth of the tip; of a cone that is milled round the axis, that of the point of the whole cone. A mill of unknown
+    /// shape has the angle of the countersink.
     fn cone_tip(&self, feature: &Feature) -> f64 {
-        match (feature.kind, self.point) {
+        let stated = feature.angle.filter(|_| self.may_be_cone);
+        let point = stated.map_or(self.point, |angle| PointShape::Pointed(Deg(angle)));
+        match (feature.kind, point) {
             (FeatureKind::Countersink, PointShape::Pointed(angle)) => {
                 self.tip + self.path_radius() / Deg(angle.0 / 2.0).tan()
             }
@@ -176,6 +187,7 @@ impl<'a> Cut<'a> {
         if let (FeatureKind::Countersink, Some(angle)) = (feature.kind, feature.angle) {
             let is_narrow = |own: f64| exceeds(feature.diameter - own, tolerances.diameter);
             return match self.point {
+                PointShape::Flat if self.may_be_cone => Some(1e3 + deep),
                 PointShape::Flat => None,
                 _ if self.pass.diameter.is_some_and(is_narrow) => None,
                 PointShape::Pointed(own) => {

@@ -240,7 +240,8 @@ impl Judgement<'_> {
     fn judge_depth(&mut self, feature: &Feature, cut: &Cut<'_>) {
         let limit = self.comparison.tolerances.depth;
         let nominal = feature.bottom();
-        if feature.kind == FeatureKind::Countersink && cut.point == PointShape::Unknown {
+        let is_cone_open = cut.point == PointShape::Unknown || cut.may_be_cone;
+        if feature.kind == FeatureKind::Countersink && is_cone_open {
             self.gaps.push(ShapeGap::Angle(cut.pass.tool));
         }
         if feature.kind == FeatureKind::Counterbore && cut.point == PointShape::Unknown {

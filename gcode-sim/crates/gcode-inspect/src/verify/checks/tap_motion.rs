@@ -23,14 +23,21 @@ const WHITWORTH_DEPTH: f64 = 1.280_654;
 const MAX_THREAD_DEPTH: f64 = 2.0;
 
 /// Reports a tap that leaves its thread by a rapid, at another feed a revolution than it came in, or without a reversed spindle.
-pub(super) fn uneven_retract(judged: &Judgement<'_>, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
+/// `diameter` is that of the thread, if it is known.
+pub(super) fn uneven_retract(
+    judged: &Judgement<'_>,
+    diameter: Option<f64>,
+    cut: &Cut<'_>,
+) -> Option<Diagnostic> {
     let retract = cut.pass.cut.uneven_retract?;
     let Hole { entry, axis, .. } = judged.nominal;
     let depth = (Point3::from(*entry) - retract.from).dot(&Vector3::from(*axis));
-    // Above the entry, and where the hole is wider than the thread, it is free.
-    let wide = |other: &Cut<'_>| {
-        let own = other.pass.diameter.filter(|own| !other.is_thread() && feature.diameter <= *own)?;
-        Some(other.full_depth(own).unwrap_or(other.tip))
+    // Above the entry, and where the hole is wider than the thread, it is free: in its mouth, if the thread's own diameter is unknown.
+    let wide = |other: &Cut<'_>| match (other.pass.diameter, diameter) {
+        _ if other.is_thread() => None,
+        (Some(own), Some(thread)) => (thread <= own).then(|| other.full_depth(own).unwrap_or(other.tip)),
+        (_, None) => Some(other.tip).filter(|tip| *tip < cut.tip * CORE_SHARE),
+        (None, Some(_)) => None,
     };
     let free = judged.near.iter().filter_map(wide).fold(0.0, f64::max);
     if depth <= free + NOISE {

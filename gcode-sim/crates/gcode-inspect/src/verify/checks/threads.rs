@@ -82,7 +82,7 @@ fn judge_side(judged: &mut Judgement<'_>) {
         let turns = turns(judged, feature, cut);
         let faults = [
             turns.iter().find_map(|cut| pitch(id, feature, cut)),
-            turns.iter().find_map(|cut| tap_motion::uneven_retract(judged, feature, cut)),
+            turns.iter().find_map(|cut| tap_motion::uneven_retract(judged, Some(feature.diameter), cut)),
             tap_motion::narrow(judged, feature, cut),
             turns.iter().find_map(|cut| hand(id, feature, cut)),
             turns.iter().find_map(|cut| tapered(id, cut, width)),
@@ -94,6 +94,10 @@ fn judge_side(judged: &mut Judgement<'_>) {
             Some(MilledLength::Comb) => judged.gaps.push(ShapeGap::ThreadLength(cut.pass.tool)),
             None => {}
         }
+    }
+    if stated_threads(nominal).is_empty() {
+        let taps = judged.near.iter().filter(|cut| cut.is_thread() && cut.thread.is_none());
+        findings.extend(taps.filter_map(|tap| tap_motion::uneven_retract(judged, tap.pass.diameter, tap)));
     }
     judged.findings.extend(findings);
 }

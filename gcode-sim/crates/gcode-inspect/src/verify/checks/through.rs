@@ -72,13 +72,27 @@ pub(super) fn rim_thickness(surface: &Surface, hole: &Hole, radius: f64) -> f64 
     far.map(|far| (far - entry).dot(&into)).fold(thickness(surface, hole), f64::max)
 }
 
-/// Returns true if a hole ends in stated pockets with its whole rim: there its depth is the thickness of the part.
-fn ends_in_pocket(pockets: &[Surface], hole: &Hole, radius: f64) -> bool {
+/// Returns the depth at which a hole has opened with its whole rim into stated pockets or voids, if its axis ends in one: there its
+/// depth is the thickness of the part. Into a round one the rim opens deeper than the axis.
+fn opening_depth(openings: &[Surface], hole: &Hole, radius: f64) -> Option<f64> {
     let out = Unit::new_normalize(Vector3::from(hole.axis));
-    let below = Point3::from(hole.entry) - out.into_inner() * (hole.depth + BELOW_FAR_SIDE);
-    let is_in_one = |point: Point3<f64>| pockets.iter().any(|pocket| pocket.value(&point) < 0.0);
-    is_in_one(below)
-        && ring(&out, &Vector3::zeros(), radius, RIM_POINTS).iter().all(|offset| is_in_one(below + offset))
+    let start = hole.depth + BELOW_FAR_SIDE;
+    let below = Point3::from(hole.entry) - out.into_inner() * start;
+    if !openings.iter().any(|opening| opening.value(&below) < 0.0) {
+        return None;
+    }
+    let reach = 2.0 * radius;
+    let opens = |offset: Vector3<f64>| {
+        let from = below + offset;
+        let to = from - out.into_inner() * reach;
+        let first = |opening: &Surface| match opening.value(&from) < 0.0 {
+            true => Some(hole.depth),
+            false => opening.piece(&from, &to, 0.0).map(|[first, _]| start + reach * first),
+        };
+        openings.iter().filter_map(first).reduce(f64::min)
+    };
+    let rim = ring(&out, &Vector3::zeros(), radius, RIM_POINTS).into_iter();
+    rim.map(opens).try_fold(hole.depth, |deepest, opens| Some(deepest.max(opens?)))
 }
 
 /// Returns the depth at which solid metal begins below a hole that ends in a pocket, on its axis and above a tip.
@@ -137,7 +151,7 @@ impl Judgement<'_> {
         let (nominal, slack) = (self.nominal, self.comparison.tolerances.depth);
         let radius = nominal.widest_diameter().unwrap_or(0.0) / 2.0;
         let is_last = self.followers.is_empty();
-        let ends_there = || is_last && ends_in_pocket(self.blank.openings, nominal, radius);
+        let ends_there = || is_last && opening_depth(self.blank.openings, nominal, radius).is_some();
         let Some(surface) = surface.filter(|_| ends_there()) else { return };
         let body = (&surface, self.blank.openings);
         let metal =
@@ -220,13 +234,12 @@ impl Judgement<'_> {
         }
         // A coaxial hole from the far side is the rest of this one, and above one that follows it the part is open.
         let depth = depth.min(self.comparison.counter_depth(self.nominal, diameter));
-        let is_open =
-            !self.followers.is_empty() || ends_in_pocket(self.blank.openings, self.nominal, diameter / 2.0);
-        let depth = match self.comparison.bore_at_end(self.nominal) {
-            _ if is_open => depth.min(self.nominal.depth),
-            Some(bore) => depth.min(bore.opens),
-            None => depth,
+        let opens = match self.followers.is_empty() {
+            true => opening_depth(self.blank.openings, self.nominal, diameter / 2.0),
+            false => Some(self.nominal.depth),
         };
+        let bore = || self.comparison.bore_at_end(self.nominal).map(|bore| bore.opens);
+        let depth = opens.or_else(bore).map_or(depth, |opens| depth.min(opens));
         if exceeds(depth, cut) {
             let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
             let message =

@@ -1,5 +1,6 @@
 //! Cuts that a kind of tool can't make: a reamer, a boring bar or a tap in solid metal, a circle by a tool that cuts with its end.
 use super::features::{Judgement, ShapeGap, drilled_depths};
+use super::through::rim_thickness;
 use super::*;
 use crate::findings::TOOL_KIND;
 use crate::holes::PassCut;
@@ -196,7 +197,11 @@ fn in_solid(
     };
     let (drilled, slack) = (deepest(before), judged.comparison.tolerances.depth);
     let from_other_side = deepest(others);
-    if judged.is_drilled_through(drilled, from_other_side) || !exceeds(cut.tip - drilled, slack) {
+    // Below the far side of the part there is nothing to drill.
+    let radius = cut.pass.diameter.map_or(0.0, |own| own / 2.0);
+    let thickness = judged.blank.body.map(|body| rim_thickness(&body, judged.nominal, radius));
+    let is_out = thickness.is_some_and(|thickness| 0.0 < thickness && !exceeds(thickness, drilled));
+    if is_out || judged.is_drilled_through(drilled, from_other_side) || !exceeds(cut.tip - drilled, slack) {
         return None;
     }
     let kind = cut.kind.map_or("tool", ToolKind::name);
