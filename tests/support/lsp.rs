@@ -11,7 +11,7 @@
 //! - `-> METHOD {…}` and `<- {…}` or `<- error -32602 ~words`: a request and its answer, which `json` compares. `$O1.nc`
 //!   is the URI of a file.
 //! - `notify METHOD {…}`; `server METHOD ~words`: waits for a message of the server; `reply METHOD {…}`: answers its request.
-//! - `never METHOD`: the server has sent no such request that no step has taken.
+//! - `never METHOD`: fails if a request METHOD has come that no step took; behind a step that waits for a later message.
 //! - `eol crlf`: lines behind `|` end with CR LF from here on.
 use std::collections::VecDeque;
 use std::path::Path;

@@ -59,9 +59,14 @@ fn is_list_in_place_of_program(argument: &OsString) -> bool {
 /// Returns the right place of a file among the arguments, if it is in a place where none goes.
 fn tip_for_files(given: &[OsString]) -> Option<String> {
     if given.get(1).is_some_and(|one| one == "new") {
-        let is_of_list =
-            given.get(2).is_some_and(|one| one == "reference") && !given.contains(&"--from".into());
-        return is_of_list.then(|| "the program goes behind --from, and the list behind -o".to_owned());
+        if given.get(2).is_none_or(|one| one != "reference") {
+            return None;
+        }
+        let is_from = |one: &OsString| one == "--from" || one.to_string_lossy().starts_with("--from=");
+        return Some(match given.iter().any(is_from) {
+            true => "the list goes behind -o".to_owned(),
+            false => "the program goes behind --from, and the list behind -o".to_owned(),
+        });
     }
     let list = given.iter().find(|one| is_list_in_place_of_program(one))?;
     Some(format!("{} goes behind --reference; the program is given alone", list.to_string_lossy()))
@@ -116,7 +121,9 @@ mod tests {
         let tip = |line: &str| tip_for_files(&line.split(' ').map(OsString::from).collect::<Vec<_>>());
         let from = Some("the program goes behind --from, and the list behind -o".to_owned());
         assert_eq!(tip("gcode-sim new reference O1.nc -o x.csv"), from);
-        assert_eq!(tip("gcode-sim new reference --from O1.nc x.csv"), None);
+        let list = Some("the list goes behind -o".to_owned());
+        assert_eq!(tip("gcode-sim new reference --from O1.nc x.csv"), list);
+        assert_eq!(tip("gcode-sim new reference --from=O1.nc x.csv"), list);
         assert_eq!(tip("gcode-sim new machine x.toml"), None);
         let behind = Some("x.csv goes behind --reference; the program is given alone".to_owned());
         assert_eq!(tip("gcode-sim verify O1.nc x.csv"), behind);

@@ -148,9 +148,6 @@ fn is_western(bytes: &[u8]) -> bool {
 
 /// Returns the entries of a folder, sorted by name.
 pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
-    if path.is_file() {
-        return Err(UsageError::new(format!("{} is a file: give the folder that holds it", path.display())));
-    }
     let unreadable = |error: std::io::Error| UsageError::unreadable(path, error);
     let entries = std::fs::read_dir(path).map_err(unreadable)?;
     let mut paths =

@@ -32,7 +32,7 @@ impl Planner<'_> {
     fn plan_length_offset(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
         let is_compensation_on =
             |row: &&GCodeRow| matches!(row.effect, Effect::Length(length) if length != Length::Off);
-        if self.ends_length_of_haas() {
+        if self.cancels_length_offset() {
             plan.state.modal_words.h = 0;
         }
         if let Some(row) = self.words.g_codes().find(is_compensation_on)
@@ -124,6 +124,9 @@ impl Planner<'_> {
         }
         let mut endpoint = self.resolve_endpoint(plan)?;
         if points_tool {
+            if is_arc {
+                self.check_arc_of_tip()?;
+            }
             self.point_tool(&plan.state, &mut endpoint)?;
         }
         if motion == Motion::Thread && self.words.corner.is_some() {
@@ -330,7 +333,6 @@ impl Planner<'_> {
         let start = (state.programmed_position[plane.0], state.programmed_position[plane.1]);
         let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
-        self.check_arc_of_tip(state)?;
         if !self.data.settings.alarms_without_centre && !self.words.has_any(b"IJKR") {
             if state.modal.cutter != CutterSide::Off {
                 return Err(self.not_simulated("an arc without R and I J K in cutter compensation"));

@@ -2,6 +2,7 @@
 //! block.
 use gcode_lang::control::assumed_machine_value;
 use gcode_lang::diag::FindingKind;
+use gcode_lang::program::PROGRAM_ZERO_NOTE;
 use gcode_lang::program::g_codes::{name, spelled};
 
 gcode_lang::finding_kinds! {
@@ -231,7 +232,7 @@ impl Note {
             Self::MachineValueUnknown { number, item } => (&MACHINE_VALUE, match item { Some(item) => format!("#{number}.{item} reads as {}: nothing states its value on the machine", assumed_machine_value(number, item.into())), None => format!("#{number} reads as 0: nothing states its value on the machine") }, "give its value with --input, written '#NUMBER=VALUE', or in the control file"),
             Self::Engraving { characters, height } => (&ENGRAVED_TEXT, format!("not checked: engraving: the strokes of G47 are in a box of {} mm by {} mm that begins at X and Y, and the run makes one cut along its base", f64::from(characters * height) / 1000.0, f64::from(height) / 1000.0), "check the text on the control"),
             Self::PocketClearing => (&POCKET_CLEARING, "not checked: pocket clearing: the run makes one cut along the outline of G150, at its full depth, and none of the passes before it".into(), "check the clearing passes on the control"),
-            Self::ProgramZero => (&PROGRAM_ZERO, "O0 is no program number: a control refuses it (PS0074) unless the operator gives another one when it is read".into(), "write O1 to O99999999"),
+            Self::ProgramZero => (&PROGRAM_ZERO, PROGRAM_ZERO_NOTE.0.into(), PROGRAM_ZERO_NOTE.1),
             Self::MainRepeats => (&MAIN_REPEATS, "M99 ends the main program: a control starts it again for ever, the run ends after the first pass".into(), "end it with M30, or state the passes with --cycles 1"),
             Self::EndInCall => (&END_IN_CALL, "this block ends the run in a called program: nothing behind the call is executed".into(), "write M99 where the caller goes on"),
             Self::NoKinematics(code @ (542 | 544)) => (&NO_KINEMATICS, format!("the offsets of {} are taken as 0: nothing states them, and where X, Y and Z are on the part is unknown", name(code)), "write the offset into a work offset, or end it with P0"),

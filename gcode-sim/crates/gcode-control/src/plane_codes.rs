@@ -89,8 +89,8 @@ impl Planner<'_> {
         Ok(vector)
     }
 
-    /// Returns I, J and K as a direction of any length, 0 for those that the block lacks. It has no unit: a number with a decimal
-    /// point, and a computed one, count with all their digits, unless a setting says otherwise.
+    /// Returns I, J and K as a direction of any length, 0 for those that the block lacks. A number with a decimal point, and a
+    /// computed one, count with all their digits unless a setting says otherwise, one without a point in increments.
     pub(super) fn direction_ijk(&self, state: &State) -> ExecResult<Vector> {
         let has_increments = self.data.settings.undocumented.directions_have_increments;
         let mut direction = [0.0; 3];

@@ -212,9 +212,9 @@ impl Planner<'_> {
         state.modal.length == Length::TipByVector && self.words.has_any(b"IJK")
     }
 
-    /// In G43.5 only R gives an arc (A-79348E).
-    pub(super) fn check_arc_of_tip(&self, state: &State) -> ExecResult<()> {
-        if !self.points_tool(state) || self.words.has(b'R') {
+    /// Refuses an arc of G43.5 with I J K and without R: there they are the tool's direction (A-79348E, G43.5).
+    pub(super) fn check_arc_of_tip(&self) -> ExecResult<()> {
+        if self.words.has(b'R') {
             return Ok(());
         }
         let what = "an arc without R in G43.5, where I J K are the direction of the tool at its end";
@@ -222,7 +222,7 @@ impl Planner<'_> {
     }
 
     /// Returns true for G234 of a Haas without H: it ends G43 and its H (Haas Mill Operator's Manual, G234).
-    pub(super) fn ends_length_of_haas(&self) -> bool {
+    pub(super) fn cancels_length_offset(&self) -> bool {
         let is_tip_of_haas = |effect| effect == Effect::Length(Length::TipOfHaas);
         !self.words.has(b'H') && self.words.has_non_motion_code(is_tip_of_haas)
     }

@@ -94,3 +94,39 @@ impl JumpTargets {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the targets of a program's blocks below 100; `None` if one is computed.
+    fn targets(blocks: &str) -> Option<Vec<u32>> {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", format!("O1\n{blocks}\nM30\n").into_bytes());
+        let program = memory.get(memory.ids().next().unwrap());
+        let all: Vec<OpIndex> = (0..program.block_count()).collect();
+        let targets = JumpTargets::of(program, &all);
+        (!targets.is_computed).then(|| (0..100).filter(|number| targets.has(*number)).collect())
+    }
+
+    #[test]
+    fn each_kind_of_jump_has_its_target() {
+        for (blocks, expected) in [
+            ("G1 X10. F20.", Some(vec![])),
+            ("GOTO 10", Some(vec![10])),
+            ("IF[#1EQ2]GOTO 20", Some(vec![20])),
+            ("#1=2 GOTO 30", Some(vec![30])),
+            ("IF[#1EQ2]THEN GOTO 40", Some(vec![40])),
+            ("M97 P50", Some(vec![50])),
+            ("M96 P60 Q1", Some(vec![60])),
+            ("M99 P70", Some(vec![70])),
+            ("M98 P2 Q80", Some(vec![80])),
+            ("M98 P2", Some(vec![])),
+            ("GOTO 10\nGOTO 11", Some(vec![10, 11])),
+            ("GOTO #1", None),
+            ("M99 P#1", None),
+        ] {
+            assert_eq!(targets(blocks), expected, "{blocks}");
+        }
+    }
+}

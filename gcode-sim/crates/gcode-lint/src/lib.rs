@@ -69,7 +69,7 @@ use gcode_lang::syntax::KnownBlocks;
 use loader::Loader;
 use piece_ends::PieceSizes;
 use pieces::PieceRules;
-pub use variables::variables_read;
+pub use variables::{is_common, variables_read};
 
 /// Result of a check: the findings and the texts they refer to.
 #[derive(Debug)]

@@ -1,5 +1,5 @@
 //! Variables that a block reads, with the use of each value: some uses tolerate a vacant variable.
-use gcode_lang::program::OpIndex;
+use gcode_lang::program::{OpIndex, Slot};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Block, Expr, ExprKind, Item, Statement};
 
@@ -24,6 +24,11 @@ pub(crate) struct VariableUses {
 
 pub(super) fn block_reads(block: &Block) -> Vec<VariableRead> {
     VariableUses::of(block_expressions(block)).reads
+}
+
+/// Returns true for a common variable of every control.
+pub fn is_common(number: u32) -> bool {
+    (100..=999).contains(&number) && matches!(Slot::of(number), Slot::Free(_))
 }
 
 /// Returns the numbers of the variables that a block reads by number or by name, without duplicates.

@@ -57,6 +57,8 @@ pub(crate) struct ServerState {
     out: Sender<Message>,
     checks: Sender<CheckJob>,
     next_request: i32,
+    /// Request to the client to ask for hints again, until it answers.
+    pub hint_refresh: Option<RequestId>,
     /// Control of each document.
     settings: BTreeMap<FileId, Settings>,
     /// On what the diagnostics of each document rest.
@@ -108,6 +110,7 @@ impl ServerState {
             out,
             checks,
             next_request: 0,
+            hint_refresh: None,
             settings: BTreeMap::new(),
             checked: BTreeMap::new(),
             changes: 0,
@@ -294,11 +297,11 @@ impl ServerState {
         let others = self.checked.iter().filter(|(other, _)| **other != file);
         let others = others.filter(|(_, basis)| basis.rests_on(&path, has_other_programs));
         let others: Vec<_> = others.map(|(other, _)| *other).collect();
-        let is_called_open = self.checked.get(&file).is_some_and(|basis| {
-            let called = basis.called.iter().filter(|called| **called != path);
-            called.into_iter().any(|called| self.snapshot.files.is_open(called))
+        let calls_open_document = self.checked.get(&file).is_some_and(|basis| {
+            let mut called = basis.called.iter().filter(|called| **called != path);
+            called.any(|called| self.snapshot.files.is_open(called))
         });
-        if is_called_open || others.iter().any(|other| self.snapshot.documents.contains_key(other)) {
+        if calls_open_document || others.iter().any(|other| self.snapshot.documents.contains_key(other)) {
             self.refresh_hints();
         }
         for other in others {
@@ -307,9 +310,10 @@ impl ServerState {
     }
 
     /// Has the client ask again for hints: those of open documents may rest on a text that another document changed.
+    /// It asks for all of them: a request that it has not answered yet serves for this change too.
     fn refresh_hints(&mut self) {
-        if self.snapshot.client.can_refresh_hints {
-            self.ask::<InlayHintRefreshRequest>(());
+        if self.snapshot.client.can_refresh_hints && self.hint_refresh.is_none() {
+            self.hint_refresh = Some(self.ask::<InlayHintRefreshRequest>(()));
         }
     }
 
@@ -337,11 +341,16 @@ impl ServerState {
         }
         let files: Vec<_> = self.snapshot.documents.keys().chain(self.checked.keys()).copied().collect();
         let files: BTreeSet<_> = files.into_iter().collect();
+        let mut has_other_settings = false;
         for file in files {
-            self.take_settings(file);
+            has_other_settings |= self.take_settings(file);
             if self.snapshot.documents.contains_key(&file) || self.checked.contains_key(&file) {
                 self.check(file, false);
             }
+        }
+        // The dialect tells the kinds of codes and variables.
+        if has_other_settings && self.snapshot.client.can_refresh_tokens {
+            self.ask::<SemanticTokensRefresh>(());
         }
     }
 
@@ -371,15 +380,11 @@ impl ServerState {
         self.changed_on_disk(&all);
     }
 
-    /// Notes the control of a document.
-    fn take_settings(&mut self, file: FileId) {
+    /// Takes the control of a document over; returns true if it had another one.
+    fn take_settings(&mut self, file: FileId) -> bool {
         let settings = self.snapshot.setup(file).settings;
         let before = self.settings.insert(file, settings);
-        // The dialect tells the kinds of codes and variables.
-        let is_other = before.is_some_and(|before| self.settings.get(&file) != Some(&before));
-        if is_other && self.snapshot.client.can_refresh_tokens {
-            self.ask::<SemanticTokensRefresh>(());
-        }
+        before.is_some_and(|before| self.settings.get(&file) != Some(&before))
     }
 
     /// Has the index read for the control of a document.

@@ -41,8 +41,9 @@ impl Surface {
     /// Returns true if a frustum touches the body while it moves by `along`, false if it certainly does not.
     ///
     /// Body and swept frustum are convex: alternating projections onto them converge to their nearest points (von
-    /// Neumann), slowly where they meet at a small angle; the limit of equally shrinking steps is tried (Aitken). Their distance at each part of the travel is a convex function: its
-    /// slope then says in which half the least one is. What stays open counts as contact.
+    /// Neumann), slowly where they meet at a small angle; the limit of equally shrinking steps is tried (Aitken). The
+    /// distance between body and frustum is a convex function of the share of the travel, so that the sign of its slope
+    /// tells in which half the least one lies. What is undecided after [`MAX_HALVED`] halvings counts as contact.
     pub fn touches(&self, frustum: &Frustum, along: &Vector3<f64>) -> bool {
         let decided = |p: &Point3<f64>| self.foot_of_gap(p, frustum, along);
         let mut p = frustum.base;

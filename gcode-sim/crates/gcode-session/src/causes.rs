@@ -14,7 +14,8 @@ use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Block, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
 use gcode_lint::{
-    ControlKnowledge, check_loaded, main_programs, programs_called_by_others, rules, variables_read,
+    ControlKnowledge, check_loaded, is_common, main_programs, programs_called_by_others, rules,
+    variables_read,
 };
 
 /// Rules about what a run does not show, or shows better: it finds the programs that it calls, and alarms at their end.
@@ -158,17 +159,30 @@ pub(super) fn unchanged_counter(control: &Control, first: Span, last: Span) -> O
     })
 }
 
-/// Returns the help for blocks that repeat without change: how the variable of a wait gets a value.
+/// Returns the help for blocks that repeat without change: how a variable that their conditions test gets another value.
 pub(super) fn endless_help(control: &Control, first: Span, last: Span) -> String {
-    let looped = looped_blocks(control, first, last);
-    let read: Vec<u32> = looped.iter().flat_map(variables_read).collect();
-    let input = read.iter().find(|number| Settings::is_input(**number));
-    let common = || read.iter().find(|number| (100..1000).contains(*number));
+    let is_condition = |item: &Item| match item {
+        Item::Statement(statement) => {
+            matches!(
+                statement.node,
+                Statement::While { .. } | Statement::IfGoto { .. } | Statement::IfThen { .. }
+            )
+        }
+        _ => false,
+    };
+    let mut looped = looped_blocks(control, first, last);
+    looped.retain(|block| block.items.iter().any(is_condition));
+    let tested: Vec<u32> = looped.iter().flat_map(variables_read).collect();
+    let input = tested.iter().find(|number| Settings::is_input(**number));
+    let common = || tested.iter().find(|number| is_common(**number));
     match (input, common()) {
-        (Some(input), _) => format!("end the wait for the input with --input '#{input}=1'"),
+        (Some(input), _) => {
+            let is_on = control.variable(*input) == Ok(Value::Number(1.0));
+            format!("end the wait with --input '#{input}={}'", u8::from(!is_on))
+        }
         (None, Some(common)) => format!(
-            "the machine's logic or another device changes #{common} during such a wait, which a run can't: leave the wait out with / \
-             or a condition"
+            "change #{common} in the loop, or count the iterations; where the machine's logic or another device changes it, leave the wait \
+             out of the run"
         ),
         (None, None) => {
             "end a wait for an input with --input '#1005=1', a main program's M99 P with --cycles 1"

@@ -57,7 +57,7 @@ const LATHE_CYCLES: [&str; 3] = ["70", "71", "72"];
 pub fn lacking_code_help(code: &str, control: Option<&str>) -> String {
     match control {
         Some(control) if LATHE_CYCLES.contains(&code) => format!(
-            "a turning cycle of a lathe: turning is not simulated; for a milling machine on which {control} has it, give --dialect {control}"
+            "on a lathe it is a turning cycle, and turning is not simulated; on a mill with {control} it drills a pattern of holes: give --dialect {control}"
         ),
         Some(control) => {
             format!("{control} has it: give --dialect {control} for such a control, or correct the code")
@@ -463,7 +463,7 @@ mod tests {
         let improper = |control| Alarm::ImproperGCode { code: "187".into(), control };
         assert!(help(improper(Some("haas-ngc")), "G187 P1", "G187").starts_with("haas-ngc has it"));
         let turning = Alarm::ImproperGCode { code: "71".into(), control: Some("haas-ngc") };
-        assert!(help(turning, "G71 U2. R1.", "G71").starts_with("a turning cycle of a lathe"));
+        assert!(help(turning, "G71 U2. R1.", "G71").starts_with("on a lathe it is a turning cycle"));
         assert_eq!(
             help(improper(None), "G187 P1", "G187"),
             "correct it; if this machine has it, give what it does: --code G187=wait, --code G187=nothing, or the number of the macro that it calls"

@@ -395,10 +395,13 @@ with_defaults! {
     }
 }
 
+/// Variables of the inputs of every control.
+const INPUTS: std::ops::RangeInclusive<u32> = 1000..=1031;
+
 impl Settings {
-    /// Returns true for a variable of a signal or a setting that the caller may state.
+    /// Returns true for a system variable of a signal or a setting that the caller may state.
     pub fn is_input(number: u32) -> bool {
-        (1000..=1031).contains(&number) || 1031 < number && MachineValues::holds(number)
+        INPUTS.contains(&number) || *INPUTS.end() < number && MachineValues::holds(number)
     }
 
     /// Iterates over the axes that roll over; usually none.

@@ -2,7 +2,7 @@
 use super::common_ranges;
 use super::machine_values::MachineValues;
 use super::{
-    ArgumentScale, DeclaredEffect, Dialect, Increment, OffsetMemory, OffsetVariables, Settings,
+    ArgumentScale, DeclaredEffect, Dialect, INPUTS, Increment, OffsetMemory, OffsetVariables, Settings,
     ToolAxisChoice,
 };
 use crate::motion::{Axes, MAX_AXES, Position};
@@ -360,7 +360,7 @@ impl Settings {
                 let set = self.machine_values.set(stated, value);
                 return set.ok_or_else(|| bad(&MachineValues::ALLOWED));
             }
-            let bit = number.parse().ok().filter(|n| (1000..=1031).contains(n)).map(|n: u32| n - 1000);
+            let bit = number.parse().ok().filter(|n| INPUTS.contains(n)).map(|n: u32| n - INPUTS.start());
             let bit = bit.ok_or_else(|| SettingError::Unknown { key: key.to_owned() })?;
             let on = switch(value).ok_or_else(|| bad(&SettingValues::Switch))?;
             self.inputs = if on { self.inputs | 1 << bit } else { self.inputs & !(1 << bit) };

@@ -4,6 +4,12 @@ use crate::control::{Dialect, Settings};
 
 use super::g_codes;
 
+/// Message and help on a program O0 where it is accepted.
+pub const PROGRAM_ZERO_NOTE: (&str, &str) = (
+    "O0 is no program number: a control refuses it (PS0074) unless the operator gives another one when it is read",
+    "write O1 to O99999999",
+);
+
 /// Syntax element that some controls refuse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DialectSyntax {

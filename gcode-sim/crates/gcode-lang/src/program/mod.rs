@@ -30,7 +30,7 @@ pub use bytecode::{
     AssignmentTarget, Bytecode, ComputedSource, Instruction, Operand, OperandSource, Operation, STACK, Slot,
     UncommonOp,
 };
-pub use dialect_syntax::DialectSyntax;
+pub use dialect_syntax::{DialectSyntax, PROGRAM_ZERO_NOTE};
 pub use expression::{Expression, parse_target};
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use numbers::NumberBlock;

@@ -13,9 +13,6 @@ use crate::variables::{self, VariableUses};
 
 pub(super) static RULE: Rule = Rule::new("endless-loop", Severity::Warning, "a loop that never ends", find);
 
-/// First common variable.
-const FIRST_COMMON: u32 = 100;
-
 /// First system variable. System variables may change by themselves.
 const FIRST_SYSTEM: u32 = 1000;
 
@@ -139,9 +136,7 @@ fn has_exit(
         match condition(unit, block) {
             Some(condition) => {
                 let uses = VariableUses::of(condition_expressions(condition));
-                if is_wait()
-                    && uses.reads.iter().any(|read| (FIRST_COMMON..FIRST_SYSTEM).contains(&read.number))
-                {
+                if is_wait() && uses.reads.iter().any(|read| variables::is_common(read.number)) {
                     return true;
                 }
                 let leaves_when =

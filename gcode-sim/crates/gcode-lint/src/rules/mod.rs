@@ -34,7 +34,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use gcode_lang::diag::{Diagnostic, FindingKind};
-use gcode_lang::program::Slot;
 use gcode_lang::syntax::BlockMarks;
 
 use super::block_marks::{FAULTLESS, KEEPS_LOCALS, READS_COMMONS_ALONE};
@@ -43,6 +42,7 @@ use super::rule::Find;
 pub use super::rule::Rule;
 use super::suppression::{Suppression, suppressions};
 use super::vacancy::keeps_locals;
+use super::variables::is_common;
 pub(super) use doubled_n::{doubled_numbers, sequence_numbers};
 pub(super) use live_position::{limits_lookahead, pending_moves};
 pub(super) use missing_point::{PointCounts, as_whole as missing_points_as_whole, point_counts};
@@ -236,11 +236,6 @@ fn findings_about_blocks(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, sha
     let marks = marks.collect();
     found.retain(|(_, findings)| !findings.is_empty());
     (found, Some((first, marks)))
-}
-
-/// Returns true for a common variable of every control.
-fn is_common(number: u32) -> bool {
-    (100..=999).contains(&number) && matches!(Slot::of(number), Slot::Free(_))
 }
 
 #[cfg(test)]

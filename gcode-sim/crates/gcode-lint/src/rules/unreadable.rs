@@ -1,6 +1,6 @@
 //! Rule: a block that raises an alarm as it is read: unreadable text, or words that exclude each other. A block behind `;`
 //! in its line and a program O0 are notes.
-use gcode_lang::program::DialectSyntax;
+use gcode_lang::program::{DialectSyntax, PROGRAM_ZERO_NOTE};
 
 use crate::prelude::*;
 
@@ -16,10 +16,7 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
                     "the text behind ; is a block of its own, and it is executed",
                     "write the block on a line of its own, a comment in round brackets",
                 ),
-                DialectSyntax::ProgramZero => (
-                    "O0 is no program number: a control refuses it (PS0074) unless the operator gives another one when it is read",
-                    "write O1 to O99999999",
-                ),
+                DialectSyntax::ProgramZero => PROGRAM_ZERO_NOTE,
                 _ => continue,
             };
             let finding = unit.finding(&RULE.kind, block, message).with_span(syntax.span).help(help);

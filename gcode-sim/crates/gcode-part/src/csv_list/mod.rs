@@ -128,7 +128,8 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
     Ok(list)
 }
 
-/// Refuses a list without depths whose holes all begin below z 0: its z is the depth, as in many tables of drawings.
+/// Returns an error for a list without depths, and without columns i, j and k, whose holes all begin below z 0: in many tables of
+/// drawings z is the depth.
 fn check_levels(list: &CsvList, columns: &Columns, separator: char) -> Result<(), FileError> {
     let holes = &list.holes.holes;
     let is_plain = columns.has("z") && !columns.has("i") && list.open_depths.len() == holes.len();
@@ -144,7 +145,7 @@ fn check_levels(list: &CsvList, columns: &Columns, separator: char) -> Result<()
         None,
         format!(
             "column 'z' is below 0 in all holes, {} in the first, and no depth is given: z is where a hole begins, 0 on most \
-             plates, and its depth is a number above 0 in a column 'depth'; right columns: {}, and {example}",
+             plates, and its depth is a number above 0 in a column 'depth'; right columns: {}, and {example}; where all holes begin below z 0, add a column 'depth'",
             first.entry[2],
             names.join(&separator.to_string()),
         ),
