@@ -32,9 +32,7 @@ impl Planner<'_> {
     fn plan_length_offset(&self, plan: &mut BlockPlan) -> ExecResult<bool> {
         let is_compensation_on =
             |row: &&GCodeRow| matches!(row.effect, Effect::Length(length) if length != Length::Off);
-        if self.cancels_length_offset() {
-            plan.state.modal_words.h = 0;
-        }
+        self.cancel_length_offset(plan);
         if let Some(row) = self.words.g_codes().find(is_compensation_on)
             && plan.state.modal_words.h == 0
             && !self.words.has(b'H')
@@ -124,9 +122,6 @@ impl Planner<'_> {
         }
         let mut endpoint = self.resolve_endpoint(plan)?;
         if points_tool {
-            if is_arc {
-                self.check_arc_of_tip()?;
-            }
             self.point_tool(&plan.state, &mut endpoint)?;
         }
         if motion == Motion::Thread && self.words.corner.is_some() {

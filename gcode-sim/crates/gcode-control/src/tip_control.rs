@@ -7,7 +7,7 @@ use super::kinematics::{
 use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
 use super::planner::Planner;
-use super::state::State;
+use super::state::{State, is_circular};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Kinematics;
 use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
@@ -212,23 +212,21 @@ impl Planner<'_> {
         state.modal.length == Length::TipByVector && self.words.has_any(b"IJK")
     }
 
-    /// Refuses an arc of G43.5 with I J K and without R: there they are the tool's direction (A-79348E, G43.5).
-    pub(super) fn check_arc_of_tip(&self) -> ExecResult<()> {
-        if self.words.has(b'R') {
-            return Ok(());
-        }
-        let what = "an arc without R in G43.5, where I J K are the direction of the tool at its end";
-        Err(self.not_simulated(what))
-    }
-
-    /// Returns true for G234 of a Haas without H: it ends G43 and its H (Haas Mill Operator's Manual, G234).
-    pub(super) fn cancels_length_offset(&self) -> bool {
+    /// G234 of a Haas without H ends G43 and its H (Haas Mill Operator's Manual, G234).
+    pub(super) fn cancel_length_offset(&self, plan: &mut BlockPlan) {
         let is_tip_of_haas = |effect| effect == Effect::Length(Length::TipOfHaas);
-        !self.words.has(b'H') && self.words.has_non_motion_code(is_tip_of_haas)
+        if !self.words.has(b'H') && self.words.has_non_motion_code(is_tip_of_haas) {
+            plan.state.modal_words.h = 0;
+        }
     }
 
-    /// G43.5: turns the rotary axes of an end point so that the tool points along I J K.
+    /// G43.5: turns the rotary axes of an end point so that the tool points along I J K. They are no centre of an arc, which has its R
+    /// (A-79348E, G43.5).
     pub(super) fn point_tool(&self, state: &State, endpoint: &mut Endpoint) -> ExecResult<()> {
+        if is_circular(state.modal.motion) && !self.words.has(b'R') {
+            let what = "an arc without R in G43.5, where I J K are the direction of the tool at its end";
+            return Err(self.not_simulated(what));
+        }
         let Some(vector) = unit_vector(self.direction_ijk(state)?) else {
             return Err(self.not_simulated("G43.5 with I J K of length 0"));
         };
