@@ -80,6 +80,7 @@
 
 mod background_run;
 mod capabilities;
+mod check_basis;
 mod checker;
 mod client;
 mod code_actions;

@@ -12,6 +12,7 @@ use lsp_types::notification::{Notification as _, PublishDiagnostics, ShowMessage
 use lsp_types::request::{InlayHintRefreshRequest, SemanticTokensRefresh};
 use lsp_types::{Diagnostic, MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri};
 
+use crate::check_basis::CheckBasis;
 use crate::checker::{self, CheckAnswer, CheckJob};
 use crate::commands::CommandResult;
 use crate::document_uri;
@@ -73,23 +74,6 @@ pub(crate) struct ServerState {
     shown_faults: BTreeSet<String>,
     /// Length of all programs that were read and no document has opened.
     read_bytes: usize,
-}
-
-/// On what a check rests.
-struct CheckBasis {
-    called: BTreeSet<PathBuf>,
-    surroundings: BTreeSet<PathBuf>,
-    is_in_project: bool,
-    /// Stamps of all these files.
-    stamps: BTreeMap<PathBuf, Option<u64>>,
-}
-
-impl CheckBasis {
-    /// Returns true if a change of a program file may change the check.
-    fn rests_on(&self, path: &Path, has_other_programs: bool) -> bool {
-        let is_near = || path.parent().is_some_and(|folder| self.surroundings.contains(folder));
-        self.called.contains(path) || has_other_programs && is_near()
-    }
 }
 
 impl ServerState {
