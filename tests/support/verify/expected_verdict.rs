@@ -8,7 +8,7 @@
 //! | `machine grinder.toml` | always: the program runs on this machine file in `suite/verify/` |
 //! | `reference burr.toml` | always: the program is compared with this reference there |
 //! | `FAIL 16 of 28, 12 missing, 16 extra, 28 folded` | the verdict, the number of good nominal holes or of flutes, and the counts other than 0 agree; folded findings are those on single holes that one on several holes replaces |
-//! | `error row-group at O5:6 with 4.069 9.069` | the next finding: its severity, its code, its line, the calls that led there (`from O1:7`), its hole (`of r1h0`); its message or its notes have these numbers and names |
+//! | `error row-group at O5:6 with 4.069 9.069` | the next finding: its severity, its code, its line, the calls that led there (`from O1:7`), its hole (`of r1h0`); its message or its notes have these numbers and names; the words behind `help` are in its help |
 //! | `missing r3h0 r3h1` | these holes are missing, in the order of the reference |
 //! | `hole r1h0 phi=0.70 depth=+1.000` | deviations of that hole: `phi`, `entry`, `bottom`, `tilt`, `depth`, `dx`, `dy`, `dz`; `hole *` is every one that was found |
 //! | `neighbours six=7 inner=12 nearest=18.138` | the nominal number of inner holes, and the number of those that are drilled and have six neighbours; least and greatest distance (`farthest`) |
@@ -39,10 +39,11 @@ pub(crate) struct ActualVerdict {
 
 type Facts = Vec<(&'static str, f64)>;
 
-/// A finding: severity, code and block as in a line of `expect.txt`, and message and notes.
+/// A finding: severity, code and block as in a line of `expect.txt`, message and notes, and help.
 pub(crate) struct FindingLine {
     pub(crate) head: String,
     pub(crate) text: String,
+    pub(crate) help: String,
 }
 
 /// Returns true if `expect.txt` has the line `layout`.
@@ -127,8 +128,11 @@ impl ActualVerdict {
             return;
         }
         for ((head, words), finding) in expected.iter().zip(&self.findings) {
-            for word in words.split_whitespace().filter(|word| !mentions(&finding.text, word)) {
-                wrong.push(format!("{head} doesn't have {word}: {}", finding.text.trim()));
+            let (words, help) = words.split_once(" help ").unwrap_or((words, ""));
+            for (words, text) in [(words, &finding.text), (help, &finding.help)] {
+                for word in words.split_whitespace().filter(|word| !mentions(text, word)) {
+                    wrong.push(format!("{head} doesn't have {word}: {}", text.trim()));
+                }
             }
         }
     }

@@ -224,7 +224,8 @@ fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<Findi
         if let Some(hole) = data.iter().find(same).and_then(|one| one.hole.as_ref()) {
             write!(head, " of {hole}").unwrap();
         }
-        FindingLine { head, text: format!("{}\n{}", finding.message, finding.notes.join("\n")) }
+        let text = format!("{}\n{}", finding.message, finding.notes.join("\n"));
+        FindingLine { head, text, help: finding.help.clone().unwrap_or_default() }
     };
     shown.iter().map(one).collect()
 }

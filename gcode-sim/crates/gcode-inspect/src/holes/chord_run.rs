@@ -5,6 +5,7 @@ use super::arc_run::{ArcRun, PartArc, Ring};
 use super::axis_box::directions_across;
 use gcode_lang::motion::{Backtrace, Position};
 use gcode_lang::units::Deg;
+use gcode_part::Collar;
 
 /// Largest angle of a chord about the axis: a circle has twelve or more.
 const MAX_CHORD: Deg = Deg(30.05);
@@ -68,6 +69,13 @@ impl ChordRun {
             self.place = Some(place());
         }
         true
+    }
+
+    /// Returns true if the run has closed and its last chord is one of a polygon about the axis of a hole.
+    pub(super) fn circles_about(&self, collar: &Collar) -> bool {
+        let [.., from, to] = &self.corners[..] else { return false };
+        let off = collar.from_axis(from) - collar.from_axis(to);
+        self.place.is_some() && off.abs() <= MAX_DEVIATION
     }
 
     /// Ends the run; `None` without a full turn whose corners lie on a circle.

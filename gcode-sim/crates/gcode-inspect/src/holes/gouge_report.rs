@@ -11,9 +11,13 @@ use crate::findings::FEED_BESIDE_HOLE;
 use crate::machine::{TOUCH_DEPTH, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
+use gcode_part::Collar;
 
 /// Largest radius of a hole of unknown diameter that is milled, mm.
 const MAX_OPEN_RADIUS: f64 = 50.0;
+
+/// Largest difference of the distances of an arc's points from its axis, mm.
+const ROUND: f64 = 0.05;
 
 /// Feed beside a nominal hole without a diameter, which may be as wide as the circle that mills it.
 #[derive(Debug)]
@@ -21,6 +25,13 @@ pub(super) struct OpenFeed {
     /// Points of its path.
     path: Vec<Point3<f64>>,
     findings: Findings,
+}
+
+/// Nominal hole above a feed.
+#[derive(Clone, Copy)]
+struct HoleAbove<'a> {
+    id: &'a str,
+    collar: &'a Collar,
 }
 
 impl HoleExtractor<'_> {
@@ -71,16 +82,19 @@ impl HoleExtractor<'_> {
                 let reach = self.tool_radius().unwrap_or(MAX_RADIUS);
                 let pocket = self.metal.distance_from_pocket(&at.point).filter(|distance| *distance <= reach);
                 let above = self.hole_above(&at.point);
-                let place = match (hole, pocket, part) {
-                    _ if above.is_some() => format!("below hole {}", above.unwrap_or_default()),
-                    (Some(id), ..) => format!("beside hole {id}"),
-                    (None, Some(distance), ToolRegion::Tip) => format!("{distance:.3} mm outside its pocket"),
-                    (None, Some(_), _) => "the part beside its pocket".to_owned(),
-                    (None, None, _) => "the part beside its holes".to_owned(),
+                let place = match (above, hole, pocket, part) {
+                    (Some(above), ..) => format!("below hole {}", above.id),
+                    (None, Some(id), ..) => format!("beside hole {id}"),
+                    (None, None, Some(distance), ToolRegion::Tip) => {
+                        format!("{distance:.3} mm outside its pocket")
+                    }
+                    (None, None, Some(_), _) => "the part beside its pocket".to_owned(),
+                    (None, None, None, _) => "the part beside its holes".to_owned(),
                 };
                 let what = if matches!(part, ToolRegion::Side) { "the side of the tool" } else { "the feed" };
+                let is_milled = above.is_some_and(|above| self.circles_about(above.collar, path));
                 let help = match is_stock {
-                    _ if above.is_some() => {
+                    _ if is_milled => {
                         "mill no deeper than the hole, or correct its depth in the list: it is full to the deepest whole circle, which \
                          a helix lacks at its end"
                     }
@@ -111,18 +125,29 @@ impl HoleExtractor<'_> {
         ))
     }
 
-    /// Returns the id of the nominal hole within whose diameter a point lies, deeper than the hole.
-    fn hole_above(&self, p: &Point3<f64>) -> Option<&str> {
+    /// Returns the nominal hole within whose diameter a point lies, deeper than the hole: the nearest one.
+    fn hole_above(&self, p: &Point3<f64>) -> Option<HoleAbove<'_>> {
         let holes = self.metal.holes.as_deref()?;
-        let mut found = None;
+        let mut nearest: Option<(f64, usize)> = None;
         holes.below(p, p, (MAX_OPEN_RADIUS, 0.0), &mut |hole| {
             let collar = holes.collar(hole);
             let is_inside = collar.has_diameter && collar.from_axis(p) < collar.hole_radius;
-            if is_inside && collar.max_depth() < collar.depth(p) {
-                found = Some(hole);
+            let distance = collar.depth(p) - collar.max_depth();
+            if is_inside && 0.0 < distance && nearest.is_none_or(|(least, _)| distance < least) {
+                nearest = Some((distance, hole));
             }
         });
-        found.map(|hole| holes.id(hole))
+        nearest.map(|(_, hole)| HoleAbove { id: holes.id(hole), collar: holes.collar(hole) })
+    }
+
+    /// Returns true if the engagement has gone round the axis of a hole, or a feed along `path` does.
+    fn circles_about(&self, collar: &Collar, path: &[Point3<f64>]) -> bool {
+        let is_round = |corners: &[Point3<f64>]| {
+            let distances = || corners.iter().map(|p| collar.from_axis(p));
+            2 < corners.len()
+                && distances().fold(0.0, f64::max) - distances().fold(f64::INFINITY, f64::min) <= ROUND
+        };
+        is_round(path) || self.engagement.circles_about(collar)
     }
 
     /// Returns true if a point is beside a nominal hole without a diameter, and no deeper than that.

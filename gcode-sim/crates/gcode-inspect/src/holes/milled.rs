@@ -7,12 +7,14 @@ use super::chord_run::ChordRun;
 use super::cut_states::{CutStates, StateCut};
 use super::cutting::CuttingState;
 use super::drill_pass::{DrillPass, MilledCut, PassCut};
+use super::feed_law::ON_AXIS;
 use super::gouge_report::OpenFeed;
 use super::hole_circles::HoleCircles;
 use super::per_block::Findings;
 use super::slug::Turn;
 use super::strokes::{CutKind, LEVEL_TOLERANCE, Uncounted};
 use gcode_lang::motion::{Backtrace, Event, UnknownAxes};
+use gcode_part::Collar;
 
 /// Largest number of points of an engagement; with more the tool mills something larger than a hole.
 const MAX_POINTS: usize = 50_000;
@@ -57,6 +59,7 @@ pub(super) struct Engagement {
     pub uncounted: Uncounted,
     /// Errors about them, where the surface is known.
     pub errors: Findings,
+    /// Feeds beside holes without a diameter, which its circles may mill.
     pub open_feeds: Vec<OpenFeed>,
 }
 
@@ -107,6 +110,14 @@ impl Engagement {
             false => self.points.iter().map(along).fold(f64::NEG_INFINITY, f64::max),
         };
         along(p) <= highest + LEVEL_TOLERANCE
+    }
+
+    /// Returns true if the tool has gone round the axis of a hole, along arcs or chords.
+    pub(super) fn circles_about(&self, collar: &Collar) -> bool {
+        let arcs = self.arcs.iter().map(|arc| &arc.centre);
+        let mut centres = arcs.chain(self.rings.iter().map(|ring| &ring.centre));
+        centres.any(|centre| collar.from_axis(centre) <= ON_AXIS)
+            || self.chords.as_ref().is_some_and(|chords| chords.circles_about(collar))
     }
 
     /// Returns a turn of the current run of arcs whose slug is to be looked for.

@@ -13,6 +13,9 @@ use gcode_part::{DepthTo, Feature, FeatureKind, Hand, Hole, exceeds};
 /// Largest difference between the angles of a countersink and its tool, degrees.
 const ANGLE_TOLERANCE: f64 = 0.5;
 
+/// Mismatch of a cut of unknown diameter or point, more than that of every known one, mm.
+const UNKNOWN_SHAPE: f64 = 1e3;
+
 /// A pass of a tool on the axis of a nominal hole. Depths count from the nominal entry, mm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut<'a> {
@@ -187,13 +190,12 @@ impl<'a> Cut<'a> {
         if let (FeatureKind::Countersink, Some(angle)) = (feature.kind, feature.angle) {
             let is_narrow = |own: f64| exceeds(feature.diameter - own, tolerances.diameter);
             return match self.point {
-                PointShape::Flat if self.may_be_cone => Some(1e3 + deep),
-                PointShape::Flat => None,
+                PointShape::Flat if !self.may_be_cone => None,
                 _ if self.pass.diameter.is_some_and(is_narrow) => None,
                 PointShape::Pointed(own) => {
                     (!exceeds((own.0 - angle).abs(), ANGLE_TOLERANCE)).then_some(deep)
                 }
-                PointShape::Unknown => Some(1e3 + deep),
+                PointShape::Flat | PointShape::Unknown => Some(UNKNOWN_SHAPE + deep),
             };
         }
         if feature.kind == FeatureKind::Counterbore && matches!(self.point, PointShape::Pointed(_)) {
@@ -201,7 +203,7 @@ impl<'a> Cut<'a> {
         }
         match self.pass.diameter.map(|own| (own - feature.diameter).abs()) {
             Some(off) => (!exceeds(off, tolerances.diameter)).then_some(100.0 * off + 1e-3 * deep),
-            None => Some(1e3 + deep),
+            None => Some(UNKNOWN_SHAPE + deep),
         }
     }
 

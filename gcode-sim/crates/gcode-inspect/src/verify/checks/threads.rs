@@ -393,30 +393,47 @@ fn milled_length(judged: &Judgement<'_>, feature: &Feature, made: &Cut<'_>) -> O
             && !is_full(&cut)
             && upper.is_some_and(|upper| exceeds(top - upper, MAX_STEP) && exceeds(cut.tip - begin, MAX_STEP))
     };
-    let may_end = !exceeds(top - begin, lead / 2.0 + LEAD_TOLERANCE) && !judged.near.iter().any(is_narrow);
-    let uncut = match covered.get(1).filter(|[_, upper]| begin < *upper) {
-        Some([_, upper]) => [*upper, top],
-        None if may_end || !exceeds(top - begin, MAX_STEP) => return None,
-        None => [begin, top],
-    };
+    let narrow = judged.near.iter().find(|cut| is_narrow(cut));
+    let limit = begin + lead / 2.0;
+    let gap = covered.get(1).filter(|[_, lower]| begin < *lower).map(|[_, lower]| *lower);
+    let may_end = narrow.is_none() && !exceeds(top - limit, LEAD_TOLERANCE);
+    if gap.is_none() && (may_end || !exceeds(top - begin, MAX_STEP)) {
+        return None;
+    }
     let own = covered_depths(judged.near.iter().filter(|cut| cut.pass.tool == made.pass.tool));
     if own.iter().all(|[upper, lower]| lower - upper < MAX_COMB_TURNS * lead) {
         return Some(MilledLength::Comb);
     }
-    let [from, to] = uncut;
     let (id, name) = (judged.id, made.name());
-    let message = match from == begin {
-        true => format!(
-            "hole {id}: {name} mills the thread from {to:.3} mm below the entry on; at most {:.3}, half a turn below its \
-             beginning, is required, and no narrower turn above",
-            begin + lead / 2.0
+    let (message, cut) = match (gap, narrow) {
+        (Some(from), _) => (
+            format!("{name} mills no thread from {from:.3} to {top:.3} mm below the entry, limit {MAX_STEP}"),
+            made,
         ),
-        false => format!(
-            "hole {id}: {name} mills no thread from {from:.3} to {to:.3} mm below the entry, limit {MAX_STEP}"
-        ),
+        (None, Some(narrow)) => {
+            let name = narrow.name();
+            let message = format!(
+                "a narrower turn of {name} ends the thread {top:.3} mm below the entry: it leaves metal above"
+            );
+            (message, narrow)
+        }
+        (None, None) => {
+            let message = format!(
+                "the thread by {name} begins {top:.3} mm below the entry, limit {limit:.3} (half a turn below its nominal start at \
+                 {begin:.3})"
+            );
+            (message, made)
+        }
     };
-    let finding = Diagnostic::new(&FEATURE_DEPTH, message).with_backtrace(made.pass.backtrace.clone());
-    Some(MilledLength::Fault(finding.help("mill up to the entry, each turn to the diameter of the thread")))
+    let upper_end = match begin {
+        0.0 => "the entry".to_owned(),
+        _ => format!("{begin:.3} mm below the entry"),
+    };
+    let finding = Diagnostic::new(&FEATURE_DEPTH, format!("hole {id}: {message}"))
+        .with_backtrace(cut.pass.backtrace.clone());
+    Some(MilledLength::Fault(
+        finding.help(format!("mill up to {upper_end}, each turn to the diameter of the thread")),
+    ))
 }
 
 /// Returns the radius of the widest helix of the tool of a cut, mm.
@@ -425,17 +442,17 @@ fn widest_path(judged: &Judgement<'_>, made: &Cut<'_>) -> f64 {
     own.filter_map(|cut| Some(cut.pass.cut.milled?.radius)).fold(0.0, f64::max)
 }
 
-/// Returns the depth at which a thread begins, below the features that are wider, mm.
+/// Returns the depth at which a thread begins, below the features above it that are as wide, mm.
 fn thread_begin(nominal: &Hole, thread: &Feature) -> f64 {
-    let wider = nominal.features.iter().filter(|feature| thread.diameter <= feature.diameter);
+    let is_as_wide = |other: &&Feature| !std::ptr::eq(*other, thread) && thread.diameter <= other.diameter;
     let bottom = |feature: &Feature| match (feature.kind, feature.angle) {
         (FeatureKind::Countersink, Some(angle)) => {
             (feature.diameter - thread.diameter) / 2.0 / Deg(angle / 2.0).tan()
         }
-        (FeatureKind::Tap, _) => 0.0,
         _ => feature.bottom(),
     };
-    wider.map(bottom).fold(0.0, f64::max)
+    let bottoms = nominal.features.iter().filter(is_as_wide).map(bottom);
+    bottoms.filter(|bottom| *bottom < thread.bottom()).fold(0.0, f64::max)
 }
 
 /// Returns the depths that some helices cover without a step between them, from the top of each stretch to its bottom, the
