@@ -37,24 +37,23 @@ pub fn for_each_drawn_pose(
     }
 }
 
-/// Axes that an event moves, as bits.
+/// Returns the axes that a motion moves, as bits.
 pub fn moved_axes(travel: &AxisMotion<'_>) -> u8 {
     let is_moved = |axis: &usize| {
-        travel.from[*axis] != travel.to[*axis] || travel.arc.is_some_and(|arc| moves(arc, *axis))
+        travel.from[*axis] != travel.to[*axis] || travel.arc.is_some_and(|arc| is_in_plane(arc, *axis))
     };
     (0..MAX_AXES).filter(is_moved).fold(0, |axes, axis| axes | 1u8 << axis)
 }
 
-/// Returns true if the end of a move has a place on the part, with some axes at unknown positions. One that the move leaves
-/// alone displaces a rapid only where G28, G30, G53 or a G92 there has put it: at machine zero it is far from the part, and would
-/// be drawn in it.
+/// Returns true if both ends of a move are known on the part. An axis that moves has to be known. An axis that stands counts only in
+/// a rapid, and only if G28, G30, G53 or G92 put it there; a feed, and an axis never commanded, are drawn at the supposed position.
 pub fn is_placed(machine: &Machine, unknown: UnknownAxes, kind: PathKind, moved: u8) -> bool {
     let unknown = without_assumed(unknown.only(machine.used_axes()), machine);
     let elsewhere = if kind == PathKind::Rapid { unknown.at_machine_position | unknown.shifted } else { 0 };
     unknown.all() & moved | elsewhere == 0
 }
 
-/// Returns true if an arc moves an axis.
-pub(crate) fn moves(arc: &PlanarArc, axis: usize) -> bool {
+/// Returns true if an axis is one of the plane of an arc.
+pub(crate) fn is_in_plane(arc: &PlanarArc, axis: usize) -> bool {
     arc.plane.0 == axis || arc.plane.1 == axis
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::{Point3, Unit, Vector3};
 
-use crate::drawn_move::{PathKind, for_each_drawn_pose, is_placed, moved_axes, moves};
+use crate::drawn_move::{PathKind, for_each_drawn_pose, is_in_plane, is_placed, moved_axes};
 use crate::holes::unknown_axes::PositionTracker;
 use crate::machine::{AxisMotion, HeadMessage, Machine, Setup};
 use gcode_lang::motion::{CallChain, Event, EventKind, EventSink, PlanarArc, Position, StopKind};
@@ -291,7 +291,7 @@ impl<'m> PathRecorder<'m> {
     /// Counts the axis across an arc, or along a rapid of one axis, if the direction of the tool is unknown.
     fn suppose_axis(&mut self, kind: PathKind, arc: Option<&PlanarArc>, moved: u8) {
         let axis = match arc {
-            Some(arc) => (0..3).find(|axis| !moves(arc, *axis)),
+            Some(arc) => (0..3).find(|axis| !is_in_plane(arc, *axis)),
             None if kind == PathKind::Rapid => (0..3).find(|axis| moved == 1 << axis),
             None => None,
         };

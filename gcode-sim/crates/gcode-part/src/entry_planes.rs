@@ -310,8 +310,8 @@ impl Collar {
         made.map(|step| step.taper.radius.min(self.hole_radius)).reduce(f64::max)
     }
 
-    /// Returns true if two strokes on the axis end where the same feature does.
-    pub fn have_same_end(&self, one: f64, other: f64) -> bool {
+    /// Returns true if two strokes on the axis end where the same feature does; depths below the entry, mm.
+    pub fn is_same_end(&self, one: f64, other: f64) -> bool {
         let is_beyond = |depth: f64| self.is_through && self.rod.length <= depth + NOISE;
         (one - other).abs() <= SAME_END || is_beyond(one) && is_beyond(other)
     }

@@ -166,7 +166,7 @@ impl HoleExtractor<'_> {
             }
             self.remove(&chord, &axis);
             if is_plunge {
-                self.note_hole_stroke(&chord, &axis);
+                self.record_hole_stroke(&chord, &axis);
             }
         }
         if is_judged && worst.is_none() {

@@ -481,7 +481,7 @@ impl HoleExtractor<'_> {
             line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.record_line_feed(event, &mut line, &start);
-            self.note_start_inside(&mut line);
+            self.record_start_inside(&mut line);
             line
         });
     }

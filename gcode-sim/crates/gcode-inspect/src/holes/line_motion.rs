@@ -57,7 +57,7 @@ impl HoleExtractor<'_> {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) && !line.is_above_cut(&tip) {
                             self.record_line_feed(event, &mut line, &from);
-                            self.note_start_inside(&mut line);
+                            self.record_start_inside(&mut line);
                         }
                         line.feed_to(&tip, event.backtrace(), &self.axis_position)
                     }

@@ -10,7 +10,7 @@ use super::swept_tool::rim;
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::ToolKind;
 use gcode_lang::diag::Diagnostic;
-use gcode_part::{Collar, PARALLEL_COSINE, SAME_END};
+use gcode_part::{Collar, EntryPlanes, PARALLEL_COSINE, SAME_END};
 
 /// Depth in a hole from which on the start of a feed is inside it, mm.
 const MIN_START_DEPTH: f64 = 0.1;
@@ -40,7 +40,7 @@ pub(super) struct HoleStroke {
 
 /// Radii of a tool of unknown diameter in a stroke, mm.
 #[derive(Clone, Copy, Debug)]
-struct StrokeWidth {
+struct StrokeRadii {
     /// That of the narrowest feature of the holes into which it leads.
     through: f64,
     /// That of the feature that ends where the stroke does.
@@ -67,14 +67,15 @@ impl UnsizedStroke {
 }
 
 impl HoleExtractor<'_> {
-    /// Returns the radius that a tool of unknown diameter has in a stroke on the axis of nominal holes; `None` beside all of them.
-    fn width_on_axis(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> Option<StrokeWidth> {
-        let (mut least, mut most, mut end): (Option<f64>, Option<f64>, Option<f64>) = (None, None, None);
+    /// Returns the radii of a tool of unknown diameter in a stroke on the axis of nominal holes, mm; `None` beside all of them.
+    fn radii_on_axis(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> Option<StrokeRadii> {
+        let mut narrowest_entered: Option<f64> = None;
+        let (mut widest_hole, mut end): (Option<f64>, Option<f64>) = (None, None);
         // A hole that the tip has left is above it.
         let up = axis.into_inner() * self.metal.removed.height_of_metal(&travel[1], axis);
-        let way = [travel[0].inf(&travel[1]), travel[0].sup(&travel[1])];
-        let way = [way[0].inf(&(way[0] + up)), way[1].sup(&(way[1] + up))];
-        self.metal.around(&way, &mut |collar: &Collar| {
+        let [low, high] = [travel[0].inf(&travel[1]), travel[0].sup(&travel[1])];
+        let searched = [low.inf(&(low + up)), high.sup(&(high + up))];
+        self.metal.around(&searched, &mut |collar: &Collar| {
             let aside = travel.iter().map(|p| collar.from_axis(p)).fold(0.0, f64::max);
             if !collar.is_parallel(axis) || ON_AXIS < aside {
                 return;
@@ -88,15 +89,15 @@ impl HoleExtractor<'_> {
                 false => highest < collar.rod.length - SAME_END,
             };
             let narrowest = collar.narrowest() - aside;
-            most = Some(most.unwrap_or(0.0).max(narrowest));
+            widest_hole = Some(widest_hole.unwrap_or(0.0).max(narrowest));
             if is_entered {
-                least = Some(least.unwrap_or(f64::INFINITY).min(narrowest));
+                narrowest_entered = Some(narrowest_entered.unwrap_or(f64::INFINITY).min(narrowest));
             }
             if let Some(radius) = collar.radius_ending_at(deepest).filter(|_| is_into) {
                 end = Some(end.unwrap_or(f64::INFINITY).min(radius - aside));
             }
         });
-        Some(StrokeWidth { through: least.or(most)?, end })
+        Some(StrokeRadii { through: narrowest_entered.or(widest_hole)?, end })
     }
 
     /// Removes what a straight feed of a tool of unknown diameter cuts of a nominal hole: off the axis as far as its wall, on the axis
@@ -110,7 +111,7 @@ impl HoleExtractor<'_> {
                 milled = Some(milled.unwrap_or(0.0).max(collar.hole_radius - aside));
             }
         });
-        let drilled = self.width_on_axis(travel, axis).map(|width| width.through);
+        let drilled = self.radii_on_axis(travel, axis).map(|radii| radii.through);
         if drilled.is_some()
             && !self.unsized_stroke.as_mut().is_some_and(|stroke| stroke.extend(travel, axis))
         {
@@ -135,7 +136,7 @@ impl HoleExtractor<'_> {
     /// Removes what the last strokes of a tool of unknown diameter have cut of the feature that ends where they do.
     pub(super) fn end_unsized_stroke(&mut self) {
         let Some(UnsizedStroke { travel, axis }) = self.unsized_stroke.take() else { return };
-        let Some(StrokeWidth { through, end }) = self.width_on_axis(&travel, &axis) else { return };
+        let Some(StrokeRadii { through, end }) = self.radii_on_axis(&travel, &axis) else { return };
         if let Some(radius) = end.filter(|radius| through < *radius) {
             self.metal.removed.add(travel[0], travel[1], axis, &Profile::flat(radius, true));
         }
@@ -150,18 +151,16 @@ impl HoleExtractor<'_> {
         if self.tool_radius().is_some() {
             return None;
         }
-        self.width_on_axis(travel, axis).map(|width| width.end.unwrap_or(width.through))
+        self.radii_on_axis(travel, axis).map(|radii| radii.end.unwrap_or(radii.through))
     }
 
     /// Records how deep a feed along the tool goes in the nominal holes on whose axis it is.
-    pub(super) fn note_hole_stroke(&mut self, [from, to]: &Line, axis: &Unit<Vector3<f64>>) {
+    pub(super) fn record_hole_stroke(&mut self, line: &Line, axis: &Unit<Vector3<f64>>) {
         let Some(holes) = self.metal.holes.clone() else { return };
         let (tool, is_sized) = (self.setup.tool, self.tool_radius().is_some());
-        holes.around(&from.inf(to), &from.sup(to), &mut |hole| {
-            let collar = holes.collar(hole);
-            let is_on_axis = PARALLEL_COSINE <= axis.dot(&collar.rod.axis) && collar.from_axis(to) <= ON_AXIS;
-            let depth = collar.depth(from).max(collar.depth(to));
-            if !is_on_axis || depth <= 0.0 {
+        for_each_hole_along(&holes, line, axis, |hole, collar| {
+            let depth = collar.depth(&line[0]).max(collar.depth(&line[1]));
+            if depth <= 0.0 {
                 return;
             }
             let strokes = self.hole_strokes.entry(hole).or_default();
@@ -172,22 +171,20 @@ impl HoleExtractor<'_> {
         });
     }
 
-    /// Returns true if the tool goes as deep in a nominal hole as the last other tool, whose diameter is unknown: that one has left it
-    /// metal, for it is there to cut. A thread has metal of its own.
-    pub(super) fn is_finishing(&self, [from, to]: &Line, axis: &Unit<Vector3<f64>>) -> bool {
+    /// Returns true if the last other tool that ended where this one does (within [`SAME_END`]) has no known diameter: this tool is then
+    /// assumed to cut. False for a tap or a probe.
+    pub(super) fn is_finishing(&self, line: &Line, axis: &Unit<Vector3<f64>>) -> bool {
         let (tool, kind) = (self.setup.tool, self.machine.kind_of(self.setup.tool));
         if matches!(kind, Some(ToolKind::Tap | ToolKind::Probe)) {
             return false;
         }
         let Some(holes) = self.metal.holes.as_deref() else { return false };
         let mut is_finishing = false;
-        holes.around(&from.inf(to), &from.sup(to), &mut |hole| {
-            let collar = holes.collar(hole);
-            let is_on_axis = PARALLEL_COSINE <= axis.dot(&collar.rod.axis) && collar.from_axis(to) <= ON_AXIS;
-            let Some(strokes) = self.hole_strokes.get(&hole).filter(|_| is_on_axis) else { return };
-            let depth = collar.depth(to);
+        for_each_hole_along(holes, line, axis, |hole, collar| {
+            let Some(strokes) = self.hole_strokes.get(&hole) else { return };
+            let depth = collar.depth(&line[1]);
             let is_before =
-                |stroke: &&HoleStroke| stroke.tool != tool && collar.have_same_end(stroke.depth, depth);
+                |stroke: &&HoleStroke| stroke.tool != tool && collar.is_same_end(stroke.depth, depth);
             is_finishing |= strokes.iter().rfind(is_before).is_some_and(|stroke| !stroke.is_sized);
         });
         is_finishing
@@ -195,7 +192,7 @@ impl HoleExtractor<'_> {
 
     /// Records where a tool begins its feed inside a hole which it widens, where its own diameter or that of the hole is unknown: it has
     /// come down through the metal that it is there to cut.
-    pub(super) fn note_start_inside(&self, line: &mut CuttingLine) {
+    pub(super) fn record_start_inside(&self, line: &mut CuttingLine) {
         if !line.is_inward() || line.start_inside.is_some() {
             return;
         }
@@ -228,8 +225,8 @@ impl HoleExtractor<'_> {
             return None;
         }
         let own = self.tool_radius();
-        let width = self.width_on_axis(&[start, tip], axis)?;
-        let made = width.end.unwrap_or(width.through);
+        let radii = self.radii_on_axis(&[start, tip], axis)?;
+        let made = radii.end.unwrap_or(radii.through);
         let radius = own.unwrap_or(made);
         let depth = self.depth_on_axis(&start, axis, |_| true).filter(|depth| MIN_START_DEPTH < *depth)?;
         let above = start + axis.into_inner() * depth;
@@ -296,7 +293,7 @@ impl HoleExtractor<'_> {
     /// Returns where a tool of unknown diameter begins in a hole that is cut on its axis, if the metal round that is not removed above it.
     fn start_of_unsized(&self, line: &CuttingLine, axis: &Unit<Vector3<f64>>) -> Option<StartInside> {
         let (start, tip) = (line.start, self.pose.tip);
-        let radius = self.width_on_axis(&[start, tip], axis)?.end?;
+        let radius = self.radii_on_axis(&[start, tip], axis)?.end?;
         let is_into = |collar: &Collar| 0.0 < axis.dot(&collar.rod.axis);
         let depth = self.depth_on_axis(&start, axis, is_into).filter(|depth| MIN_START_DEPTH < *depth)?;
         let above = start + axis.into_inner() * depth;
@@ -306,4 +303,19 @@ impl HoleExtractor<'_> {
             !is_cut(Vector3::zeros()) && rim(axis, &Vector3::zeros(), radius - FIT).into_iter().any(is_cut);
         is_widened.then_some(StartInside { depth, radius })
     }
+}
+
+/// Calls `each` with the nominal holes on whose axis a stroke along a tool ends, and into which it leads.
+fn for_each_hole_along<'h>(
+    holes: &'h EntryPlanes,
+    [from, to]: &Line,
+    axis: &Unit<Vector3<f64>>,
+    mut each: impl FnMut(usize, &'h Collar),
+) {
+    holes.around(&from.inf(to), &from.sup(to), &mut |hole| {
+        let collar = holes.collar(hole);
+        if PARALLEL_COSINE <= axis.dot(&collar.rod.axis) && collar.from_axis(to) <= ON_AXIS {
+            each(hole, collar);
+        }
+    });
 }
