@@ -90,6 +90,7 @@ mod document_uri;
 mod edits;
 mod failure;
 mod findings;
+mod hint_refresh;
 mod hints;
 mod host;
 mod navigation;

@@ -173,8 +173,7 @@ impl Server {
     }
 
     fn on_response(&mut self, response: Response) {
-        let refresh = &mut self.state.hint_refresh;
-        _ = refresh.take_if(|request| *request == response.id);
+        self.state.hints_refreshed(&response.id);
         if self.state.configuration_requests.remove(&response.id) {
             let result = response.result.unwrap_or_default();
             // A client without such settings answers null: those of initialize stay.

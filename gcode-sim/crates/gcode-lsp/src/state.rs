@@ -18,6 +18,7 @@ use crate::commands::CommandResult;
 use crate::document_uri;
 use crate::failure::Failure;
 use crate::findings::CheckedDocument;
+use crate::hint_refresh::HintRefresh;
 use crate::host::Host;
 use crate::overlay::Overlay;
 use crate::proof;
@@ -59,7 +60,7 @@ pub(crate) struct ServerState {
     checks: Sender<CheckJob>,
     next_request: i32,
     /// Request to the client to ask for hints again, until it answers.
-    pub hint_refresh: Option<RequestId>,
+    hint_refresh: HintRefresh,
     /// Control of each document.
     settings: BTreeMap<FileId, Settings>,
     /// On what the diagnostics of each document rest.
@@ -94,7 +95,7 @@ impl ServerState {
             out,
             checks,
             next_request: 0,
-            hint_refresh: None,
+            hint_refresh: HintRefresh::default(),
             settings: BTreeMap::new(),
             checked: BTreeMap::new(),
             changes: 0,
@@ -293,11 +294,19 @@ impl ServerState {
         }
     }
 
-    /// Has the client ask again for hints: those of open documents may rest on a text that another document changed.
-    /// It asks for all of them: a request that it has not answered yet serves for this change too.
+    /// Has the client ask again for hints: those of open documents may rest on a text that another document changed. It does so
+    /// for all documents: changes until it answers have one more request together.
     fn refresh_hints(&mut self) {
-        if self.snapshot.client.can_refresh_hints && self.hint_refresh.is_none() {
-            self.hint_refresh = Some(self.ask::<InlayHintRefreshRequest>(()));
+        if self.snapshot.client.can_refresh_hints && self.hint_refresh.is_needed() {
+            let id = self.ask::<InlayHintRefreshRequest>(());
+            self.hint_refresh.asked = Some(id);
+        }
+    }
+
+    /// Takes the client's answer to a request to ask for hints.
+    pub(crate) fn hints_refreshed(&mut self, id: &RequestId) {
+        if self.hint_refresh.is_answered_late(id) {
+            self.refresh_hints();
         }
     }
 
