@@ -43,7 +43,7 @@ impl Surface {
     /// Body and swept frustum are convex: alternating projections onto them converge to their nearest points (von
     /// Neumann), slowly where they meet at a small angle; the limit of equally shrinking steps is tried (Aitken). The
     /// distance between body and frustum is a convex function of the share of the travel, so that the sign of its slope
-    /// tells in which half the least one lies. What is undecided after [`MAX_HALVED`] halvings counts as contact.
+    /// tells in which half the least one lies. What is undecided after 40 halvings counts as contact.
     pub fn touches(&self, frustum: &Frustum, along: &Vector3<f64>) -> bool {
         let decided = |p: &Point3<f64>| self.foot_of_gap(p, frustum, along);
         let mut p = frustum.base;

@@ -124,7 +124,7 @@ pub(super) fn shared<K: IntoIterator<Item = u64>>(
     shared
 }
 
-/// Set of hashes that may contain few others too: two bits for each, of sixteen.
+/// Bloom filter of hashes, two bits for each: a few other hashes are found too.
 struct HashFilter {
     bits: Vec<u64>,
 }

@@ -16,11 +16,12 @@ pub struct Leg {
     pub feed: Option<f64>,
     /// True for a move that cuts a hole, or leaves one along the path of its cut.
     pub is_of_hole: bool,
-    /// Number of its block in [`Record::block_location`].
+    /// Number of its block in `Record::block_location`.
     pub block_number: usize,
     /// End whose place on the part is unknown.
     pub unplaced: Option<UnplacedEnd>,
-    /// Points from start to end, mm; the known end alone if the other is unknown, the point before it if both are.
+    /// Points from start to end, mm; the known end alone if the other is unknown. If both are, the last known point, or before the
+    /// first one the end at supposed coordinates.
     pub points: Vec<Point3<f64>>,
     /// Largest distance of the path from the line through `points`, mm; 0 of straight moves that are all there.
     pub deviation: f64,
