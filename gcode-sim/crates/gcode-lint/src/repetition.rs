@@ -26,8 +26,6 @@ pub(super) struct Repetitions {
     stand_ins: BTreeSet<(SourceId, u32)>,
     /// One of them has a finding.
     stand_for_found: bool,
-    /// Sequence numbers of blocks that are left out.
-    numbers: BTreeSet<u32>,
     /// What is left out, by program.
     left_out: BTreeMap<ProgramId, LeftOutBlocks>,
 }
@@ -105,9 +103,8 @@ impl Repetitions {
             }
         }
         if repeated.is_left_out.contains(&true) {
-            let numbers: Vec<_> = repeated.numbers().collect();
-            self.numbers.extend(numbers.iter().map(|left_out| left_out.number));
             let short = program.without(&repeated.is_left_out);
+            let numbers = repeated.numbers().collect();
             let RepeatedBlocks { stand_ins, calls, points, .. } = repeated;
             self.stand_ins.extend(stand_ins);
             self.left_out.insert(id, LeftOutBlocks { numbers, calls, points });
@@ -135,13 +132,14 @@ impl Repetitions {
 
     /// Returns true if a block that is left out has a sequence number.
     pub(super) fn has_numbers(&self) -> bool {
-        !self.numbers.is_empty()
+        self.left_out.values().any(|left_out| !left_out.numbers.is_empty())
     }
 
     /// Returns true if a block of some programs may lead to a sequence number of another one that is left out.
     pub(super) fn are_targets(&self, memory: &Memory, programs: impl IntoIterator<Item = ProgramId>) -> bool {
         let targets = JumpTargets::between(memory, programs);
-        self.numbers.iter().any(|number| targets.has(*number))
+        let mut left_out = self.left_out.values().flat_map(|left_out| &left_out.numbers);
+        left_out.any(|left_out| targets.has(left_out.number))
     }
 
     /// Returns true if one of the blocks that stand for others has a finding.
