@@ -4,7 +4,8 @@
 //! only on the form of a block (its letters, its code, the called program) and the modes in which it stands. In a run of such
 //! blocks one of each form in each mode stands for all of them, and the last move and the last call of each program for the end
 //! of the run. A block to which its program jumps stays. If a rule finds something at a block that stands for others, or another
-//! program may lead to a sequence number that is left out, all blocks are checked. The rule of repeated sequence numbers knows those that are left out.
+//! program may lead to a sequence number that is left out, all blocks are checked. The rule of repeated sequence numbers knows
+//! those that are left out.
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::control::Settings;
@@ -206,7 +207,7 @@ impl RepeatedBlocks {
                 found.others.push(block);
                 return;
             };
-            // A jump may lead to a number; where all blocks have one, no jump is likely.
+            // Another program may lead to a number; where all blocks have one, none is likely to.
             let begins_numbers = form.has_number && !run.is_numbered;
             let after = run.modes.after(form).filter(|_| !begins_numbers);
             let after = after.unwrap_or_else(|| {

@@ -1,4 +1,5 @@
 //! Rule: a loop that never ends, because no block changes its exit conditions or because it has no exit.
+use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
@@ -118,7 +119,7 @@ fn has_exit(
 ) -> bool {
     let mut written = None;
     // Blocks that only ask and dwell wait: the machine's logic or another device changes a common variable meanwhile.
-    let is_wait = || inside.iter().all(|block| only_waits(unit.op(*block).kind()));
+    let is_wait = LazyCell::new(|| inside.iter().all(|block| only_waits(unit.op(*block).kind())));
     inside.iter().copied().any(|block| {
         let op = unit.op(block);
         let ways = &unit.flow.block_successors[block];
@@ -136,7 +137,7 @@ fn has_exit(
         match condition(unit, block) {
             Some(condition) => {
                 let uses = VariableUses::of(condition_expressions(condition));
-                if is_wait() && uses.reads.iter().any(|read| variables::is_common(read.number)) {
+                if uses.reads.iter().any(|read| variables::is_common(read.number)) && *is_wait {
                     return true;
                 }
                 let leaves_when =
