@@ -52,6 +52,7 @@ mod units;
 mod unset_reads;
 mod vacancy;
 mod variables;
+mod whole_program;
 
 pub use calls::{Argument, CallSite, CalledProgramName, call_site, called_programs};
 pub use checked_blocks::CheckedBlocks;
