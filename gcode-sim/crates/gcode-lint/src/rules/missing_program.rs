@@ -1,11 +1,13 @@
 //! Rule: a call of a program that is neither in the file nor in the folders, PS0076, or PS0310 by name.
 //!
 //! A macro that a control protects is probably on the control: its absence here is a warning.
+use std::collections::{BTreeMap, BTreeSet};
+
 use gcode_lang::alarm::kinds::{PS0076, PS0310};
 use gcode_lang::alarm::{missing_macro_help, repeats_in_p_help};
 use gcode_lang::syntax::ast::ProgramName;
 
-use crate::calls::CalledProgramName;
+use crate::calls::{CallSite, CalledProgramName};
 use crate::prelude::*;
 
 pub(super) static RULE: Rule =
@@ -13,15 +15,16 @@ pub(super) static RULE: Rule =
 
 pub(crate) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    let mut reported: Vec<&CalledProgramName> = Vec::new();
-    for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
+    let missing =
+        unit.calls.iter().filter(|call| unit.is_reached[call.block] && context.called_unit(call).is_none());
+    let missing: Vec<_> = missing.collect();
+    let counts = call_counts(unit, &missing);
+    let mut reported = BTreeSet::new();
+    for call in missing {
         // One finding per missing program, regardless of the number of calls.
-        if context.called_unit(call).is_some()
-            || call.target != CalledProgramName::Missing && reported.contains(&&call.target)
-        {
+        if call.target != CalledProgramName::Missing && !reported.insert(&call.target) {
             continue;
         }
-        reported.push(&call.target);
         let label = call.target.label();
         let mut severity = RULE.kind.severity;
         let (message, help) = match call.target {
@@ -39,7 +42,11 @@ pub(crate) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Di
                 let in_p = call.digits_of_p.filter(|digits| is_in_memory(context, *digits));
                 let help = in_p.map(repeats_in_p_help).or(of_macro);
                 let help = help.unwrap_or_else(|| "give the folder that holds it with --lib".to_owned());
-                (format!("{PS0076}: program {label} is not found{}", count_text(unit, &call.target)), help)
+                let calls = match counts[&call.target] {
+                    1 => String::new(),
+                    calls => format!(" ({calls} calls)"),
+                };
+                (format!("{PS0076}: program {label} is not found{calls}"), help)
             }
             CalledProgramName::Name(_) => (
                 format!("{PS0310}: program {label} is not found"),
@@ -57,12 +64,17 @@ fn is_in_memory(context: &CheckContext<'_>, number: u32) -> bool {
     context.memory.find_from(&ProgramName::Number(number), None).is_some()
 }
 
-/// Returns the number of calls of a program, if there are several: those that are left out of the check count too.
-fn count_text(unit: &ProgramUnit<'_>, target: &CalledProgramName) -> String {
-    let calls = unit.calls.iter().filter(|call| unit.is_reached[call.block] && call.target == *target);
-    let left_out = |block: OpIndex| unit.left_out.calls.get(&unit.op(block).span.start).copied();
-    let calls: usize = calls.map(|call| 1 + left_out(call.block).unwrap_or_default()).sum();
-    if calls == 1 { String::new() } else { format!(" ({calls} calls)") }
+/// Returns the number of calls of each missing program: those that are left out of the check count too.
+fn call_counts<'a>(
+    unit: &ProgramUnit<'_>,
+    missing: &[&'a CallSite],
+) -> BTreeMap<&'a CalledProgramName, usize> {
+    let mut counts = BTreeMap::new();
+    for call in missing {
+        let left_out = unit.left_out.calls.get(&unit.op(call.block).span.start);
+        *counts.entry(&call.target).or_default() += 1 + left_out.copied().unwrap_or_default();
+    }
+    counts
 }
 
 #[cfg(test)]
