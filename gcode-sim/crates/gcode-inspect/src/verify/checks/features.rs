@@ -18,6 +18,8 @@ pub(in crate::verify) enum ShapeGap {
     FullDepth(Option<u32>),
     /// The depth of its full diameter is unknown, which has to pass the far side.
     FullThrough(Option<u32>),
+    /// How far it goes beyond the far side is unknown, since its point is.
+    BreakThrough(Option<u32>),
     /// The angle of its countersink is unknown.
     Angle(Option<u32>),
     /// The floor of its counterbore is unknown: it counts as flat.
