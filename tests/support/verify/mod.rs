@@ -16,7 +16,9 @@ use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Call};
 use gcode_lang::program::NoLibrary;
 use gcode_part::{Assumption, AssumptionPlace, NominalPart};
-use gcode_session::{Criteria, Request, Run, Simulation, judge_flutes, judge_holes, simulate};
+use gcode_session::{
+    Criteria, Request, Run, Simulation, complete_depths, judge_flutes, judge_holes, simulate,
+};
 use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
 
@@ -41,7 +43,8 @@ pub(crate) fn run(case: &Case) {
             inspect_flutes(&verdict, &grinding.run)
         }
         Some(nominal) => {
-            let reference = nominal.into_holes().unwrap();
+            let mut reference = nominal.into_holes().unwrap();
+            complete_depths(&request, &mut NoLibrary, &mut reference).unwrap();
             let criteria = Criteria::of(&reference);
             let (simulation, verdict) =
                 judge_holes(&request, &mut NoLibrary, criteria, &mut (), &mut ()).unwrap();

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Point3, Unit, Vector3};
 
+use super::facing::facing_depths;
 use super::feature::{DepthTo, Feature, FeatureKind};
 use super::hole::Hole;
 use super::limits::NOISE;
@@ -101,7 +102,11 @@ impl Step {
 impl EntryPlanes {
     /// Returns the metal round these holes; their depths have a tolerance.
     pub fn of(holes: &[Hole], depth_tolerance: f64) -> Self {
-        let collars: Vec<Collar> = holes.iter().map(|hole| Collar::of(hole, depth_tolerance)).collect();
+        let collar = |(hole, facing): (&Hole, Option<f64>)| match facing {
+            Some(depth) => Collar::of(&Hole { depth, through: true, ..hole.clone() }, depth_tolerance),
+            None => Collar::of(hole, depth_tolerance),
+        };
+        let collars: Vec<Collar> = holes.iter().zip(facing_depths(holes)).map(collar).collect();
         let reach =
             |collar: &Collar| libm::hypot(collar.rod.length / 2.0 + collar.floor(), collar.rod.radius);
         Self {

@@ -40,6 +40,7 @@ mod csv_list;
 mod distance;
 mod drawn_pattern;
 mod entry_planes;
+mod facing;
 mod feature;
 mod flutes;
 pub mod gauge;

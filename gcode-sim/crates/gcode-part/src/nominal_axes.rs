@@ -18,6 +18,9 @@ const SAME_AXIS: f64 = 1e-6;
 /// Largest difference between the diameter of a step and that of the pass that cuts it, mm.
 const SAME_DIAMETER: f64 = 0.05;
 
+/// Largest difference between the depth of a step and that of the pass of unknown diameter that cuts it, mm.
+const SAME_DEPTH: f64 = 0.1;
+
 /// Least depth of a pass that cuts a hole, mm.
 const MIN_DEPTH: f64 = 0.01;
 
@@ -139,8 +142,8 @@ impl NominalAxes {
         !self.stacks.is_empty()
     }
 
-    /// Returns the step of a stepped hole that a pass of this diameter cuts: one as wide, else the lowest that it enters; 0
-    /// at any other hole.
+    /// Returns the step of a stepped hole that a pass of this diameter cuts: one as wide, of an unknown diameter one as deep, else
+    /// the lowest that it enters; 0 at any other hole.
     pub fn step(
         &self,
         pass: [&Point3<f64>; 2],
@@ -153,15 +156,15 @@ impl NominalAxes {
             return 0;
         };
         let below = |step: &ListedStep| (step.entry - pass[1]).dot(out);
-        let is_as_wide = |step: &ListedStep| {
-            diameter
-                .is_some_and(|own| step.diameters.iter().any(|other| (own - other).abs() <= SAME_DIAMETER))
+        let off = |step: &ListedStep| (below(step) - step.depth).abs();
+        let is_made = |step: &ListedStep| match diameter {
+            Some(own) => step.diameters.iter().any(|other| (own - other).abs() <= SAME_DIAMETER),
+            None => off(step) <= SAME_DEPTH,
         };
         let steps = || stack.iter().enumerate();
-        let off = |step: &ListedStep| (below(step) - step.depth).abs();
-        let wide = steps().filter(|(_, step)| is_as_wide(step));
+        let made = steps().filter(|(_, step)| is_made(step));
         let mut entered = steps().filter(|(_, step)| SAME_LEVEL < below(step));
-        let nearest = wide.min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+        let nearest = made.min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
         nearest.or(entered.next_back()).map_or(0, |(index, _)| index)
     }
 

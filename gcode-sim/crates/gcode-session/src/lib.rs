@@ -32,6 +32,7 @@ mod judgement;
 mod marked_events;
 mod open_depths;
 mod outside_text;
+mod reset_lengths;
 mod second_start;
 mod stubs;
 mod trace;
@@ -372,6 +373,7 @@ pub fn simulate_observed<S: EventSink>(
     let mut extracted = extractor.finish();
     let lengths = run.control.tool_lengths().map(|(h, _)| h);
     extracted.program_lengths = lengths.filter(|h| !request.states_length(*h)).collect();
+    extracted.reset_lengths = reset_lengths::reset_lengths(request, &run);
     extracted.called_stubs = stubs::called_stubs(&run);
     extracted.findings.extend(second_start::finding(request, &run, &metal, (&extracted, feeds)));
     extracted.findings.extend(run.findings());

@@ -27,6 +27,9 @@ pub struct HoleExtraction {
     pub(crate) offset_tools: BTreeSet<Option<u32>>,
     /// H numbers of the tool lengths that the program sets, without 0.
     pub program_lengths: BTreeSet<u32>,
+    /// H of tools touched off that the program sets to another length than the machine file: the number, the program's length and
+    /// that of the file, mm.
+    pub reset_lengths: Vec<(u32, f64, f64)>,
     /// Called programs that do nothing here: stubs of M99 alone, as `O9811`.
     pub called_stubs: Vec<String>,
     /// Rapids whose path over the part is unknown; `None` if there are none.

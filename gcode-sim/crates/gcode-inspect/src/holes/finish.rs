@@ -44,6 +44,7 @@ impl HoleExtractor<'_> {
             length_mismatches: self.length_mismatches,
             offset_tools: self.offset_tools,
             program_lengths: BTreeSet::new(),
+            reset_lengths: Vec::new(),
             called_stubs: Vec::new(),
             unknown_rapids: self.positions.finish(self.machine),
             assumed_axes,

@@ -22,19 +22,29 @@ pub(super) struct Bore {
 }
 
 impl Comparison<'_> {
+    /// Returns the diameter of a nominal hole; where the list has none, that of its finishing tool.
+    fn made_diameter(&self, index: usize) -> Option<f64> {
+        let pair = || self.pairs.binary_search_by_key(&index, |pair| pair.nominal).ok();
+        self.nominal[index].widest_diameter().or_else(|| self.actual[self.pairs[pair()?].actual].diameter)
+    }
+
     /// Returns the nominal bore, as a cylinder, in whose wall a hole ends: an oil hole.
     pub(super) fn bore_at_end(&self, hole: &Hole) -> Option<Bore> {
+        let own = self.nominal.iter().position(|other| std::ptr::eq(other, hole));
+        let open = self.pairs.iter().filter(|pair| self.nominal[pair.nominal].widest_diameter().is_none());
+        let widest = open.filter_map(|pair| self.actual[pair.actual].diameter).fold(0.0, f64::max);
+        let margin = Vector3::repeat(widest / 2.0);
         let collars = self.collars.get_or_init(|| EntryPlanes::of(self.nominal, self.tolerances.depth));
         let (out, end) = (Vector3::from(hole.axis), bottom(hole));
         let mut found = None;
-        collars.around(&end, &end, &mut |index| {
-            let (other, rod) = (&self.nominal[index], collars.collar(index).rod);
+        collars.around(&(end - margin), &(end + margin), &mut |index| {
+            let rod = collars.collar(index).rod;
             let is_across = out.dot(&rod.axis).abs() < COS_30;
-            let Some(diameter) = other.widest_diameter().filter(|_| is_across && found.is_none()) else {
+            let Some(diameter) = self.made_diameter(index).filter(|_| is_across && found.is_none()) else {
                 return;
             };
             let bore = Rod { radius: diameter / 2.0, ..rod };
-            let radius = hole.widest_diameter().unwrap_or(0.0) / 2.0;
+            let radius = own.and_then(|own| self.made_diameter(own)).unwrap_or(0.0) / 2.0;
             found = Bore::of(hole, radius, (&bore, index), self.tolerances.depth);
         });
         found

@@ -34,6 +34,8 @@ pub(super) struct Cut<'a> {
     pub thread: Option<Helix>,
     /// True for a void of the stock, which was there before the program.
     pub is_void: bool,
+    /// Diameter that the features of the hole give a mill whose own is unknown, mm.
+    pub mill: Option<f64>,
 }
 
 impl<'a> Cut<'a> {
@@ -66,6 +68,7 @@ impl<'a> Cut<'a> {
                 point,
                 may_be_cone,
                 is_void: false,
+                mill: None,
             }
         };
         drilled.passes().map(cut).collect()
@@ -81,6 +84,20 @@ impl<'a> Cut<'a> {
         let end = depth(&self.pass.cut.bottom) + point;
         let tip = depth(&self.pass.cut.start);
         (!exceeds(end, 0.0)).then_some(Self { start: end, tip, point: PointShape::Flat, ..self })
+    }
+
+    /// Returns the circle of a mill with the diameter that the features of the hole give it.
+    pub(super) fn of_mill(&self, mill: f64) -> Self {
+        let diameter = Some(2.0 * self.path_radius() + mill);
+        Self { pass: ToolPass { diameter, ..self.pass }, mill: Some(mill), ..*self }
+    }
+
+    /// Returns what the diameter of a mill rests on that the machine file lacks.
+    pub(super) fn mill_note(&self) -> Option<String> {
+        let (mill, tool) = (self.mill?, tool_name(self.pass.tool));
+        Some(format!(
+            "the machine file has no diameter of {tool}: it counts as Φ{mill:.3}, with which its circles make most of the features"
+        ))
     }
 
     /// Returns true if a pass has the same tool and diameter: a mill cuts several diameters.
@@ -176,7 +193,7 @@ impl<'a> Cut<'a> {
     }
 
     /// Returns the radius of a mill's circle; 0 of a stroke.
-    fn path_radius(&self) -> f64 {
+    pub(super) fn path_radius(&self) -> f64 {
         self.pass.cut.milled.map_or(0.0, |circle| circle.radius)
     }
 

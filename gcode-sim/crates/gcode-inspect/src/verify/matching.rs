@@ -92,8 +92,9 @@ impl<'a> Comparison<'a> {
         let candidates_within = |index: usize, distance: f64, candidates: &mut Vec<HolePair>| {
             let hole = &actual[index];
             let deepest = hole.bottom();
-            // The finishing tool may begin inside the cut of another one.
-            let starts = hole.passes().map(|pass| pass.cut.start);
+            // The finishing tool may begin inside the cut of another one, and a mill in a void whose wall it cuts above its end.
+            let wall = hole.surface.filter(|_| hole.finishing_cut.milled.is_some());
+            let starts = hole.passes().map(|pass| pass.cut.start).chain(wall);
             let ends = (hole.entry.inf(&deepest), hole.entry.sup(&deepest));
             let (low, high) = starts.fold(ends, |(low, high), start| (low.inf(&start), high.sup(&start)));
             let along = hole.axis.into_inner().abs() * (2.0 * (reach - distance) + inside);
@@ -242,7 +243,7 @@ impl<'a> Comparison<'a> {
     /// Leaves out of the extra holes the feeds whose tool stays in the air. A tool of unknown diameter is as wide as the holes
     /// that it finishes; one that finishes none counts by its tip.
     /// Those near a missing hole stay: they explain it, as the rows of a pattern do that lacks holes.
-    pub(super) fn leave_out_air_feeds(&mut self, surface: &Surface, machine: &Machine) {
+    pub(super) fn leave_out_air_feeds(&mut self, surface: &Surface, voids: &[Surface], machine: &Machine) {
         if self.pattern.is_some() && !self.missing.is_empty() {
             return;
         }
@@ -261,7 +262,14 @@ impl<'a> Comparison<'a> {
                     let nominal = widest_by_tool.get(&pass.tool).copied();
                     is_in_air(&pass, surface, machine, nominal)
                 });
-            is_in_air && !missing.iter().any(|missing| is_near(&nominal[*missing]))
+            // A circle in a void that meets no metal, neither on its axis nor at its wall.
+            let hole = &actual[*index];
+            let is_in_void = |pass: ToolPass<'_>| {
+                let is_inside = |p: &Point3<f64>| voids.iter().any(|void| void.value(p) < 0.0);
+                pass.cut.milled.is_some() && pass.diameter.is_some() && is_inside(&pass.cut.bottom)
+            };
+            let is_clear = is_known && hole.surface.is_none() && hole.passes().all(is_in_void);
+            (is_in_air || is_clear) && !missing.iter().any(|missing| is_near(&nominal[*missing]))
         };
         (self.in_air, self.extra) = std::mem::take(&mut self.extra).into_iter().partition(is_left_out);
     }

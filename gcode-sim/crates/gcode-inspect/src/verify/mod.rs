@@ -11,6 +11,7 @@ mod followers;
 mod hole_cuts;
 mod hole_finding;
 mod matching;
+mod mill_size;
 mod neighbours;
 mod not_checked;
 mod on_axis;
@@ -31,7 +32,7 @@ pub use completion::{AnyVerdict, VerdictParts};
 pub use conclusion::{Answer, Conclusion, Ending, SummaryWords, stop_sentence};
 pub use matching::{Comparison, HolePair};
 pub use neighbours::{Distance, HoleNeighbours, Neighbours};
-pub use open_depths::open_depths;
+pub use open_depths::OpenDepths;
 pub use position::Deviation;
 pub use verdict::{ExtraHole, HoleGeometry, HoleVerdict, Verdict};
 pub use verdict_finding::{Finding, PartPoint};
@@ -109,8 +110,10 @@ pub fn verify(
     let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
     comparison.reject_second_finishing(machine);
     let body = reference.body(machine.stock.as_ref());
+    let stock = reference.stock.as_ref().or(machine.stock.as_ref());
+    let voids = stock.map(Stock::voids).unwrap_or_default();
     if let Some(body) = &body {
-        comparison.leave_out_air_feeds(body, machine);
+        comparison.leave_out_air_feeds(body, &voids, machine);
     }
     let rows = pattern.and_then(|pattern| PatternRows::of(&comparison, pattern));
     let mirror_image = MirrorImage::of(&comparison);
@@ -118,8 +121,6 @@ pub fn verify(
         Some(_) => None,
         None => Transformation::of(&comparison, machine, &extraction.feeds_in_air),
     };
-    let stock = reference.stock.as_ref().or(machine.stock.as_ref());
-    let voids = stock.map(Stock::voids).unwrap_or_default();
     let openings: Vec<Surface> =
         stock.map(Stock::pockets).into_iter().flatten().chain(voids.iter().copied()).collect();
     let blank = Blank { body, openings: &openings, voids: &voids };

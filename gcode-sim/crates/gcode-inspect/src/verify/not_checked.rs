@@ -74,6 +74,12 @@ pub(super) fn list(
     all.extend(pitches(comparison, machine));
     all.extend(shapes(inspection));
     all.extend(lengths(extraction, machine));
+    for (h, own, stated) in &extraction.reset_lengths {
+        let what = format!("the length that the program sets for H{h}");
+        let reason =
+            format!("it is {own}, and {stated} in the machine file; the depth of what T{h} cuts rests on it");
+        all.push(NotChecked::gap(what, reason));
+    }
     all.extend(holders(extraction, machine));
     all.extend(conditions(extraction, reference, machine));
     all.extend(stubs(&extraction.called_stubs));
@@ -346,6 +352,13 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
                     ),
                     false => no_angle(what, tool),
                 }
+            }
+            ShapeGap::BreakThrough(tool) => {
+                let tool = tool_name(tool);
+                let reason = format!(
+                    "the machine file has no diameter of {tool}, on which the length of its point rests"
+                );
+                NotChecked::gap(format!("how far {tool} goes through {holes}"), reason)
             }
             ShapeGap::FullDepth(tool) => no_angle(format!("the depth of the full diameter of {holes}"), tool),
             ShapeGap::Floor(tool) => {

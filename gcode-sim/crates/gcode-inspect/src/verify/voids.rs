@@ -46,8 +46,9 @@ impl<'a> Cut<'a> {
             let cut = PassCut::new(top, bottom - air);
             let pass = ToolPass { tool: None, diameter: Some(2.0 * rod.radius), axis, cut, backtrace };
             let (start, tip, point) = (depth(&top), depth(&cut.bottom), PointShape::Flat);
-            let (kind, hand, thread, is_void, may_be_cone) = (None, None, None, true, false);
-            Some(Self { pass, start, tip, kind, hand, point, thread, is_void, may_be_cone })
+            let (kind, hand, thread, mill) = (None, None, None, None);
+            let (is_void, may_be_cone) = (true, false);
+            Some(Self { pass, start, tip, kind, hand, point, thread, is_void, may_be_cone, mill })
         };
         blank.voids.iter().filter_map(of_void).collect()
     }

@@ -4,6 +4,7 @@ use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH}
 use crate::machine::{PointShape, ToolKind};
 use crate::verify::followers::Follower;
 use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
+use crate::verify::mill_size::size_mills;
 use crate::verify::outline::{CutShape, Outline};
 use crate::verify::voids::Blank;
 use gcode_part::{Feature, FeatureKind, MAX_EDGE_BREAK, POINT_LENGTH};
@@ -17,6 +18,8 @@ pub(in crate::verify) enum ShapeGap {
     FullDepth(Option<u32>),
     /// The depth of its full diameter is unknown, which has to pass the far side.
     FullThrough(Option<u32>),
+    /// How far it goes beyond the far side is unknown, since its point is.
+    BreakThrough(Option<u32>),
     /// The angle of its countersink is unknown.
     Angle(Option<u32>),
     /// The floor of its counterbore is unknown: it counts as flat.
@@ -99,6 +102,7 @@ fn judge<'c>(
         near.extend(through);
         near.sort_by_key(|cut| cut.pass.cut.order);
     }
+    size_mills(nominal, &mut near, comparison.tolerances);
     let id = comparison.id(pair.nominal);
     let (findings, gaps) = (Vec::new(), Vec::new());
     let mut judged = Judgement { comparison, nominal, id, near, far, followers, blank, findings, gaps };
@@ -310,6 +314,8 @@ impl Judgement<'_> {
         let finding = stuck.into_iter().fold(finding, |finding, tap| {
             finding.note(format!("the spindle does not reverse while {} is in the hole", tap.name()))
         });
+        let sized = self.near.iter().find_map(Cut::mill_note);
+        let finding = sized.into_iter().fold(finding, Diagnostic::note);
         let place = self.near.last().or(self.far.last()).map(|cut| cut.pass.backtrace.clone());
         self.findings.push(place.into_iter().fold(finding, Diagnostic::with_backtrace));
     }
@@ -376,6 +382,7 @@ impl Judgement<'_> {
         let is_cone = matches!(cut.point, PointShape::Pointed(_)) && !exceeds(shape.full_depth(), 0.0);
         let is_edge_break = is_cone && !exceeds(excess, self.max_edge_break());
         let severity = if is_edge_break { Severity::Warning } else { Severity::Error };
+        let finding = cut.mill_note().into_iter().fold(finding, Diagnostic::note);
         let finding = match cut.point {
             PointShape::Unknown => {
                 finding.note("the machine file gives neither its kind nor its point_angle: it counts as flat")

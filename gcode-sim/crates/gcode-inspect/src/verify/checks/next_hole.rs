@@ -1,7 +1,7 @@
 //! Through holes on one axis, as in the ears of a clevis: strokes through several of them, and into the next one.
 use super::features::Judgement;
 use super::*;
-use crate::findings::FEATURE_EXTRA;
+use crate::findings::{FEATURE_EXTRA, HOLE_TWICE};
 use crate::holes::DrilledHole;
 use crate::machine::Machine;
 use crate::verify::followers::Follower;
@@ -32,10 +32,46 @@ pub(super) fn strokes_through<'c>(
 }
 
 impl Judgement<'_> {
+    /// Reports a tool that goes through this hole and on through one that follows, after it has drilled that by a stroke of its own.
+    fn drilled_again(
+        &self,
+        index: usize,
+        next: &Hole,
+        drilled: &DrilledHole,
+        machine: &Machine,
+    ) -> Option<Diagnostic> {
+        let Comparison { pairs, actual, .. } = self.comparison;
+        let other = &actual[pairs.iter().find(|pair| pair.nominal == index)?.actual];
+        let strokes = |drilled| {
+            let cuts = Cut::all(next, drilled, machine).into_iter();
+            let is_whole = |cut: &Cut<'_>| !exceeds(next.depth, cut.full_depth(0.0).unwrap_or(cut.tip));
+            cuts.filter(move |cut| !cut.is_circle() && !cut.is_thread() && is_whole(cut)).collect::<Vec<_>>()
+        };
+        if std::ptr::eq(drilled, other) {
+            return None;
+        }
+        let (through, own) = (strokes(drilled), strokes(other));
+        let is_again = |cut: &&Cut<'_>| own.iter().any(|own| cut.follows(own) && cut.is_same_size(&own.pass));
+        let cut = through.iter().find(is_again)?;
+        let message = format!(
+            "hole {} is drilled a second time: {} goes through it again behind hole {}",
+            self.comparison.id(index),
+            cut.name(),
+            self.id
+        );
+        let finding = Diagnostic::new(&HOLE_TWICE, message).with_severity(Severity::Warning);
+        let finding = finding.with_backtrace(cut.pass.backtrace.clone());
+        Some(
+            finding.help("end the stroke before the next hole, or remove the call or block that drills that"),
+        )
+    }
+
     /// Reports the cuts of a through hole that are wider than a hole that follows it, and reach into that.
     pub(super) fn judge_next_holes(&mut self, drilled: &DrilledHole, machine: &Machine) {
         let tolerances = self.comparison.tolerances;
         for Follower { index, hole: next, .. } in &self.followers {
+            let again = self.drilled_again(*index, next, drilled, machine);
+            self.findings.extend(again);
             let Some(outline) = Outline::of(next, tolerances.depth) else { continue };
             let excess = |cut: &Cut<'_>| {
                 let shape = cut.shape().filter(|_| exceeds(cut.tip, tolerances.depth))?;

@@ -6,7 +6,9 @@ use super::features::{Judgement, ShapeGap};
 use super::*;
 use crate::findings::{HOLE_DEPTH, HOLE_NOT_THROUGH, HOLE_THROUGH};
 use crate::holes::ring;
+use crate::machine::PointShape;
 use crate::verify::bottom;
+use crate::verify::followers::Follower;
 use crate::verify::hole_cuts::Cut;
 use gcode_part::{Feature, POINT_LENGTH};
 
@@ -15,6 +17,9 @@ const RIM_POINTS: u32 = 16;
 
 /// Distance beyond the far side at which a hole ends in a pocket or in metal, mm.
 const BELOW_FAR_SIDE: f64 = 0.01;
+
+/// Diameter up to which a drill is unknown, mm: wider holes are bored.
+const MAX_DRILL: f64 = 50.0;
 
 /// Least number of holes for one finding.
 const MIN_HOLES: usize = 3;
@@ -110,7 +115,7 @@ fn metal_below((surface, pockets): (&Surface, &[Surface]), hole: &Hole, tip: f64
 }
 
 /// Returns how far the full diameter of a cut passes the far side of a hole of this thickness, mm. A tool whose end is unknown
-/// counts as a drill of 118°.
+/// counts as a drill of 118°, and one of unknown diameter in a hole without one as a point.
 pub(super) fn break_through(cut: &Cut<'_>, nominal: &Hole, thickness: f64) -> f64 {
     let diameter = cut.pass.diameter.or(nominal.widest_diameter()).unwrap_or(0.0);
     cut.full_depth(diameter).unwrap_or(cut.tip - POINT_LENGTH * diameter) - thickness
@@ -125,14 +130,27 @@ impl Judgement<'_> {
         }
         self.judge_behind_pocket(surface);
         self.judge_behind_bore(surface);
-        let thickness = surface.map_or(0.0, |surface| thickness(&surface, nominal)).max(nominal.depth);
-        // The part is open between the holes of one axis, as between the ears of a clevis.
-        let thickness = self.followers.iter().map(|next| next.far).fold(thickness, f64::max);
-        let beyond = |cut: &&Cut<'_>| break_through(cut, nominal, thickness);
+        let radius = nominal.widest_diameter().unwrap_or(0.0) / 2.0;
+        let opens = opening_depth(self.blank.openings, nominal, radius);
+        let body = || surface.map_or(0.0, |surface| thickness(&surface, nominal));
+        let thickness = opens.unwrap_or_else(body).max(nominal.depth);
+        // The part is open between the holes of one axis, as between the ears of a clevis: a stroke ends behind the last one that it
+        // enters.
+        let thickness_of = |cut: &Cut<'_>| {
+            let is_entered = |next: &&Follower| next.far - next.hole.depth < cut.tip;
+            self.followers.iter().filter(is_entered).map(|next| next.far).fold(thickness, f64::max)
+        };
+        let beyond = |cut: &&Cut<'_>| break_through(cut, nominal, thickness_of(cut));
         let all = self.near.iter().chain(&self.far);
         let Some(cut) = all.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else { return };
-        let (limit, beyond) = (MAX_BREAK_THROUGH, beyond(&cut));
+        let (limit, beyond, thickness) = (MAX_BREAK_THROUGH, beyond(&cut), thickness_of(cut));
         if !exceeds(beyond, limit) {
+            return;
+        }
+        // The point of a drill of unknown diameter may be as long as that of the widest.
+        let is_open = cut.pass.diameter.or(nominal.widest_diameter()).is_none();
+        if is_open && cut.point != PointShape::Flat && !exceeds(beyond - POINT_LENGTH * MAX_DRILL, limit) {
+            self.gaps.push(ShapeGap::BreakThrough(cut.pass.tool));
             return;
         }
         let message = format!(
@@ -204,7 +222,13 @@ impl Judgement<'_> {
                 }),
             };
         let narrowest = || self.nominal.features.iter().map(|feature| feature.diameter).reduce(f64::min);
-        let diameter = feature.map(|feature| feature.diameter).or(own).or_else(narrowest).unwrap_or(0.0);
+        // Without a diameter in the list the rim is that of the tool that goes deepest.
+        let made = || {
+            let cuts = self.near.iter().chain(&self.far).filter(|cut| !cut.is_thread());
+            cuts.max_by(|a, b| a.tip.total_cmp(&b.tip))?.pass.diameter
+        };
+        let stated = feature.map(|feature| feature.diameter).or(own).or_else(narrowest);
+        let diameter = stated.or_else(made).unwrap_or(0.0);
         let thickness = surface.map_or(0.0, |surface| rim_thickness(&surface, self.nominal, diameter / 2.0));
         let thickest = thickness.max(self.nominal.depth);
         let mut gaps = Vec::new();
@@ -221,7 +245,11 @@ impl Judgement<'_> {
             }
             Some((depth(deepest).max(0.0), deepest.pass.backtrace.clone()))
         };
-        let sides = [reach(&self.near), reach(&self.far)];
+        // What a void leaves empty from the entry on needs no cut.
+        let first = self.near.iter().chain(&self.far).next();
+        let voids = first.map(|cut| Cut::of_voids(self.nominal, self.blank, tolerances, cut.pass.backtrace));
+        let near = [&self.near[..], &voids.unwrap_or_default()].concat();
+        let sides = [reach(&near), reach(&self.far)];
         self.gaps.extend(gaps);
         let depth = thickest;
         let cut: f64 = sides.iter().flatten().map(|(depth, _)| depth).sum();
