@@ -4,6 +4,7 @@ use std::sync::Arc;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
+use super::open_regions::OpenRegions;
 use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
@@ -65,12 +66,9 @@ impl KnownMetal {
                 Point3::from(Vector3::repeat(f64::INFINITY)),
             ],
         };
-        Self {
-            body: metal.body,
-            holes: metal.entries,
-            pockets: metal.pockets,
-            removed: RemovedMetal::new(bounds, metal.voids),
-        }
+        let OpenRegions { pockets, voids } =
+            OpenRegions::new(metal.body.as_ref(), metal.pockets, metal.voids);
+        Self { body: metal.body, holes: metal.entries, pockets, removed: RemovedMetal::new(bounds, voids) }
     }
 
     /// Returns false if nothing is known.

@@ -34,6 +34,7 @@ mod milled_blocks;
 mod milling;
 mod near_metal;
 mod offset_origin;
+mod open_regions;
 pub(crate) mod per_block;
 mod probing;
 mod profile;
