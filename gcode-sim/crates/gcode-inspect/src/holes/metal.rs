@@ -115,21 +115,21 @@ impl KnownMetal {
 
     /// Returns true if a travel leads through what was metal.
     pub(super) fn is_solid(&self, travel: &[Point3<f64>; 2]) -> bool {
-        !self.solid(&Strip::line(*travel), |_| true).is_empty()
+        !self.solid(&Strip::line(*travel), TOUCH_DEPTH, |_| true).is_empty()
     }
 
-    /// Returns shares of a strip outside which it is in no metal, cut or not; those of a line are exact.
-    pub(super) fn solid(&self, strip: &Strip, is_counted: impl Fn(usize) -> bool) -> Shares {
+    /// Returns shares of a strip outside which it is in no metal, cut or not, deeper than `skin`; those of a line are exact.
+    pub(super) fn solid(&self, strip: &Strip, skin: f64, is_counted: impl Fn(usize) -> bool) -> Shares {
         let [one, other] = &strip.edges;
         let mut shares = Shares::default();
         match (&self.body, &self.holes) {
-            (Some(body), _) if one == other => shares.extend(body.piece(&one[0], &one[1], TOUCH_DEPTH)),
-            (Some(body), _) => shares.extend(body.span([one, other], TOUCH_DEPTH)),
+            (Some(body), _) if one == other => shares.extend(body.piece(&one[0], &one[1], skin)),
+            (Some(body), _) => shares.extend(body.span([one, other], skin)),
             (None, Some(holes)) => {
                 let [low, high] = strip.bounds();
                 holes.near(&low, &high, &mut |hole| {
                     if is_counted(hole) {
-                        shares.extend(holes.collar(hole).span([one, other], TOUCH_DEPTH));
+                        shares.extend(holes.collar(hole).span([one, other], skin));
                     }
                 });
             }
@@ -170,6 +170,23 @@ impl KnownMetal {
             }
         });
         beyond.filter(|_| !is_in_other)
+    }
+
+    /// Returns true for a point above the entry of a nominal hole, within the metal that is known round it.
+    pub(super) fn is_above_entry(&self, p: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> bool {
+        let Some(holes) = self.holes.as_deref() else { return false };
+        let down = p - axis.into_inner() * MAX_HEIGHT_ABOVE_HOLE;
+        let (mut is_above, mut is_below) = (false, false);
+        holes.around(&p.inf(&down), &p.sup(&down), &mut |hole| {
+            let collar = holes.collar(hole);
+            let is_on_side = 0.0 < axis.dot(&collar.rod.axis);
+            if is_on_side && collar.is_parallel(axis) && collar.from_axis(p) <= collar.rod.radius {
+                let is_over = collar.depth(p) <= 0.0;
+                is_above |= is_over;
+                is_below |= !is_over;
+            }
+        });
+        is_above && !is_below
     }
 
     /// Returns true for a point in the column of one of the nominal holes that count.
@@ -251,7 +268,7 @@ impl KnownMetal {
     /// Returns true if all metal on a line is in one pocket.
     pub(super) fn is_in_pocket(&self, line: &[Point3<f64>; 2]) -> bool {
         let strip = Strip::line(*line);
-        let solid = self.solid(&strip, |_| true);
+        let solid = self.solid(&strip, TOUCH_DEPTH, |_| true);
         if solid.is_empty() {
             return !self.pockets.is_empty();
         }

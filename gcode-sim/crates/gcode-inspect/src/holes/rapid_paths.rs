@@ -12,6 +12,26 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};
 
+/// Search for metal on the paths of the tool that may be given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Search {
+    /// Along every path that a rapid of several axes can take.
+    Paths,
+    /// On the one path of a rapid.
+    Rapid(OnPath),
+    /// On the path of a feed.
+    Feed(OnPath),
+}
+
+/// What may make a search for metal on one path too long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum OnPath {
+    /// An axis rotates.
+    Turning,
+    /// The metal is what many feeds have left.
+    Straight,
+}
+
 /// Motions that are not searched to the end: the first, and their number.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnsearchedMotions(Option<(Backtrace, u64)>);
@@ -176,7 +196,7 @@ impl HoleExtractor<'_> {
         let contact = faces(start, &sides).map_or(Contact::Unknown, |faces| {
             NearMetal::of_strips(&self.metal, &faces, Judged::Uncut(None)).contact(&faces)
         });
-        let PointInMetal { point, depth } = self.in_rapid(event, contact)?;
+        let PointInMetal { point, depth } = self.in_rapid(event, contact, Search::Paths)?;
         Some(DeepPoint { point, depth, arrived: None })
     }
 
@@ -212,7 +232,11 @@ impl HoleExtractor<'_> {
             true if !parts.any(|part| self.may_cut(part, &[begin, tip], &axis)) => Contact::Clear,
             _ => self.body_contact(path, paths, &axis),
         };
-        let Some(cut) = self.in_rapid(event, contact) else { return };
+        let search = match path.len() < 2 {
+            true => Search::Rapid(if is_straight { OnPath::Straight } else { OnPath::Turning }),
+            false => Search::Paths,
+        };
+        let Some(cut) = self.in_rapid(event, contact, search) else { return };
         // While an axis rotates, the clearance of the job decides; the shape of the tool's end is only assumed.
         let severity = error_if(is_straight || self.process_limits.clearance.is_none());
         let orders = if path.len() < 2 { "" } else { " on some of its paths" };
@@ -271,15 +295,20 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the metal that a search for a rapid has found; counts the rapid if the search was given up.
-    fn in_rapid(&mut self, event: &Event<'_>, contact: Contact) -> Option<PointInMetal> {
+    fn in_rapid(&mut self, event: &Event<'_>, contact: Contact, search: Search) -> Option<PointInMetal> {
         match contact {
             Contact::Clear => None,
             Contact::Metal(at) => Some(at),
             Contact::Unknown => {
-                self.unsearched_rapids.count(|| event.backtrace());
+                self.count_unsearched(event, search);
                 None
             }
         }
+    }
+
+    /// Counts a motion whose search was given up.
+    pub(super) fn count_unsearched(&mut self, event: &Event<'_>, search: Search) {
+        self.unsearched.entry(search).or_default().count(|| event.backtrace());
     }
 
     /// Reports a rapid of unknown start at whose end the side of the tool is in metal.
@@ -289,7 +318,7 @@ impl HoleExtractor<'_> {
         let (setup, at) = (self.setup, self.axis_position);
         let at = AxisBox::line(self.machine, &setup, &at, &at);
         let contact = self.body_contact(&at, Some(Some(stands)), &axis);
-        if let Some(cut) = self.in_rapid(event, contact) {
+        if let Some(cut) = self.in_rapid(event, contact, Search::Rapid(OnPath::Straight)) {
             self.report_side(event, cut, Severity::Error, "");
         }
     }
@@ -322,7 +351,7 @@ impl HoleExtractor<'_> {
             Deepest::Clear => None,
             Deepest::Metal(point) => Some(point),
             Deepest::Unknown => {
-                self.unsearched_rapids.count(|| event.backtrace());
+                self.count_unsearched(event, Search::Paths);
                 None
             }
         }

@@ -40,6 +40,8 @@ struct Sweep {
     /// Direction of the tool, out of the part.
     axis: Unit<Vector3<f64>>,
     profile: u32,
+    /// It has cut a little of what has to stay: what it leaves beside it counts at the next feed.
+    has_scratched: bool,
 }
 
 /// Volumes that the tool has swept in feeds.
@@ -87,13 +89,13 @@ impl RemovedMetal {
         }
     }
 
-    /// Adds a straight feed.
+    /// Adds a straight feed; `has_scratched` if it has cut a little of what has to stay.
     pub(super) fn add(
         &mut self,
-        from: Point3<f64>,
-        to: Point3<f64>,
+        [from, to]: Line,
         axis: Unit<Vector3<f64>>,
         profile: &Profile,
+        has_scratched: bool,
     ) {
         let known = self.profiles.iter().rposition(|other| other == profile);
         let profile = known.unwrap_or_else(|| {
@@ -102,7 +104,7 @@ impl RemovedMetal {
         }) as u32;
         let last = self.sweeps.last_mut().filter(|_| self.is_last_open);
         let is_longer = last
-            .filter(|last| last.axis == axis && last.profile == profile)
+            .filter(|last| (last.axis, last.profile, last.has_scratched) == (axis, profile, has_scratched))
             .is_some_and(|last| last.lengthen_along_axis(&from, &to) || last.go_on(&from, &to, self.heading));
         if !is_longer {
             if self.sweeps.len() == MAX_SWEEPS {
@@ -110,7 +112,7 @@ impl RemovedMetal {
                 return;
             }
             self.add_last_to_slabs();
-            self.sweeps.push(Sweep { from, to, axis, profile });
+            self.sweeps.push(Sweep { from, to, axis, profile, has_scratched });
             self.common_axis = Some(self.common_axis.unwrap_or(Some(axis)).filter(|common| *common == axis));
             self.is_last_open = true;
             self.heading = Unit::try_new(to - from, ROUNDING);
@@ -120,7 +122,10 @@ impl RemovedMetal {
 
     /// Adds the last sweep, which is complete, to the slabs.
     fn add_last_to_slabs(&mut self) {
-        let Some(Sweep { from, to, axis, profile }) = self.sweeps.last() else { return };
+        let Some(Sweep { from, to, axis, profile, .. }) = self.sweeps.last().filter(|last| !last.has_scratched)
+        else {
+            return;
+        };
         let tool = (&self.profiles[*profile as usize], *profile);
         if let Some(pass) = Slab::of_pass([*from, *to], axis, tool, self.sweeps.len() as u32) {
             let up = axis.into_inner();
@@ -140,9 +145,9 @@ impl RemovedMetal {
             let end = p + axis * top.min(self.height_of_round(&p, &axis, profile.radius));
             (low, high) = (low.inf(&end), high.sup(&end));
         }
-        let margin = Vector3::repeat(profile.radius + TOUCH_DEPTH);
+        let margin = axis.map(|along| profile.radius * (1.0 - along * along).max(0.0).sqrt() + TOUCH_DEPTH);
         let number = self.sweeps.len() - 1;
-        let sweep_box = SweepBox::new([&sweep.from, &sweep.to], &axis, top, margin.x);
+        let sweep_box = SweepBox::new([&sweep.from, &sweep.to], &axis, top, &margin);
         match self.sweep_boxes.get_mut(number) {
             Some(known) => *known = sweep_box,
             None => self.sweep_boxes.push(sweep_box),
@@ -192,6 +197,13 @@ impl RemovedMetal {
         self.voids.is_empty() && is_one_way && self.profiles.iter().all(is_open)
     }
 
+    /// Takes away the shares of a strip that are in voids.
+    pub(super) fn take_voids(&self, strip: &Strip, shares: &mut Shares) {
+        for void in &self.voids {
+            shares.take_away(strip.piece(|[from, to]| void.piece(from, to, -TOUCH_DEPTH)));
+        }
+    }
+
     /// Returns the number of sweeps so far.
     pub(super) fn count(&self) -> u32 {
         self.sweeps.len() as u32
@@ -209,6 +221,16 @@ impl RemovedMetal {
     }
 }
 
+/// Sweeps that count, and how far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Covers {
+    All,
+    /// Those of tools of known diameter.
+    Certain,
+    /// Those of tools of known diameter; where they have scratched what has to stay, no more than they have cut.
+    Kept,
+}
+
 /// Number of the sweeps that are tried before all others.
 const MAX_RECENT: usize = 8;
 
@@ -220,23 +242,24 @@ pub(super) struct FirstSweeps<'r> {
 }
 
 impl FirstSweeps<'_> {
-    /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included. `is_certain` leaves
-    /// out tools of unknown diameter.
-    pub(super) fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
-        for void in &self.removed.voids {
-            shares.take_away(strip.piece(|[from, to]| void.piece(from, to, -TOUCH_DEPTH)));
-        }
+    /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included.
+    pub(super) fn uncover(&self, strip: &Strip, covers: Covers, shares: &mut Shares) {
+        self.removed.take_voids(strip, shares);
         let profiles = &self.removed.profiles;
-        let is_counted = |profile: u32| profiles[profile as usize].is_certain || !is_certain;
+        let is_counted = |profile: u32| profiles[profile as usize].is_certain || covers == Covers::All;
         self.removed.slabs.uncover(strip, self.sweeps.len(), is_counted, shares);
         let mut recent = self.removed.recent.borrow_mut();
         let cover = |index: usize, shares: &mut Shares| {
             let Some(sweep) = self.sweeps.get(index).filter(|sweep| is_counted(sweep.profile)) else {
                 return false;
             };
+            let margin = match covers {
+                Covers::Kept if sweep.has_scratched => ROUNDING,
+                _ => TOUCH_DEPTH,
+            };
             let mut has_covered = false;
             for part in &profiles[sweep.profile as usize].parts {
-                has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, line)));
+                has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, margin, line)));
             }
             has_covered
         };
@@ -303,15 +326,15 @@ impl Sweep {
         is_straight
     }
 
-    /// Returns the shares of a travel between which it is in the volume that a part of the tool sweeps.
+    /// Returns the shares of a travel between which it is in the volume that a part of the tool sweeps, or at a margin beside it.
     ///
     /// At the share s of the travel and t of the sweep the travel's point is at the height h = h₀ + s·h₁ − t·h₂ above the tip
     /// and in the part if |q + s·u − t·d| ≤ r + k·h across the axis, and h lies between the ends of the part. For a given s
     /// the t that fulfil this are an interval; if it is not empty, it holds 0 or 1, the t at which an end of the part passes
     /// the point, or the t at which |q + s·u − t·d|² − (r + k·h)² is least. So the shares are those that fulfil it on one of
     /// five lines t = a + b·s. A sweep steeper than the side of a cone has no such least value.
-    fn covered(&self, part: &ToolPart, travel: &[Point3<f64>; 2]) -> Option<[f64; 2]> {
-        let taper = part.taper.grown(TOUCH_DEPTH);
+    fn covered(&self, part: &ToolPart, margin: f64, travel: &[Point3<f64>; 2]) -> Option<[f64; 2]> {
+        let taper = part.taper.grown(margin);
         let axis = self.axis.into_inner();
         let split = |v: Vector3<f64>| {
             let height = v.dot(&axis);
@@ -319,11 +342,11 @@ impl Sweep {
         };
         let ((q, from), (u, rise), (d, climb)) =
             (split(travel[0] - self.from), split(travel[1] - travel[0]), split(self.to - self.from));
-        let low = part.from - TOUCH_DEPTH;
+        let low = part.from - margin;
         // A cone is nowhere wider than its upper end.
         let high = match 0.0 < taper.slope {
-            true => (part.radius() + TOUCH_DEPTH - taper.radius) / taper.slope,
-            false => part.to + TOUCH_DEPTH,
+            true => (part.radius() + margin - taper.radius) / taper.slope,
+            false => part.to + margin,
         };
         let reach = taper.at(low).max(taper.at(high)) + d.norm() + u.norm();
         if reach * reach < q.norm_squared() {
