@@ -85,7 +85,7 @@ impl HoleExtractor<'_> {
             let is_reported =
                 self.check_path(event, (from, to), start) || self.check_turns_alone(event, (from, to));
             if !is_reported && (self.has_left_start || self.surface.is_none()) {
-                let is_reported = self.check_box(event, &all, from);
+                let is_reported = self.check_box(event, &all, (from, to), start);
                 if !is_reported {
                     self.check_tool_body(event, &all, (from, to), start);
                 }
@@ -157,7 +157,13 @@ impl HoleExtractor<'_> {
 
     /// Reports a rapid that cuts if its axes arrive in another order than along the straight path; returns true if one
     /// does.
-    fn check_box(&mut self, event: &Event<'_>, all: &AxisBox<'_>, from: &Position) -> bool {
+    fn check_box(
+        &mut self,
+        event: &Event<'_>,
+        all: &AxisBox<'_>,
+        (from, to): (&Position, &Position),
+        start: Option<Point3<f64>>,
+    ) -> bool {
         let mut budget = std::mem::take(&mut self.search_budget);
         let deepest = match (&self.surface, &self.metal.holes) {
             (Some(surface), _) => all.deepest(&distance_from(surface), TOUCH_DEPTH, &mut budget),
@@ -170,8 +176,10 @@ impl HoleExtractor<'_> {
         let depth = self.metal.depth(&found.point).unwrap_or(found.depth);
         let level = self.metal.level_at(&found.point);
         let order = self.arrival_order(&found, all);
+        let begin = start;
         let start = self.machine.forward(from, &self.setup).tip;
         let starts_inside = self.metal.depth(&start).is_some_and(|depth| TOUCH_DEPTH < depth);
+        let remedy = self.straight_rapids((from, to), begin);
         self.add_rapid_into_part(event, |kind| {
             let point = format_point(&found.point);
             let message = format!("rapid into the part{order}: {depth:.3} mm below {level} at {point}");
@@ -181,7 +189,7 @@ impl HoleExtractor<'_> {
             };
             Diagnostic::new(kind, message)
                 .note("each axis of a rapid moves at its own rate, so that any of them may arrive first")
-                .help(help)
+                .help(format!("{help}{remedy}"))
         });
         true
     }
@@ -239,8 +247,11 @@ impl HoleExtractor<'_> {
         let Some(cut) = self.in_rapid(event, contact, search) else { return };
         // While an axis rotates, the clearance of the job decides; the shape of the tool's end is only assumed.
         let severity = error_if(is_straight || self.process_limits.clearance.is_none());
-        let orders = if path.len() < 2 { "" } else { " on some of its paths" };
-        self.report_side(event, cut, severity, orders);
+        let (orders, remedy) = match path.len() < 2 {
+            true => ("", ""),
+            false => (" on some of its paths", self.straight_rapids((from, to), start)),
+        };
+        self.report_side(event, cut, severity, (orders, remedy));
     }
 
     /// Returns true for a tool whose edges are wider than a part above them: a side cutter, or a cutter for T slots.
@@ -319,7 +330,7 @@ impl HoleExtractor<'_> {
         let at = AxisBox::line(self.machine, &setup, &at, &at);
         let contact = self.body_contact(&at, Some(Some(stands)), &axis);
         if let Some(cut) = self.in_rapid(event, contact, Search::Rapid(OnPath::Straight)) {
-            self.report_side(event, cut, Severity::Error, "");
+            self.report_side(event, cut, Severity::Error, ("", ""));
         }
     }
 
@@ -327,12 +338,40 @@ impl HoleExtractor<'_> {
     pub(super) fn check_turned_body(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>) -> bool {
         let cut = self.turned_body_contact(event, travel);
         if let Some(cut) = cut {
-            self.report_side(event, cut, Severity::Error, " while an axis rotates");
+            self.report_side(event, cut, Severity::Error, (" while an axis rotates", ""));
         }
         cut.is_some()
     }
 
-    fn report_side(&mut self, event: &Event<'_>, cut: PointInMetal, severity: Severity, orders: &str) {
+    /// Returns what a machine whose rapids are straight lines needs, if the line between two positions is free: its tip has been
+    /// compared before.
+    fn straight_rapids(
+        &mut self,
+        (from, to): (&Position, &Position),
+        start: Option<Point3<f64>>,
+    ) -> &'static str {
+        const REMEDY: &str =
+            "; if all its rapids are straight lines (parameter 1401#1), as this one would be free, give --control LRP=1";
+        let is_straight = self.machine.is_straight(&AxisMotion { from, to, arc: None });
+        // Without a start the tool leaves a hole the way that it has come.
+        let Some(begin) = start else { return if is_straight { REMEDY } else { "" } };
+        let (setup, tip) = (self.setup, self.pose_at(to).tip);
+        let Some(axis) = self.axis_in_motion(&begin, &tip) else { return "" };
+        let line = AxisBox::line(self.machine, &setup, from, to);
+        let paths = is_straight.then(|| Some(TipPaths::line(&[begin, tip])));
+        match self.body_contact(&line, paths, &axis) {
+            Contact::Clear => REMEDY,
+            Contact::Metal(_) | Contact::Unknown => "",
+        }
+    }
+
+    fn report_side(
+        &mut self,
+        event: &Event<'_>,
+        cut: PointInMetal,
+        severity: Severity,
+        (orders, remedy): (&str, &str),
+    ) {
         let level = self.metal.level_at(&cut.point);
         self.add_rapid_into_part(event, |kind| {
             let (depth, point) = (cut.depth, format_point(&cut.point));
@@ -341,7 +380,9 @@ impl HoleExtractor<'_> {
             );
             Diagnostic::new(kind, message)
                 .with_severity(severity)
-                .help("keep the diameters of the tool and its holder away from the part until the feed")
+                .help(format!(
+                    "keep the diameters of the tool and its holder away from the part until the feed{remedy}"
+                ))
         });
     }
 
