@@ -266,8 +266,7 @@ impl HoleExtractor<'_> {
         self.metal.judged_on(travel, Judged::Untouched(FeedPart::Tip)).is_some()
             || self.tool_body.iter().filter(|part| part.is_cutter).any(|part| {
                 let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
-                self.may_cut(part, travel, axis)
-                    && !self.metal.is_allowed(travel, axis, part, 0.0)
+                !self.metal.is_allowed(travel, axis, part, 0.0)
                     && is_at_outline(part, axis, travel, &self.metal, Judged::Untouched(side))
             })
     }

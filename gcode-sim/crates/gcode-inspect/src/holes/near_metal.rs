@@ -91,9 +91,13 @@ impl KnownMetal {
     /// if nothing is known.
     pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let travel = [*from, *to];
-        let is_in_known = self.body.is_some() || self.is_solid(&travel);
         let line = Strip::line(travel);
-        is_in_known.then(|| !NearMetal::new(self, line.bounds(), Judged::Uncut(None)).is_clear(&line))
+        let mut shares = self.solid(&line, TOUCH_DEPTH, |_| true);
+        if shares.is_empty() {
+            return self.body.map(|_| false);
+        }
+        NearMetal::new(self, line.bounds(), Judged::Uncut(None)).uncover(&line, Covers::All, &mut shares);
+        Some(!is_clear(&line, &shares))
     }
 
     /// Returns true if a travel within a radius of the axis of a nominal hole without a diameter, below its entry, leads through what
@@ -226,11 +230,6 @@ impl<'m> NearMetal<'m> {
             found = depths.into_iter().flatten().fold(found, PointInMetal::deeper);
         }
         found
-    }
-
-    /// Returns true if no metal is on a strip, false if there may be some.
-    fn is_clear(&self, strip: &Strip) -> bool {
-        is_clear(strip, &self.shares(strip, None))
     }
 
     /// Returns shares of a strip outside which it is in no metal that is judged; those of a line are exact. `within` are those of

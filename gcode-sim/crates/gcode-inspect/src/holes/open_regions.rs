@@ -84,8 +84,9 @@ impl Section {
             (Self::Rectangle(a), Self::Rectangle(b)) => {
                 (0..2).all(|i| a[i][0] <= b[i][0] + NOISE && b[i][1] <= a[i][1] + NOISE)
             }
-            (Self::Rectangle(a), Self::Disc { centre, radius }) => (0..2)
-                .all(|i| a[i][0] <= centre[i] - radius + NOISE && centre[i] + radius <= a[i][1] + NOISE),
+            (Self::Rectangle(a), Self::Disc { centre, radius }) => {
+                (0..2).all(|i| a[i][0] <= centre[i] - radius + NOISE && centre[i] + radius <= a[i][1] + NOISE)
+            }
             (Self::Disc { centre, radius }, Self::Rectangle(b)) => {
                 let far = [0, 1].map(|i| (b[i][0] - centre[i]).abs().max((b[i][1] - centre[i]).abs()));
                 libm::hypot(far[0], far[1]) <= radius + NOISE
@@ -150,9 +151,7 @@ fn joint(one: &Surface, other: &Surface, axis: usize) -> Option<Surface> {
 /// Returns true if a body holds another one.
 fn holds(body: &Surface, other: &Surface) -> bool {
     (0..3).any(|axis| match (prism(body, axis), prism(other, axis)) {
-        (Some((a, section)), Some((b, of_other))) => {
-            a[0] <= b[0] && b[1] <= a[1] && section.holds(of_other)
-        }
+        (Some((a, section)), Some((b, of_other))) => a[0] <= b[0] && b[1] <= a[1] && section.holds(of_other),
         _ => false,
     })
 }
@@ -182,9 +181,7 @@ impl Section {
     /// Returns true if a section holds another one but for a thickness that counts as none.
     fn covers(self, other: Self) -> bool {
         match self {
-            Self::Disc { centre, radius } => {
-                Self::Disc { centre, radius: radius + TOUCH_DEPTH }.holds(other)
-            }
+            Self::Disc { centre, radius } => Self::Disc { centre, radius: radius + TOUCH_DEPTH }.holds(other),
             Self::Rectangle(_) => self.holds(other),
         }
     }

@@ -350,8 +350,7 @@ impl HoleExtractor<'_> {
         (from, to): (&Position, &Position),
         start: Option<Point3<f64>>,
     ) -> &'static str {
-        const REMEDY: &str =
-            "; if all its rapids are straight lines (parameter 1401#1), as this one would be free, give --control LRP=1";
+        const REMEDY: &str = "; if all its rapids are straight lines (parameter 1401#1), as this one would be free, give --control LRP=1";
         let is_straight = self.machine.is_straight(&AxisMotion { from, to, arc: None });
         // Without a start the tool leaves a hole the way that it has come.
         let Some(begin) = start else { return if is_straight { REMEDY } else { "" } };

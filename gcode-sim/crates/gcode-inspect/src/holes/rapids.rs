@@ -32,7 +32,7 @@ impl HoleExtractor<'_> {
     /// it is checked as any rapid, and above the entry of a nominal hole is no metal.
     pub(super) fn report_overrun(&mut self, event: &Event<'_>, line: &CuttingLine, to: &Point3<f64>) {
         let is_outward = line.tool_axis.is_some_and(|axis| axis.dot(&line.out) < 0.0);
-        let is_free = line.tool_axis.is_some_and(|axis| self.metal.is_above_entry(to, &axis));
+        let is_free = self.metal.is_above_entry(to, &line.tool_axis.unwrap_or(line.out));
         if self.surface.is_some() || is_outward || is_free {
             return;
         }

@@ -24,7 +24,9 @@ impl KnownMetal {
             let radius = part.radius();
             let (min, max) = match pocket {
                 Surface::Block { min, max } => (min, max),
-                Surface::Rod(rod) => return self.is_in_rod(rod, &base, axis.into_inner() * height, (radius, slack)),
+                Surface::Rod(rod) => {
+                    return self.is_in_rod(rod, &base, axis.into_inner() * height, (radius, slack));
+                }
                 Surface::Ellipsoid { .. } | Surface::Cylinder { .. } => return false,
             };
             let across = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt() - slack);

@@ -195,11 +195,9 @@ fn given_up(search: Search) -> (&'static str, &'static str, &'static str) {
         OnPath::Straight => "the metal beside them is cut too finely",
     };
     match search {
-        Search::Paths => (
-            "rapids whose axes may reach too many positions",
-            "rapid",
-            "give [rapid] in the machine file",
-        ),
+        Search::Paths => {
+            ("rapids whose axes may reach too many positions", "rapid", "give [rapid] in the machine file")
+        }
         Search::Rapid(path) => ("the side of the tool in some rapids", "rapid", reason(path)),
         Search::Feed(path) => ("the side of the tool in some feeds", "feed", reason(path)),
     }

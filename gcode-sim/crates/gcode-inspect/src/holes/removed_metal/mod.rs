@@ -40,7 +40,7 @@ struct Sweep {
     /// Direction of the tool, out of the part.
     axis: Unit<Vector3<f64>>,
     profile: u32,
-    /// It has cut a little of what has to stay: what it leaves beside it counts at the next feed.
+    /// It has cut a little of what has to stay.
     has_scratched: bool,
 }
 
@@ -122,7 +122,8 @@ impl RemovedMetal {
 
     /// Adds the last sweep, which is complete, to the slabs.
     fn add_last_to_slabs(&mut self) {
-        let Some(Sweep { from, to, axis, profile, .. }) = self.sweeps.last().filter(|last| !last.has_scratched)
+        let Some(Sweep { from, to, axis, profile, .. }) =
+            self.sweeps.last().filter(|last| !last.has_scratched)
         else {
             return;
         };
@@ -227,7 +228,7 @@ pub(super) enum Covers {
     All,
     /// Those of tools of known diameter.
     Certain,
-    /// Those of tools of known diameter; where they have scratched what has to stay, no more than they have cut.
+    /// Those of tools of known diameter that have not scratched what has to stay: the next feed there is compared with the whole of it.
     Kept,
 }
 
@@ -249,17 +250,14 @@ impl FirstSweeps<'_> {
         let is_counted = |profile: u32| profiles[profile as usize].is_certain || covers == Covers::All;
         self.removed.slabs.uncover(strip, self.sweeps.len(), is_counted, shares);
         let mut recent = self.removed.recent.borrow_mut();
-        let cover = |index: usize, shares: &mut Shares| {
-            let Some(sweep) = self.sweeps.get(index).filter(|sweep| is_counted(sweep.profile)) else {
-                return false;
-            };
-            let margin = match covers {
-                Covers::Kept if sweep.has_scratched => ROUNDING,
-                _ => TOUCH_DEPTH,
-            };
+        let sweep_at = |index: usize| {
+            let leaves_out = |sweep: &Sweep| covers == Covers::Kept && sweep.has_scratched;
+            self.sweeps.get(index).filter(|sweep| is_counted(sweep.profile) && !leaves_out(sweep))
+        };
+        let cover = |sweep: &Sweep, shares: &mut Shares| {
             let mut has_covered = false;
             for part in &profiles[sweep.profile as usize].parts {
-                has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, margin, line)));
+                has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, line)));
             }
             has_covered
         };
@@ -267,7 +265,9 @@ impl FirstSweeps<'_> {
             if shares.is_empty() {
                 return;
             }
-            cover(recent[place], shares);
+            if let Some(sweep) = sweep_at(recent[place]) {
+                cover(sweep, shares);
+            }
         }
         let Some(extent) = shares.extent() else { return };
         let reach = StripReach::of(strip);
@@ -280,7 +280,8 @@ impl FirstSweeps<'_> {
                 if shares.is_empty() {
                     return false;
                 }
-                if is_near(index, shares) && cover(index, shares) {
+                let Some(sweep) = sweep_at(index) else { continue };
+                if is_near(index, shares) && cover(sweep, shares) {
                     recent.retain(|other| *other != index);
                     if recent.len() == MAX_RECENT {
                         recent.remove(0);
@@ -326,15 +327,15 @@ impl Sweep {
         is_straight
     }
 
-    /// Returns the shares of a travel between which it is in the volume that a part of the tool sweeps, or at a margin beside it.
+    /// Returns the shares of a travel between which it is in the volume that a part of the tool sweeps.
     ///
     /// At the share s of the travel and t of the sweep the travel's point is at the height h = h₀ + s·h₁ − t·h₂ above the tip
     /// and in the part if |q + s·u − t·d| ≤ r + k·h across the axis, and h lies between the ends of the part. For a given s
     /// the t that fulfil this are an interval; if it is not empty, it holds 0 or 1, the t at which an end of the part passes
     /// the point, or the t at which |q + s·u − t·d|² − (r + k·h)² is least. So the shares are those that fulfil it on one of
     /// five lines t = a + b·s. A sweep steeper than the side of a cone has no such least value.
-    fn covered(&self, part: &ToolPart, margin: f64, travel: &[Point3<f64>; 2]) -> Option<[f64; 2]> {
-        let taper = part.taper.grown(margin);
+    fn covered(&self, part: &ToolPart, travel: &[Point3<f64>; 2]) -> Option<[f64; 2]> {
+        let taper = part.taper.grown(TOUCH_DEPTH);
         let axis = self.axis.into_inner();
         let split = |v: Vector3<f64>| {
             let height = v.dot(&axis);
@@ -342,11 +343,11 @@ impl Sweep {
         };
         let ((q, from), (u, rise), (d, climb)) =
             (split(travel[0] - self.from), split(travel[1] - travel[0]), split(self.to - self.from));
-        let low = part.from - margin;
+        let low = part.from - TOUCH_DEPTH;
         // A cone is nowhere wider than its upper end.
         let high = match 0.0 < taper.slope {
-            true => (part.radius() + margin - taper.radius) / taper.slope,
-            false => part.to + margin,
+            true => (part.radius() + TOUCH_DEPTH - taper.radius) / taper.slope,
+            false => part.to + TOUCH_DEPTH,
         };
         let reach = taper.at(low).max(taper.at(high)) + d.norm() + u.norm();
         if reach * reach < q.norm_squared() {

@@ -117,7 +117,7 @@ proptest! {
                 for sweep in removed.sweeps.iter().take(count) {
                     let profile = &removed.profiles[sweep.profile as usize];
                     for part in profile.parts.iter().filter(|_| profile.is_certain || covers == Covers::All) {
-                        plain.take_away(sweep.covered(part, TOUCH_DEPTH, &line));
+                        plain.take_away(sweep.covered(part, &line));
                     }
                 }
                 let sorted = |shares: &Shares| {
