@@ -36,8 +36,10 @@ pub(super) struct KnownMetal {
     pub body: Option<Surface>,
     /// Nominal holes with the metal round them; `None` without a reference.
     pub holes: Option<Arc<EntryPlanes>>,
-    /// Pockets that feeds may mill.
+    /// Pockets that feeds may mill, and what joins them; those that end at a face of the body go on beyond it.
     pub pockets: Vec<Surface>,
+    /// Pockets as they are stated.
+    pub stated_pockets: Vec<Surface>,
     pub removed: RemovedMetal,
 }
 
@@ -66,9 +68,16 @@ impl KnownMetal {
                 Point3::from(Vector3::repeat(f64::INFINITY)),
             ],
         };
+        let stated_pockets = metal.pockets.clone();
         let OpenRegions { pockets, voids } =
             OpenRegions::new(metal.body.as_ref(), metal.pockets, metal.voids);
-        Self { body: metal.body, holes: metal.entries, pockets, removed: RemovedMetal::new(bounds, voids) }
+        Self {
+            body: metal.body,
+            holes: metal.entries,
+            pockets,
+            stated_pockets,
+            removed: RemovedMetal::new(bounds, voids),
+        }
     }
 
     /// Returns false if nothing is known.
@@ -254,13 +263,13 @@ impl KnownMetal {
         })
     }
 
-    /// Returns the pockets that a point is in, or on whose wall.
+    /// Returns the stated pockets that a point is in, or on whose wall.
     pub(super) fn pockets_at(&self, p: &Point3<f64>) -> impl Iterator<Item = &Surface> {
         let p = *p;
-        self.pockets_near(&[p, p]).filter(move |pocket| -TOUCH_DEPTH < pocket.depth(&p))
+        self.stated_pockets.iter().filter(move |pocket| -TOUCH_DEPTH < pocket.depth(&p))
     }
 
-    /// Returns true if a point is in a pocket, or on its wall.
+    /// Returns true if a point is in a stated pocket, or on its wall.
     pub(super) fn is_point_in_pocket(&self, p: &Point3<f64>) -> bool {
         self.pockets_at(p).next().is_some()
     }
