@@ -8,8 +8,9 @@ use super::near_metal::{Contact, FeedPart, Judged};
 use super::profile::Profile;
 use super::rapid_paths::{OnPath, Search};
 use super::rapids::PLUNGE_COSINE;
+use super::removed_metal::Covers;
 use super::strip::Line;
-use super::swept_tool::{TipPaths, contact, is_at_outline, rim};
+use super::swept_tool::{TipPaths, contact, rim};
 use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart};
 use gcode_lang::motion::Event;
 
@@ -81,6 +82,9 @@ impl HoleExtractor<'_> {
     pub(super) fn cuts_known_metal(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let cuts = self.metal.cuts(from, to)?;
         let (axis, along) = (self.axis_in_motion(from, to), to - from);
+        if axis.is_some_and(|axis| self.has_repeated(&[*from, *to], &axis, Covers::All)) {
+            return Some(false);
+        }
         let is_cut = |offset: Vector3<f64>| {
             let (from, to) = (from + offset, to + offset);
             self.metal.cuts(&from, &to) == Some(true)
@@ -258,19 +262,6 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Returns true if a feed cuts any of what has to stay, be it less than counts.
-    fn scratches(&self, travel: &Line, axis: &Unit<Vector3<f64>>) -> bool {
-        if self.surface.is_some() && !self.has_left_start || self.pose.axis.is_none() {
-            return false;
-        }
-        self.metal.judged_on(travel, Judged::Untouched(FeedPart::Tip)).is_some()
-            || self.tool_body.iter().filter(|part| part.is_cutter).any(|part| {
-                let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
-                !self.metal.is_allowed(travel, axis, part, 0.0)
-                    && is_at_outline(part, axis, travel, &self.metal, Judged::Untouched(side))
-            })
-    }
-
     /// Returns the gouge that the middle of a tool of unknown diameter makes above its tip in a feed across it.
     fn middle_gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
         let is_unsized = self.tool_body.is_empty() && self.pose.axis.is_some();
@@ -294,6 +285,9 @@ impl HoleExtractor<'_> {
     /// Returns the gouge that the cutting parts of the tool make beside the path of its tip.
     fn side_gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
         self.pose.axis?;
+        if sweeps == u32::MAX && self.has_repeated(travel, axis, Covers::Kept) {
+            return None;
+        }
         self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
             if !self.may_cut(part, travel, axis) || self.metal.is_allowed(travel, axis, part, TOUCH_DEPTH) {
                 return None;

@@ -18,6 +18,7 @@ pub(crate) mod event_script;
 mod extraction;
 mod features_made;
 mod feed_law;
+mod fine_cuts;
 mod finish;
 mod gouge_report;
 mod group;

@@ -186,3 +186,102 @@ impl Section {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn block(min: [f64; 3], max: [f64; 3]) -> Surface {
+        Surface::Block { min: Point3::from(min), max: Point3::from(max) }
+    }
+
+    fn rod(base: [f64; 3], length: f64, radius: f64) -> Surface {
+        Surface::Rod(Rod { base: Point3::from(base), axis: Vector3::z_axis(), length, radius })
+    }
+
+    fn voids(all: &[Surface]) -> Vec<Surface> {
+        let stock = block([0.0; 3], [10.0; 3]);
+        OpenRegions::new(Some(&stock), Vec::new(), all.to_vec()).voids
+    }
+
+    fn least(bodies: &[Surface], p: &Point3<f64>) -> f64 {
+        bodies.iter().map(|body| body.nearest(p).distance).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Returns true if one body holds both ends of a line.
+    fn hold(bodies: &[Surface], from: [f64; 3], to: [f64; 3]) -> bool {
+        let ends = [from, to].map(Point3::from);
+        bodies.iter().any(|body| ends.iter().all(|p| body.nearest(p).distance < 0.0))
+    }
+
+    #[test]
+    fn a_line_over_a_common_plane_is_in_one_body() {
+        // Three steps of a stair, the last two at both sides of y 5.
+        let stair = [
+            block([2.0, 1.0, 6.0], [4.0, 9.0, 8.0]),
+            block([4.0, 1.0, 4.0], [6.0, 9.0, 8.0]),
+            block([6.0, 5.0, 2.0], [8.0, 9.0, 8.0]),
+        ];
+        assert!(hold(&voids(&stair), [2.5, 6.0, 7.0], [7.5, 8.0, 7.0]));
+        assert!(!hold(&voids(&stair), [2.5, 4.0, 7.0], [7.5, 8.0, 7.0]));
+        assert!(!hold(&voids(&stair), [2.5, 6.0, 5.0], [7.5, 8.0, 5.0]));
+        // A bore below a wider one, and a slot above both.
+        let bores = [
+            rod([5.0, 5.0, 4.0], 3.0, 2.0),
+            rod([5.0, 5.0, 1.0], 3.0, 1.0),
+            block([1.0, 2.0, 7.0], [9.0, 8.0, 8.0]),
+        ];
+        assert!(hold(&voids(&bores), [5.5, 5.0, 1.5], [5.0, 5.5, 7.9]));
+        assert!(!hold(&voids(&bores), [6.5, 5.0, 1.5], [5.0, 5.5, 7.9]));
+        // Half a millimetre apart.
+        let apart = [block([1.0, 1.0, 1.0], [4.0, 9.0, 8.0]), block([4.5, 1.0, 1.0], [8.0, 9.0, 8.0])];
+        assert!(!hold(&voids(&apart), [2.0, 2.0, 2.0], [6.0, 2.0, 2.0]));
+    }
+
+    #[test]
+    fn a_body_goes_on_beyond_the_faces_at_which_it_ends() {
+        let slot = [block([0.0, 2.0, 6.0], [10.0, 8.0, 10.0])];
+        assert!(hold(&voids(&slot), [-20.0, 5.0, 30.0], [30.0, 5.0, 7.0]));
+        assert!(!hold(&voids(&slot), [-20.0, 5.0, 30.0], [30.0, 5.0, 5.9]));
+        assert!(!hold(&voids(&slot), [-20.0, 8.1, 30.0], [30.0, 5.0, 7.0]));
+        let closed = [block([0.1, 2.0, 6.0], [10.0, 8.0, 10.0])];
+        assert!(!hold(&voids(&closed), [-20.0, 5.0, 7.0], [5.0, 5.0, 7.0]));
+        // A layer over the whole end of a bar.
+        let bar = rod([0.0; 3], 50.0, 10.0);
+        let layer = rod([0.0, 0.0, 48.0], 2.0, 10.0);
+        let pockets = OpenRegions::new(Some(&bar), vec![layer], Vec::new()).pockets;
+        assert!(hold(&pockets, [-30.0, 0.0, 49.0], [5.0, 0.0, 60.0]));
+        assert!(!hold(&pockets, [-30.0, 0.0, 47.9], [5.0, 0.0, 60.0]));
+    }
+
+    proptest! {
+        /// In the stock a point is in one of the bodies if and only if it is in one that is stated.
+        #[test]
+        fn the_metal_is_the_same(
+            boxes in prop::collection::vec(
+                (prop::array::uniform3(0..10i32), prop::array::uniform3(1..8i32), any::<bool>()),
+                1..6,
+            ),
+            points in prop::collection::vec(prop::array::uniform3(0.0..10.0f64), 40),
+        ) {
+            let stated: Vec<Surface> = boxes
+                .iter()
+                .map(|(low, size, is_round)| {
+                    let (low, size) = (low.map(f64::from), size.map(f64::from));
+                    let high = [0, 1, 2].map(|i| (low[i] + size[i]).min(10.0));
+                    match is_round {
+                        true => rod(low, high[2] - low[2], size[0] / 2.0),
+                        false => block(low, high),
+                    }
+                })
+                .collect();
+            let regular = voids(&stated);
+            for p in points.into_iter().map(Point3::from) {
+                prop_assert!(least(&stated, &p) >= 0.0 || least(&regular, &p) < 0.0, "{p} is lost");
+                prop_assert!(least(&regular, &p) >= 0.0 || least(&stated, &p) <= TOUCH_DEPTH, "{p} is added");
+            }
+        }
+    }
+}

@@ -232,6 +232,35 @@ pub(super) enum Covers {
     Kept,
 }
 
+impl RemovedMetal {
+    /// Returns true if a feed is as one that the same tool has made before, no more than [`TOUCH_DEPTH`] beside it.
+    pub(super) fn has_repeated(
+        &self,
+        travel: &Line,
+        axis: &Unit<Vector3<f64>>,
+        profile: &Profile,
+        covers: Covers,
+    ) -> bool {
+        let is_near = |p: &Point3<f64>, sweep: &Sweep| {
+            let along = sweep.to - sweep.from;
+            let share = (p - sweep.from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+            (p - sweep.from - along * share.clamp(0.0, 1.0)).norm() <= TOUCH_DEPTH
+        };
+        let has_made = |sweep: &Sweep| {
+            sweep.axis == *axis
+                && !(covers == Covers::Kept && sweep.has_scratched)
+                && travel.iter().all(|p| is_near(p, sweep))
+                && self.profiles[sweep.profile as usize] == *profile
+        };
+        let mut is_found = false;
+        self.boxes.near(&Strip::line(*travel).bounds(), &mut |place| {
+            is_found = group(place).filter_map(|index| self.sweeps.get(index)).any(has_made);
+            !is_found
+        });
+        is_found
+    }
+}
+
 /// Number of the sweeps that are tried before all others.
 const MAX_RECENT: usize = 8;
 

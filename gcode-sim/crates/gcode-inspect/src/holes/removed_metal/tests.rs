@@ -60,12 +60,12 @@ fn small_steps_along_a_line_are_one_sweep() {
         (RemovedMetal::new(bounds, Vec::new()), RemovedMetal::new(bounds, Vec::new()));
     for step in 0..1000 {
         let at = |step: i32| p(f64::from(step) * 0.05, 0.0, -5.0);
-        line.add(at(step), at(step + 1), Vector3::z_axis(), &profile);
+        line.add([at(step), at(step + 1)], Vector3::z_axis(), &profile, false);
         let on = |step: i32| {
             let angle = gcode_lang::units::Deg(f64::from(step) * 0.36);
             p(10.0 * angle.cos(), 10.0 * angle.sin(), -5.0)
         };
-        circle.add(on(step), on(step + 1), Vector3::z_axis(), &profile);
+        circle.add([on(step), on(step + 1)], Vector3::z_axis(), &profile, false);
     }
     assert_eq!(line.sweeps.len(), 1);
     assert_eq!(rest_of(&line, p(-10.0, 0.0, -1.0), p(90.0, 0.0, -1.0)), [[0.0, 0.0699], [0.6301, 1.0]]);
@@ -150,7 +150,7 @@ proptest! {
             ..ToolPart::flutes(low, low + length, 0.0)
         };
         let parts = if slope == 0.0 { vec![ToolPart::flutes(low, low + length, radius)] } else { vec![cone, cylinder] };
-        let sweep = Sweep { from, to, axis, profile: 0 };
+        let sweep = Sweep { from, to, axis, profile: 0, has_scratched: false };
         let (a, b) = (p(travel[0], travel[1], travel[2]), p(travel[3], travel[4], travel[5]));
         let covered: Vec<_> = parts.iter().filter_map(|part| sweep.covered(part, &[a, b])).collect();
         for s in 0..=50 {
