@@ -22,22 +22,33 @@ pub(super) fn json(text: &str) -> Result<HoleList, FileError> {
 
 /// Returns the holes with an id each and axes normalised to length 1, or the first error.
 pub(super) fn check_all(mut holes: Vec<Hole>) -> Result<Vec<Hole>, FileError> {
-    let mut ids = HashMap::new();
     for (index, hole) in holes.iter_mut().enumerate() {
         complete(hole);
         check(hole, index).map_err(|message| error(None, message))?;
         hole.axis = Vector3::from(hole.axis).normalize().into();
-        let id = hole.id.get_or_insert_with(|| format!("#{}", index + 1));
-        if let Some(first) = ids.insert(id.clone(), index) {
-            let message = format!(
-                "id '{id}' is used twice, in hole {} and hole {}: give each its own",
-                first + 1,
-                index + 1
-            );
-            return Err(error(None, message));
-        }
+        hole.id.get_or_insert_with(|| format!("#{}", index + 1));
+    }
+    if let Some([first, second]) = repeated_id(&holes) {
+        let id = holes[second].id.as_deref().unwrap_or_default();
+        let message = format!(
+            "id '{id}' is used twice, in hole {} and hole {}: give each its own",
+            first + 1,
+            second + 1
+        );
+        return Err(error(None, message));
     }
     Ok(holes)
+}
+
+/// Returns the indices of the first hole whose id an earlier one has, behind that one.
+pub(super) fn repeated_id(holes: &[Hole]) -> Option<[usize; 2]> {
+    let ids = || holes.iter().enumerate().filter_map(|(index, hole)| Some((index, hole.id.as_deref()?)));
+    // Most lists count upwards.
+    if ids().is_sorted_by(|one, next| (one.1.len(), one.1) < (next.1.len(), next.1)) {
+        return None;
+    }
+    let mut known = HashMap::with_capacity(holes.len());
+    ids().find_map(|(index, id)| Some([known.insert(id, index)?, index]))
 }
 
 /// Sets a depth that is left out, or that is less than that of a feature, to that of the deepest one. That of a through hole

@@ -396,7 +396,7 @@ impl Simulation {
         let judge = || verify(&self.extracted, reference, tolerances, machine, &locate);
         let (mut verdict, dependencies) = assumptions::beside(self, request, judge);
         let likely = causes::of_holes(self, &mut verdict, machine);
-        let names = verdict.hole_names();
+        let names = if dependencies.is_empty() { Default::default() } else { verdict.hole_names() };
         let assumptions = || dependencies.assumptions(&self.run, |hole| names.get(&hole).cloned());
         completion::complete(&mut verdict, request, &self.run, likely, assumptions);
         verdict

@@ -6,7 +6,7 @@ use super::per_block::PerBlock;
 use super::strip::Line;
 use super::swept_tool::ring;
 use super::tool_change::{RING_POINTS, WALL_DISTANCE};
-use crate::machine::{AxisMotion, LinkMotion, Pose, TOUCH_DEPTH};
+use crate::machine::{AxisMotion, LinkMotion, Pose, TOUCH_DEPTH, ToolPart};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event};
 use gcode_lang::units::Deg;
 use gcode_part::{NearestPoint, Surface};
@@ -127,7 +127,10 @@ impl HoleExtractor<'_> {
         let shifted = |by: Vector3<f64>| travel.map(|point| point - normal.into_inner() * depth + by);
         let below = shifted(Vector3::zeros());
         let Some(own) = self.tool_radius() else { return false };
-        let radius = own.max(self.body_radius()) + WALL_DISTANCE;
+        // What is higher on the tool is above the surface.
+        let rise = self.pose.axis.map_or(0.0, |axis| axis.dot(normal).max(0.0));
+        let low = self.tool_body.iter().filter(|part| part.from * rise <= CONTACT_CLEARANCE);
+        let radius = low.map(ToolPart::radius).fold(own, f64::max) + WALL_DISTANCE;
         let round = || ring(normal, &Vector3::zeros(), radius, RING_POINTS).into_iter().map(shifted);
         self.metal.is_solid(&below)
             && self.metal.uncut(&below).is_none()

@@ -1,10 +1,10 @@
 //! Result of following a run: its holes, the findings about its motion, and what was not compared.
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Point3;
 
 use super::clearance::CloseMotion;
-use super::{CutConditions, DrilledHole, LengthMismatch, UnknownRapids, UnsearchedMotions};
+use super::{CutConditions, DrilledHole, LengthMismatch, Search, UnknownRapids, UnsearchedMotions};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
@@ -40,14 +40,12 @@ pub struct HoleExtraction {
     pub(crate) process_limits: ProcessLimits,
     /// The stock or the surface is known, and all motion was compared with it.
     pub(crate) is_metal_known: bool,
-    /// Rapids whose paths are not searched to the end.
-    pub(crate) unsearched_rapids: UnsearchedMotions,
+    /// Motions whose searches for metal have been given up.
+    pub(crate) unsearched: BTreeMap<Search, UnsearchedMotions>,
     /// Rapids at machine positions by tools of unknown length without an offset.
     pub(crate) rapids_of_unknown_tip: UnsearchedMotions,
     /// Rapids that are free only if the tool change before them retracts the tool.
     pub(crate) rapids_behind_change: UnsearchedMotions,
-    /// Feeds beside which the metal is not compared with all of the tool.
-    pub(crate) unsearched_feeds: UnsearchedMotions,
     /// Probing moves through metal, up to a signal.
     pub(crate) probes_in_metal: UnsearchedMotions,
     /// Probing moves through metal that no signal ends.

@@ -6,10 +6,12 @@ use super::line::CuttingLine;
 use super::metal::PointInMetal;
 use super::near_metal::{Contact, FeedPart, Judged};
 use super::profile::Profile;
+use super::rapid_paths::{OnPath, Search};
 use super::rapids::PLUNGE_COSINE;
+use super::removed_metal::Covers;
 use super::strip::Line;
 use super::swept_tool::{TipPaths, contact, rim};
-use crate::machine::{AxisMotion, ToolPart};
+use crate::machine::{AxisMotion, TOUCH_DEPTH, ToolPart};
 use gcode_lang::motion::Event;
 
 /// Largest deviation of an arc from the chords by which it removes metal, mm.
@@ -80,6 +82,9 @@ impl HoleExtractor<'_> {
     pub(super) fn cuts_known_metal(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let cuts = self.metal.cuts(from, to)?;
         let (axis, along) = (self.axis_in_motion(from, to), to - from);
+        if axis.is_some_and(|axis| self.has_repeated(&[*from, *to], &axis, Covers::All)) {
+            return Some(false);
+        }
         let is_cut = |offset: Vector3<f64>| {
             let (from, to) = (from + offset, to + offset);
             self.metal.cuts(&from, &to) == Some(true)
@@ -157,14 +162,19 @@ impl HoleExtractor<'_> {
             // The direction of the tool is unknown, and the body is one that is drilled all round.
             let is_unclear =
                 self.pose.axis.is_none() && self.surface.is_some_and(|body| !body.has_flat_faces());
+            let mut has_scratched = false;
             // A plunge may drill a hole: the motion after it shows that.
             match is_judged && !is_unclear {
                 true if is_plunge => self.record_plunge(&chord, &axis),
                 true if worst.is_some() && !is_deepest_wanted => {}
-                true => worst = Gouge::worse(worst, self.gouge(&chord, &axis, u32::MAX)),
+                true => {
+                    let gouge = self.gouge(&chord, &axis, u32::MAX);
+                    has_scratched = gouge.is_none() && self.scratches(&chord, &axis);
+                    worst = Gouge::worse(worst, gouge);
+                }
                 false => {}
             }
-            self.remove(&chord, &axis);
+            self.remove(&chord, &axis, has_scratched);
             if is_plunge {
                 self.record_hole_stroke(&chord, &axis);
             }
@@ -172,7 +182,7 @@ impl HoleExtractor<'_> {
         if is_judged && worst.is_none() {
             worst = self.shank_contact(path);
         }
-        self.count_unsearched_feed(event);
+        self.count_unsearched_feed(event, OnPath::Straight);
         if let Some(gouge) = worst {
             self.gouge_count += 1;
             self.milling.record_cut(self.setup.tool);
@@ -181,9 +191,9 @@ impl HoleExtractor<'_> {
     }
 
     /// Counts a feed if a search for what it cuts has been given up.
-    pub(super) fn count_unsearched_feed(&mut self, event: &Event<'_>) {
+    pub(super) fn count_unsearched_feed(&mut self, event: &Event<'_>, path: OnPath) {
         if self.is_feed_unsearched.take() {
-            self.unsearched_feeds.count(|| event.backtrace());
+            self.count_unsearched(event, Search::Feed(path));
         }
     }
 
@@ -221,13 +231,17 @@ impl HoleExtractor<'_> {
         parallel.or_else(|| self.tool_direction()).or(any)
     }
 
-    /// Adds what a straight feed removes.
-    pub(super) fn remove(&mut self, travel: &[Point3<f64>; 2], axis: &Unit<Vector3<f64>>) {
-        let [from, to] = *travel;
+    /// Adds what a straight feed removes; `has_scratched` if it has cut a little of what has to stay.
+    pub(super) fn remove(
+        &mut self,
+        travel: &[Point3<f64>; 2],
+        axis: &Unit<Vector3<f64>>,
+        has_scratched: bool,
+    ) {
         if let Some(profile) = &self.profile {
             // A stopped bar is shifted off the wall and cuts nothing.
             if self.tool_radius().is_some() {
-                self.metal.removed.add(from, to, *axis, profile);
+                self.metal.removed.add(*travel, *axis, profile, has_scratched);
             }
             return;
         }
@@ -271,8 +285,11 @@ impl HoleExtractor<'_> {
     /// Returns the gouge that the cutting parts of the tool make beside the path of its tip.
     fn side_gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
         self.pose.axis?;
+        if sweeps == u32::MAX && self.has_repeated(travel, axis, Covers::Kept) {
+            return None;
+        }
         self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
-            if !self.may_cut(part, travel, axis) || self.metal.is_allowed(travel, axis, part) {
+            if !self.may_cut(part, travel, axis) || self.metal.is_allowed(travel, axis, part, TOUCH_DEPTH) {
                 return None;
             }
             let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
@@ -342,7 +359,7 @@ impl HoleExtractor<'_> {
             return None;
         }
         self.contact_in_feed(part, axis, travel, Judged::Uncut(hole)).or_else(|| {
-            hole.filter(|_| self.metal.is_allowed(travel, axis, part))?;
+            hole.filter(|_| self.metal.is_allowed(travel, axis, part, TOUCH_DEPTH))?;
             // A cut that gives the outline its width may come later in the program.
             let part = ToolPart { taper: part.taper.grown(-FIT), ..*part };
             self.contact_in_feed(&part, axis, travel, Judged::Uncut(None))
@@ -400,7 +417,7 @@ impl HoleExtractor<'_> {
     pub(super) fn plunge_gouge(&self, line: &CuttingLine) -> Option<Gouge> {
         let Plunge { travel, axis, before } =
             self.plunge.filter(|_| line.cutting_state.tool == self.setup.tool)?;
-        let is_allowed = self.metal.is_allowed(&travel, &axis, &self.flat_tool());
+        let is_allowed = self.metal.is_allowed(&travel, &axis, &self.flat_tool(), TOUCH_DEPTH);
         if is_allowed { None } else { self.gouge(&travel, &axis, before) }
     }
 

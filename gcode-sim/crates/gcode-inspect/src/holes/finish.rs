@@ -1,6 +1,7 @@
 //! The end of a run: its holes and findings.
 use std::collections::BTreeSet;
 
+use super::rapid_paths::{OnPath, Search};
 use super::strokes::MilledStrokes;
 use super::{HoleExtraction, HoleExtractor, MAX_PASSES, group, unknown_axes};
 use gcode_lang::alarm::kinds::LIMIT;
@@ -14,7 +15,8 @@ impl HoleExtractor<'_> {
         self.end_in_metal();
         self.end_line(None);
         let unsearched = last_block.filter(|_| self.is_feed_unsearched.get());
-        unsearched.into_iter().for_each(|block| self.unsearched_feeds.count(|| block));
+        let feed = Search::Feed(OnPath::Straight);
+        unsearched.into_iter().for_each(|block| self.unsearched.entry(feed).or_default().count(|| block));
         self.end_engagement();
         self.report_idle_mills();
         self.report_low_places();
@@ -50,10 +52,9 @@ impl HoleExtractor<'_> {
             assumed_axes,
             process_limits: self.process_limits,
             is_metal_known: self.surface.is_some(),
-            unsearched_rapids: self.unsearched_rapids,
+            unsearched: self.unsearched,
             rapids_of_unknown_tip: self.rapids_of_unknown_tip,
             rapids_behind_change: self.change_retract.rapids,
-            unsearched_feeds: self.unsearched_feeds,
             probes_in_metal: self.probes_in_metal,
             probes_without_signal: self.probes_without_signal,
             unsized_mills: self.unsized_mills,

@@ -158,12 +158,11 @@ pub(super) fn group_holes(
     let is_aside = |index: usize| first[index].0 != on_line[index];
     // A hole that is widened later is begun by its first pass.
     let mut begun: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    for (index, place) in first.iter().enumerate() {
-        begun.entry(*place).or_insert(index);
-    }
+    let numbered = first.iter().enumerate();
+    let begun: Vec<usize> = numbered.map(|(index, place)| *begun.entry(*place).or_insert(index)).collect();
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // The sort is stable: passes of one line keep their order.
-    order.sort_by_key(|index| begun[&first[*index]]);
+    order.sort_by_key(|index| begun[*index]);
     let mut holes = Vec::with_capacity(passes.len());
     for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
         let passes_of_hole = line.iter().map(|index| (&passes[*index], is_aside(*index)));

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
+use super::open_regions::OpenRegions;
 use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
@@ -35,8 +36,10 @@ pub(super) struct KnownMetal {
     pub body: Option<Surface>,
     /// Nominal holes with the metal round them; `None` without a reference.
     pub holes: Option<Arc<EntryPlanes>>,
-    /// Pockets that feeds may mill.
+    /// Pockets that feeds may mill, and what joins them; those that end at a face of the body go on beyond it.
     pub pockets: Vec<Surface>,
+    /// Pockets as they are stated.
+    pub stated_pockets: Vec<Surface>,
     pub removed: RemovedMetal,
 }
 
@@ -65,11 +68,15 @@ impl KnownMetal {
                 Point3::from(Vector3::repeat(f64::INFINITY)),
             ],
         };
+        let stated_pockets = metal.pockets.clone();
+        let OpenRegions { pockets, voids } =
+            OpenRegions::new(metal.body.as_ref(), metal.pockets, metal.voids);
         Self {
             body: metal.body,
             holes: metal.entries,
-            pockets: metal.pockets,
-            removed: RemovedMetal::new(bounds, metal.voids),
+            pockets,
+            stated_pockets,
+            removed: RemovedMetal::new(bounds, voids),
         }
     }
 
@@ -117,21 +124,21 @@ impl KnownMetal {
 
     /// Returns true if a travel leads through what was metal.
     pub(super) fn is_solid(&self, travel: &[Point3<f64>; 2]) -> bool {
-        !self.solid(&Strip::line(*travel), |_| true).is_empty()
+        !self.solid(&Strip::line(*travel), TOUCH_DEPTH, |_| true).is_empty()
     }
 
-    /// Returns shares of a strip outside which it is in no metal, cut or not; those of a line are exact.
-    pub(super) fn solid(&self, strip: &Strip, is_counted: impl Fn(usize) -> bool) -> Shares {
+    /// Returns shares of a strip outside which it is in no metal, cut or not, deeper than `skin`; those of a line are exact.
+    pub(super) fn solid(&self, strip: &Strip, skin: f64, is_counted: impl Fn(usize) -> bool) -> Shares {
         let [one, other] = &strip.edges;
         let mut shares = Shares::default();
         match (&self.body, &self.holes) {
-            (Some(body), _) if one == other => shares.extend(body.piece(&one[0], &one[1], TOUCH_DEPTH)),
-            (Some(body), _) => shares.extend(body.span([one, other], TOUCH_DEPTH)),
+            (Some(body), _) if one == other => shares.extend(body.piece(&one[0], &one[1], skin)),
+            (Some(body), _) => shares.extend(body.span([one, other], skin)),
             (None, Some(holes)) => {
                 let [low, high] = strip.bounds();
                 holes.near(&low, &high, &mut |hole| {
                     if is_counted(hole) {
-                        shares.extend(holes.collar(hole).span([one, other], TOUCH_DEPTH));
+                        shares.extend(holes.collar(hole).span([one, other], skin));
                     }
                 });
             }
@@ -172,6 +179,23 @@ impl KnownMetal {
             }
         });
         beyond.filter(|_| !is_in_other)
+    }
+
+    /// Returns true for a point above the entry of a nominal hole, within the metal that is known round it.
+    pub(super) fn is_above_entry(&self, p: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> bool {
+        let Some(holes) = self.holes.as_deref() else { return false };
+        let down = p - axis.into_inner() * MAX_HEIGHT_ABOVE_HOLE;
+        let (mut is_above, mut is_below) = (false, false);
+        holes.around(&p.inf(&down), &p.sup(&down), &mut |hole| {
+            let collar = holes.collar(hole);
+            let is_on_side = 0.0 < axis.dot(&collar.rod.axis);
+            if is_on_side && collar.is_parallel(axis) && collar.from_axis(p) <= collar.rod.radius {
+                let is_over = collar.depth(p) <= 0.0;
+                is_above |= is_over;
+                is_below |= !is_over;
+            }
+        });
+        is_above && !is_below
     }
 
     /// Returns true for a point in the column of one of the nominal holes that count.
@@ -239,13 +263,13 @@ impl KnownMetal {
         })
     }
 
-    /// Returns the pockets that a point is in, or on whose wall.
+    /// Returns the stated pockets that a point is in, or on whose wall.
     pub(super) fn pockets_at(&self, p: &Point3<f64>) -> impl Iterator<Item = &Surface> {
         let p = *p;
-        self.pockets_near(&[p, p]).filter(move |pocket| -TOUCH_DEPTH < pocket.depth(&p))
+        self.stated_pockets.iter().filter(move |pocket| -TOUCH_DEPTH < pocket.depth(&p))
     }
 
-    /// Returns true if a point is in a pocket, or on its wall.
+    /// Returns true if a point is in a stated pocket, or on its wall.
     pub(super) fn is_point_in_pocket(&self, p: &Point3<f64>) -> bool {
         self.pockets_at(p).next().is_some()
     }
@@ -253,7 +277,7 @@ impl KnownMetal {
     /// Returns true if all metal on a line is in one pocket.
     pub(super) fn is_in_pocket(&self, line: &[Point3<f64>; 2]) -> bool {
         let strip = Strip::line(*line);
-        let solid = self.solid(&strip, |_| true);
+        let solid = self.solid(&strip, TOUCH_DEPTH, |_| true);
         if solid.is_empty() {
             return !self.pockets.is_empty();
         }

@@ -18,6 +18,7 @@ pub(crate) mod event_script;
 mod extraction;
 mod features_made;
 mod feed_law;
+mod fine_cuts;
 mod finish;
 mod gouge_report;
 mod group;
@@ -34,6 +35,7 @@ mod milled_blocks;
 mod milling;
 mod near_metal;
 mod offset_origin;
+mod open_regions;
 pub(crate) mod per_block;
 mod probing;
 mod profile;
@@ -71,7 +73,7 @@ pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use offset_origin::OffsetOrigin;
-pub(crate) use rapid_paths::UnsearchedMotions;
+pub(crate) use rapid_paths::{OnPath, Search, UnsearchedMotions};
 pub(crate) use swept_tool::ring;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
@@ -182,12 +184,10 @@ pub struct HoleExtractor<'m> {
     /// Number of probing moves.
     probe_count: u64,
     search_budget: SearchBudget,
-    /// Rapids whose paths are not searched to the end.
-    unsearched_rapids: UnsearchedMotions,
+    /// Motions whose searches for metal have been given up.
+    unsearched: BTreeMap<Search, UnsearchedMotions>,
     /// Rapids at machine positions by tools of unknown length without an offset.
     rapids_of_unknown_tip: UnsearchedMotions,
-    /// Feeds beside which the metal is not compared with all of the tool.
-    unsearched_feeds: UnsearchedMotions,
     /// Probing moves through metal, up to a signal and without one.
     probes_in_metal: UnsearchedMotions,
     probes_without_signal: UnsearchedMotions,
@@ -256,9 +256,8 @@ impl<'m> HoleExtractor<'m> {
             is_probe_in_metal: false,
             probe_count: 0,
             search_budget: SearchBudget::default(),
-            unsearched_rapids: UnsearchedMotions::default(),
+            unsearched: BTreeMap::new(),
             rapids_of_unknown_tip: UnsearchedMotions::default(),
-            unsearched_feeds: UnsearchedMotions::default(),
             probes_in_metal: UnsearchedMotions::default(),
             probes_without_signal: UnsearchedMotions::default(),
             is_feed_unsearched: Cell::default(),

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::metal::{KnownMetal, MAX_OFFSET, PointInMetal, ROUNDING, SIDE_SLACK, is_rounding};
-use super::removed_metal::FirstSweeps;
+use super::removed_metal::{Covers, FirstSweeps};
 use super::shares::Shares;
 use super::strip::{Line, Strip};
 use crate::machine::TOUCH_DEPTH;
@@ -39,6 +39,18 @@ pub(super) enum Judged<'c> {
     Kept(FeedPart, u32),
     /// All that no feed has removed, outside the nominal holes.
     Milled(FeedPart),
+    /// What has to stay, removed or not, to its very surface.
+    Untouched(FeedPart),
+}
+
+impl Judged<'_> {
+    /// Returns the thickness that counts as no metal, mm.
+    fn skin(self) -> f64 {
+        match self {
+            Self::Untouched(_) => ROUNDING,
+            Self::Uncut(_) | Self::Kept(..) | Self::Milled(_) => TOUCH_DEPTH,
+        }
+    }
 }
 
 /// Result of a search.
@@ -79,9 +91,13 @@ impl KnownMetal {
     /// if nothing is known.
     pub(super) fn cuts(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<bool> {
         let travel = [*from, *to];
-        let is_in_known = self.body.is_some() || self.is_solid(&travel);
         let line = Strip::line(travel);
-        is_in_known.then(|| !NearMetal::new(self, line.bounds(), Judged::Uncut(None)).is_clear(&line))
+        let mut shares = self.solid(&line, TOUCH_DEPTH, |_| true);
+        if shares.is_empty() {
+            return self.body.map(|_| false);
+        }
+        NearMetal::new(self, line.bounds(), Judged::Uncut(None)).uncover(&line, Covers::All, &mut shares);
+        Some(!is_clear(&line, &shares))
     }
 
     /// Returns true if a travel within a radius of the axis of a nominal hole without a diameter, below its entry, leads through what
@@ -102,7 +118,7 @@ impl KnownMetal {
                 shares.extend(collar.piece_below_entry(&travel[0], &travel[1]));
             }
         });
-        NearMetal::new(self, line.bounds(), Judged::Uncut(None)).uncover(&line, false, &mut shares);
+        NearMetal::new(self, line.bounds(), Judged::Uncut(None)).uncover(&line, Covers::All, &mut shares);
         !is_clear(&line, &shares)
     }
 }
@@ -216,24 +232,19 @@ impl<'m> NearMetal<'m> {
         found
     }
 
-    /// Returns true if no metal is on a strip, false if there may be some.
-    fn is_clear(&self, strip: &Strip) -> bool {
-        is_clear(strip, &self.shares(strip, None))
-    }
-
     /// Returns shares of a strip outside which it is in no metal that is judged; those of a line are exact. `within` are those of
     /// a strip that holds this one: all bodies that remove shares are convex.
     fn shares(&self, strip: &Strip, within: Option<&Shares>) -> Shares {
         match self.judged {
             Judged::Uncut(hole) => self.uncut(strip, hole, within),
-            Judged::Kept(part, _) => self.outside_holes(strip, part, true, within),
+            Judged::Kept(part, _) | Judged::Untouched(part) => self.outside_holes(strip, part, true, within),
             Judged::Milled(part) => self.outside_holes(strip, part, false, within),
         }
     }
 
     /// Returns shares of a strip outside which it is in no metal, cut or not, or which its first edge decides.
     fn solid(&self, strip: &Strip, is_counted: impl Fn(usize) -> bool, within: Option<&Shares>) -> Shares {
-        let mut shares = self.metal.solid(strip, is_counted);
+        let mut shares = self.metal.solid(strip, self.judged.skin(), is_counted);
         if let Some(within) = within {
             shares.keep_common(within);
         }
@@ -249,7 +260,7 @@ impl<'m> NearMetal<'m> {
         if let Some(hole) = hole {
             shares.take_away(strip.piece(|[from, to]| hole.piece_below_entry(from, to)));
         }
-        self.uncover(strip, false, &mut shares);
+        self.uncover(strip, Covers::All, &mut shares);
         shares
     }
 
@@ -268,7 +279,7 @@ impl<'m> NearMetal<'m> {
             if shares.is_empty() {
                 return shares;
             }
-            shares.take_away(strip.piece(|[from, to]| pocket.piece(from, to, -TOUCH_DEPTH)));
+            shares.take_away(strip.piece(|[from, to]| pocket.piece(from, to, -self.judged.skin())));
         }
         if shares.is_empty() {
             return shares;
@@ -296,7 +307,11 @@ impl<'m> NearMetal<'m> {
             }
         }
         // Many feeds may have been here: they come last.
-        self.uncover(strip, true, &mut shares);
+        match self.judged {
+            Judged::Untouched(_) => self.metal.removed.take_voids(strip, &mut shares),
+            Judged::Kept(..) => self.uncover(strip, Covers::Kept, &mut shares),
+            Judged::Uncut(_) | Judged::Milled(_) => self.uncover(strip, Covers::Certain, &mut shares),
+        }
         shares
     }
 
@@ -304,7 +319,7 @@ impl<'m> NearMetal<'m> {
     pub(super) fn is_open_along(&self, axis: &Unit<Vector3<f64>>) -> bool {
         let has_room = match self.judged {
             Judged::Uncut(_) => true,
-            Judged::Kept(part, _) | Judged::Milled(part) => {
+            Judged::Kept(part, _) | Judged::Milled(part) | Judged::Untouched(part) => {
                 let is_along = |hole: &&Collar| 1.0 - NOISE <= hole.rod.axis.dot(axis);
                 self.metal.are_pockets_open(axis) && self.rooms(part).iter().all(is_along)
             }
@@ -328,11 +343,11 @@ impl<'m> NearMetal<'m> {
         })
     }
 
-    fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
+    fn uncover(&self, strip: &Strip, covers: Covers, shares: &mut Shares) {
         if !shares.is_empty() {
             let count = if let Judged::Kept(_, sweeps) = self.judged { sweeps } else { u32::MAX };
             let sweeps = self.sweeps.get_or_init(|| self.metal.removed.first(count));
-            sweeps.uncover(strip, is_certain, shares);
+            sweeps.uncover(strip, covers, shares);
         }
     }
 }

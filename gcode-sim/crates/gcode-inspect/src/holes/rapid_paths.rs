@@ -12,6 +12,26 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
 use gcode_part::{NearestPoint, Surface};
 
+/// Search for metal on the paths of the tool that may be given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Search {
+    /// Along every path that a rapid of several axes can take.
+    Paths,
+    /// On the one path of a rapid.
+    Rapid(OnPath),
+    /// On the path of a feed.
+    Feed(OnPath),
+}
+
+/// What may make a search for metal on one path too long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum OnPath {
+    /// An axis rotates.
+    Turning,
+    /// The metal is what many feeds have left.
+    Straight,
+}
+
 /// Motions that are not searched to the end: the first, and their number.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnsearchedMotions(Option<(Backtrace, u64)>);
@@ -65,7 +85,7 @@ impl HoleExtractor<'_> {
             let is_reported =
                 self.check_path(event, (from, to), start) || self.check_turns_alone(event, (from, to));
             if !is_reported && (self.has_left_start || self.surface.is_none()) {
-                let is_reported = self.check_box(event, &all, from);
+                let is_reported = self.check_box(event, &all, (from, to), start);
                 if !is_reported {
                     self.check_tool_body(event, &all, (from, to), start);
                 }
@@ -137,7 +157,13 @@ impl HoleExtractor<'_> {
 
     /// Reports a rapid that cuts if its axes arrive in another order than along the straight path; returns true if one
     /// does.
-    fn check_box(&mut self, event: &Event<'_>, all: &AxisBox<'_>, from: &Position) -> bool {
+    fn check_box(
+        &mut self,
+        event: &Event<'_>,
+        all: &AxisBox<'_>,
+        (from, to): (&Position, &Position),
+        start: Option<Point3<f64>>,
+    ) -> bool {
         let mut budget = std::mem::take(&mut self.search_budget);
         let deepest = match (&self.surface, &self.metal.holes) {
             (Some(surface), _) => all.deepest(&distance_from(surface), TOUCH_DEPTH, &mut budget),
@@ -150,8 +176,10 @@ impl HoleExtractor<'_> {
         let depth = self.metal.depth(&found.point).unwrap_or(found.depth);
         let level = self.metal.level_at(&found.point);
         let order = self.arrival_order(&found, all);
+        let begin = start;
         let start = self.machine.forward(from, &self.setup).tip;
         let starts_inside = self.metal.depth(&start).is_some_and(|depth| TOUCH_DEPTH < depth);
+        let remedy = self.straight_rapids((from, to), begin);
         self.add_rapid_into_part(event, |kind| {
             let point = format_point(&found.point);
             let message = format!("rapid into the part{order}: {depth:.3} mm below {level} at {point}");
@@ -161,7 +189,7 @@ impl HoleExtractor<'_> {
             };
             Diagnostic::new(kind, message)
                 .note("each axis of a rapid moves at its own rate, so that any of them may arrive first")
-                .help(help)
+                .help(format!("{help}{remedy}"))
         });
         true
     }
@@ -176,7 +204,7 @@ impl HoleExtractor<'_> {
         let contact = faces(start, &sides).map_or(Contact::Unknown, |faces| {
             NearMetal::of_strips(&self.metal, &faces, Judged::Uncut(None)).contact(&faces)
         });
-        let PointInMetal { point, depth } = self.in_rapid(event, contact)?;
+        let PointInMetal { point, depth } = self.in_rapid(event, contact, Search::Paths)?;
         Some(DeepPoint { point, depth, arrived: None })
     }
 
@@ -212,11 +240,18 @@ impl HoleExtractor<'_> {
             true if !parts.any(|part| self.may_cut(part, &[begin, tip], &axis)) => Contact::Clear,
             _ => self.body_contact(path, paths, &axis),
         };
-        let Some(cut) = self.in_rapid(event, contact) else { return };
+        let search = match path.len() < 2 {
+            true => Search::Rapid(if is_straight { OnPath::Straight } else { OnPath::Turning }),
+            false => Search::Paths,
+        };
+        let Some(cut) = self.in_rapid(event, contact, search) else { return };
         // While an axis rotates, the clearance of the job decides; the shape of the tool's end is only assumed.
         let severity = error_if(is_straight || self.process_limits.clearance.is_none());
-        let orders = if path.len() < 2 { "" } else { " on some of its paths" };
-        self.report_side(event, cut, severity, orders);
+        let (orders, remedy) = match path.len() < 2 {
+            true => ("", ""),
+            false => (" on some of its paths", self.straight_rapids((from, to), start)),
+        };
+        self.report_side(event, cut, severity, (orders, remedy));
     }
 
     /// Returns true for a tool whose edges are wider than a part above them: a side cutter, or a cutter for T slots.
@@ -271,15 +306,20 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the metal that a search for a rapid has found; counts the rapid if the search was given up.
-    fn in_rapid(&mut self, event: &Event<'_>, contact: Contact) -> Option<PointInMetal> {
+    fn in_rapid(&mut self, event: &Event<'_>, contact: Contact, search: Search) -> Option<PointInMetal> {
         match contact {
             Contact::Clear => None,
             Contact::Metal(at) => Some(at),
             Contact::Unknown => {
-                self.unsearched_rapids.count(|| event.backtrace());
+                self.count_unsearched(event, search);
                 None
             }
         }
+    }
+
+    /// Counts a motion whose search was given up.
+    pub(super) fn count_unsearched(&mut self, event: &Event<'_>, search: Search) {
+        self.unsearched.entry(search).or_default().count(|| event.backtrace());
     }
 
     /// Reports a rapid of unknown start at whose end the side of the tool is in metal.
@@ -289,8 +329,8 @@ impl HoleExtractor<'_> {
         let (setup, at) = (self.setup, self.axis_position);
         let at = AxisBox::line(self.machine, &setup, &at, &at);
         let contact = self.body_contact(&at, Some(Some(stands)), &axis);
-        if let Some(cut) = self.in_rapid(event, contact) {
-            self.report_side(event, cut, Severity::Error, "");
+        if let Some(cut) = self.in_rapid(event, contact, Search::Rapid(OnPath::Straight)) {
+            self.report_side(event, cut, Severity::Error, ("", ""));
         }
     }
 
@@ -298,12 +338,39 @@ impl HoleExtractor<'_> {
     pub(super) fn check_turned_body(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>) -> bool {
         let cut = self.turned_body_contact(event, travel);
         if let Some(cut) = cut {
-            self.report_side(event, cut, Severity::Error, " while an axis rotates");
+            self.report_side(event, cut, Severity::Error, (" while an axis rotates", ""));
         }
         cut.is_some()
     }
 
-    fn report_side(&mut self, event: &Event<'_>, cut: PointInMetal, severity: Severity, orders: &str) {
+    /// Returns what a machine whose rapids are straight lines needs, if the line between two positions is free: its tip has been
+    /// compared before.
+    fn straight_rapids(
+        &mut self,
+        (from, to): (&Position, &Position),
+        start: Option<Point3<f64>>,
+    ) -> &'static str {
+        const REMEDY: &str = "; if all its rapids are straight lines (parameter 1401#1), as this one would be free, give --control LRP=1";
+        let is_straight = self.machine.is_straight(&AxisMotion { from, to, arc: None });
+        // Without a start the tool leaves a hole the way that it has come.
+        let Some(begin) = start else { return if is_straight { REMEDY } else { "" } };
+        let (setup, tip) = (self.setup, self.pose_at(to).tip);
+        let Some(axis) = self.axis_in_motion(&begin, &tip) else { return "" };
+        let line = AxisBox::line(self.machine, &setup, from, to);
+        let paths = is_straight.then(|| Some(TipPaths::line(&[begin, tip])));
+        match self.body_contact(&line, paths, &axis) {
+            Contact::Clear => REMEDY,
+            Contact::Metal(_) | Contact::Unknown => "",
+        }
+    }
+
+    fn report_side(
+        &mut self,
+        event: &Event<'_>,
+        cut: PointInMetal,
+        severity: Severity,
+        (orders, remedy): (&str, &str),
+    ) {
         let level = self.metal.level_at(&cut.point);
         self.add_rapid_into_part(event, |kind| {
             let (depth, point) = (cut.depth, format_point(&cut.point));
@@ -312,7 +379,9 @@ impl HoleExtractor<'_> {
             );
             Diagnostic::new(kind, message)
                 .with_severity(severity)
-                .help("keep the diameters of the tool and its holder away from the part until the feed")
+                .help(format!(
+                    "keep the diameters of the tool and its holder away from the part until the feed{remedy}"
+                ))
         });
     }
 
@@ -322,7 +391,7 @@ impl HoleExtractor<'_> {
             Deepest::Clear => None,
             Deepest::Metal(point) => Some(point),
             Deepest::Unknown => {
-                self.unsearched_rapids.count(|| event.backtrace());
+                self.count_unsearched(event, Search::Paths);
                 None
             }
         }

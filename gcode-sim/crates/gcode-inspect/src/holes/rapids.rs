@@ -29,10 +29,11 @@ impl HoleExtractor<'_> {
     }
 
     /// Reports a rapid that continues a feed in its direction: out of the part, or deeper into it. With a known surface
-    /// it is checked as any rapid.
+    /// it is checked as any rapid, and above the entry of a nominal hole is no metal.
     pub(super) fn report_overrun(&mut self, event: &Event<'_>, line: &CuttingLine, to: &Point3<f64>) {
         let is_outward = line.tool_axis.is_some_and(|axis| axis.dot(&line.out) < 0.0);
-        if self.surface.is_some() || is_outward {
+        let is_free = self.metal.is_above_entry(to, &line.tool_axis.unwrap_or(line.out));
+        if self.surface.is_some() || is_outward || is_free {
             return;
         }
         self.findings.add_in_program(&RAPID_BEYOND_CUT, &event.backtrace(), 1, 1, |kind| {

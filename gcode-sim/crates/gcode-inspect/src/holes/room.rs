@@ -6,12 +6,14 @@ use crate::machine::{TOUCH_DEPTH, ToolPart};
 use gcode_part::{Collar, NOISE, Rod, Step, Surface, Taper};
 
 impl KnownMetal {
-    /// Returns true if a part of the tool stays in one nominal hole, or in one pocket, while the tip moves between two points.
+    /// Returns true if a part of the tool stays in one nominal hole, or in one pocket but for `slack`, while the tip moves between two
+    /// points.
     pub(super) fn is_allowed(
         &self,
         tips: &[Point3<f64>; 2],
         axis: &Unit<Vector3<f64>>,
         part: &ToolPart,
+        slack: f64,
     ) -> bool {
         let base = tips.map(|tip| tip + axis.into_inner() * part.from);
         let height = base
@@ -22,10 +24,12 @@ impl KnownMetal {
             let radius = part.radius();
             let (min, max) = match pocket {
                 Surface::Block { min, max } => (min, max),
-                Surface::Rod(rod) => return self.is_in_rod(rod, &base, axis.into_inner() * height, radius),
+                Surface::Rod(rod) => {
+                    return self.is_in_rod(rod, &base, axis.into_inner() * height, (radius, slack));
+                }
                 Surface::Ellipsoid { .. } | Surface::Cylinder { .. } => return false,
             };
-            let across = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt() - TOUCH_DEPTH);
+            let across = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt() - slack);
             let up = axis.into_inner() * height;
             let (low, high) = (base[0].inf(&base[1]) - across, base[0].sup(&base[1]) + across);
             (0..3).all(|i| {
@@ -38,7 +42,13 @@ impl KnownMetal {
 
     /// Returns true if a cylinder about the tool, as high as `up`, is in a round pocket wherever there is metal. The tool stands along the
     /// pocket, or across a round body that the pocket holds between its ends.
-    fn is_in_rod(&self, pocket: &Rod, base: &[Point3<f64>; 2], up: Vector3<f64>, radius: f64) -> bool {
+    fn is_in_rod(
+        &self,
+        pocket: &Rod,
+        base: &[Point3<f64>; 2],
+        up: Vector3<f64>,
+        (radius, slack): (f64, f64),
+    ) -> bool {
         let out = pocket.axis.into_inner();
         let from_axis = |p: &Point3<f64>| {
             let from_base = p - pocket.base;
@@ -49,7 +59,7 @@ impl KnownMetal {
         let across = radius * (1.0 - slope * slope).max(0.0).sqrt();
         let is_along = up.cross(&out).norm() <= NOISE * up.norm();
         let is_held = match self.body {
-            _ if is_along => base.iter().all(|p| from_axis(p) + radius - TOUCH_DEPTH <= pocket.radius),
+            _ if is_along => base.iter().all(|p| from_axis(p) + radius - slack <= pocket.radius),
             Some(Surface::Rod(body)) => {
                 let is_parallel = body.axis.cross(&out).norm() <= NOISE;
                 is_parallel && from_axis(&body.base) + body.radius <= pocket.radius + NOISE
@@ -60,7 +70,7 @@ impl KnownMetal {
         is_held
             && base.iter().all(|p| {
                 let (low, high) = (height(p) - across + rise.min(0.0), height(p) + across + rise.max(0.0));
-                -TOUCH_DEPTH <= low && high <= pocket.length + TOUCH_DEPTH
+                -slack <= low && high <= pocket.length + slack
             })
     }
 

@@ -4,7 +4,7 @@ use super::HoleExtractor;
 use super::cutting::CuttingState;
 use super::line::{CuttingLine, SpindleInHole};
 use crate::findings::{SPINDLE_IN_HOLE, SPINDLE_STOPPED};
-use crate::machine::{ToolKind, tool_name};
+use crate::machine::{TOUCH_DEPTH, ToolKind, tool_name};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, SpindleDirection};
 
@@ -28,10 +28,13 @@ impl HoleExtractor<'_> {
             // Nothing is cut so far.
             None => SpindleDirection::Off,
         };
+        let is_drawn_back = line.depth_of(&self.pose.tip) + TOUCH_DEPTH < line.cut_depth();
         let state = match now {
             _ if begun == SpindleDirection::Off || now == before => SpindleInHole::Unchanged,
             SpindleDirection::Off => SpindleInHole::Stopped,
             now if now != begun => SpindleInHole::Reversed,
+            // A cycle that taps starts it where it has stopped it, at the bottom.
+            _ if is_drawn_back => SpindleInHole::Stopped,
             _ => SpindleInHole::Restarted,
         };
         line.is_tapping |= state == SpindleInHole::Reversed;

@@ -3,6 +3,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::axis_box::directions_across;
 use super::metal::{KnownMetal, is_rounding};
+use super::removed_metal::Covers;
 use super::strip::{Line, Strip};
 use super::{DrilledHole, HoleExtractor};
 use crate::machine::TOUCH_DEPTH;
@@ -40,8 +41,8 @@ impl KnownMetal {
     fn first_metal(&self, [from, to]: &Line, sweeps: u32) -> Option<f64> {
         let length = (to - from).norm();
         let strip = Strip::line([*from, *to]);
-        let mut shares = self.solid(&strip, |_| true);
-        self.removed.first(sweeps).uncover(&strip, false, &mut shares);
+        let mut shares = self.solid(&strip, TOUCH_DEPTH, |_| true);
+        self.removed.first(sweeps).uncover(&strip, Covers::All, &mut shares);
         shares.sort();
         let first = shares.pieces().iter().find(|piece| !is_rounding(length, **piece))?;
         let depth = first[0] * length;

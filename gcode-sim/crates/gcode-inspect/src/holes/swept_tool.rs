@@ -268,6 +268,20 @@ fn inside_walls(
     inner
 }
 
+/// Returns true if the outline of a part meets metal at one of its corners.
+pub(super) fn is_at_outline(
+    part: &ToolPart,
+    axis: &Unit<Vector3<f64>>,
+    travel: &Line,
+    metal: &KnownMetal,
+    judged: Judged<'_>,
+) -> bool {
+    let (strips, flanks) = strips(part, axis, &TipPaths::line(travel), metal);
+    let near = NearMetal::of_strips(metal, strips.iter().chain(&flanks), judged);
+    let edges = strips.iter().chain(&flanks).flat_map(|strip| &strip.edges);
+    edges.into_iter().any(|edge| near.on_line(edge).is_some())
+}
+
 /// Finds the metal that the surface of a part meets.
 fn contact_at_surface(
     part: &ToolPart,

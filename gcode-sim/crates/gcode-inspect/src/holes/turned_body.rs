@@ -5,6 +5,7 @@ use super::HoleExtractor;
 use super::feed_law::{Gouge, ToolRegion};
 use super::metal::PointInMetal;
 use super::near_metal::{FeedPart, Judged};
+use super::rapid_paths::{OnPath, Search};
 use super::strip::Line;
 use crate::machine::{AxisMotion, Pose, TOUCH_DEPTH, ToolPart};
 use gcode_lang::motion::{Event, Position};
@@ -34,7 +35,7 @@ impl HoleExtractor<'_> {
             touching.find_map(|part| self.contact_in_feed(part, axis, line, Judged::Uncut(None)))
         });
         if self.is_feed_unsearched.take() && found.is_none() {
-            self.unsearched_rapids.count(|| event.backtrace());
+            self.count_unsearched(event, Search::Rapid(OnPath::Turning));
         }
         found
     }

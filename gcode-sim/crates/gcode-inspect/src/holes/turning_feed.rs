@@ -5,6 +5,7 @@ use super::HoleExtractor;
 use super::axis_box::AxisBox;
 use super::feed_law::{CHORD_TOLERANCE, COARSE_TOLERANCE, Gouge, ToolRegion};
 use super::near_metal::{Contact, FeedPart, Judged};
+use super::rapid_paths::{OnPath, Search};
 use super::strip::Line;
 use crate::machine::{AxisMotion, Pose, TOUCH_DEPTH};
 use gcode_lang::motion::{Event, Position};
@@ -53,7 +54,7 @@ impl HoleExtractor<'_> {
         }
         self.note_milled_block(event, &chords);
         for (chord, axis) in &chords {
-            self.remove(chord, axis);
+            self.remove(chord, axis, false);
         }
         true
     }
@@ -90,7 +91,7 @@ impl HoleExtractor<'_> {
             {
                 self.report_gouge(&event.backtrace(), &[self.pose.tip], gouge);
             }
-            return self.count_unsearched_feed(event);
+            return self.count_unsearched_feed(event, OnPath::Turning);
         };
         if !self.has_left_start || self.metal.holes.is_none() {
             return;
@@ -108,7 +109,7 @@ impl HoleExtractor<'_> {
             Some(at) => {
                 self.report_gouge(&event.backtrace(), &[self.pose.tip], Gouge { at, part: ToolRegion::Side })
             }
-            None => self.unsearched_feeds.count(|| event.backtrace()),
+            None => self.count_unsearched(event, Search::Feed(OnPath::Turning)),
         }
     }
 

@@ -130,7 +130,7 @@ impl HoleExtractor<'_> {
                 Profile::flat(MAX_RADIUS, false)
             }
         };
-        self.metal.removed.add(from, to, *axis, &profile);
+        self.metal.removed.add([from, to], *axis, &profile, false);
     }
 
     /// Removes what the last strokes of a tool of unknown diameter have cut of the feature that ends where they do.
@@ -138,7 +138,7 @@ impl HoleExtractor<'_> {
         let Some(UnsizedStroke { travel, axis }) = self.unsized_stroke.take() else { return };
         let Some(StrokeRadii { through, end }) = self.radii_on_axis(&travel, &axis) else { return };
         if let Some(radius) = end.filter(|radius| through < *radius) {
-            self.metal.removed.add(travel[0], travel[1], axis, &Profile::flat(radius, true));
+            self.metal.removed.add(travel, axis, &Profile::flat(radius, true), false);
         }
     }
 

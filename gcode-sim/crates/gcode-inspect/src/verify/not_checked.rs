@@ -6,7 +6,7 @@ use super::checks::stock::deeper_than_stock;
 use super::hole_cuts::Cut;
 use super::{Comparison, HoleInspection};
 use crate::findings::BACK_BORED;
-use crate::holes::{DrilledHole, HoleExtraction};
+use crate::holes::{DrilledHole, HoleExtraction, OnPath, Search};
 use crate::machine::{HeadKind, Machine, PointShape, Tool, tool_name};
 use gcode_lang::motion::LengthCompensation;
 use gcode_lang::source::Span;
@@ -107,24 +107,16 @@ pub(super) fn list(
         let (what, reason) = unknown.describe(locate(unknown.backtrace.block));
         all.push(NotChecked::gap(what, reason));
     }
-    let unsearched = [
-        (
-            &extraction.unsearched_rapids,
-            "rapids whose axes may reach too many positions",
-            "rapid",
-            "give [rapid] in the machine file",
-        ),
+    let given_up = extraction.unsearched.iter().map(|(search, motions)| {
+        let (what, kind, reason) = given_up(*search);
+        (motions, what, kind, reason)
+    });
+    let others = [
         (
             &extraction.rapids_of_unknown_tip,
             "rapids at machine positions without a length offset",
             "rapid",
             "the tool length is unknown, and length 0 would put the tip on the part; give the length in the machine file",
-        ),
-        (
-            &extraction.unsearched_feeds,
-            "the side of the tool in some feeds",
-            "feed",
-            "an axis rotates near the metal, or the metal beside them is cut too finely",
         ),
         (
             &extraction.rapids_behind_change,
@@ -156,7 +148,7 @@ pub(super) fn list(
             },
         ),
     ];
-    for (motions, what, kind, reason) in unsearched {
+    for (motions, what, kind, reason) in given_up.chain(others) {
         if let Some((first, count)) = motions.first() {
             let (program, line) = locate(first.block);
             let plural = if *count == 1 { "" } else { "s" };
@@ -200,6 +192,21 @@ pub(super) fn list(
         all.push(NotChecked::gap(what, "rapids where they have removed the metal are reported"));
     }
     all
+}
+
+/// Returns what a search for metal that is given up leaves out, the kind of its motions, and the reason.
+fn given_up(search: Search) -> (&'static str, &'static str, &'static str) {
+    let reason = |path: OnPath| match path {
+        OnPath::Turning => "an axis rotates near the metal",
+        OnPath::Straight => "the metal beside them is cut too finely",
+    };
+    match search {
+        Search::Paths => {
+            ("rapids whose axes may reach too many positions", "rapid", "give [rapid] in the machine file")
+        }
+        Search::Rapid(path) => ("the side of the tool in some rapids", "rapid", reason(path)),
+        Search::Feed(path) => ("the side of the tool in some feeds", "feed", reason(path)),
+    }
 }
 
 /// Returns `O1 lines 45 to 60, O9100 line 3 and 2 more`.

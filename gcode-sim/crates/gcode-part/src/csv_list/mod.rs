@@ -8,12 +8,10 @@ pub(super) use columns::is_csv;
 pub(super) use columns::lacking_header;
 use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator, unit};
 
-use std::collections::HashMap;
-
 use super::feature::{DepthTo, Feature, FeatureKind};
 use super::hand::Hand;
 use super::hole::{Hole, HoleList, Unit};
-use super::read::{check, complete};
+use super::read::{check, complete, repeated_id};
 use crate::reader::FileError;
 use crate::{exceeds, thread_size};
 
@@ -94,31 +92,35 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         shallow: Vec::new(),
     };
     // A line is counted from the start of the text, only for an error.
-    let mut positions_of_ids: HashMap<String, Option<u64>> = HashMap::new();
-    while reader.read_record(&mut cells.record).map_err(|e| wrong(&e))? {
-        if cells.record.iter().all(|cell| cell.trim().is_empty()) {
-            continue;
+    let mut positions: Vec<Option<u64>> = Vec::new();
+    let mut read_rows = || -> Result<(), FileError> {
+        while reader.read_record(&mut cells.record).map_err(|e| wrong(&e))? {
+            if cells.record.iter().all(|cell| cell.trim().is_empty()) {
+                continue;
+            }
+            let index = list.holes.holes.len();
+            let hole = cells.hole(index).map_err(|message| {
+                error(
+                    line_of(cells.record.position()),
+                    format!("{message}; {}", example(&columns.names, separator)),
+                )
+            })?;
+            positions.push(cells.record.position().map(csv::Position::byte));
+            if hole.is_open {
+                list.open_depths.push(index);
+            }
+            list.holes.holes.push(hole.hole);
         }
-        let index = list.holes.holes.len();
-        let hole = cells.hole(index).map_err(|message| {
-            error(
-                line_of(cells.record.position()),
-                format!("{message}; {}", example(&columns.names, separator)),
-            )
-        })?;
-        let position = cells.record.position();
-        if let Some(id) = &hole.hole.id
-            && let Some(first) = positions_of_ids.insert(id.clone(), position.map(csv::Position::byte))
-        {
-            let first = first.map_or_else(String::new, |first| format!(", in line {} first", line_at(first)));
-            let line = line_of(position);
-            return Err(error(line, format!("id '{id}' is used twice{first}: give each hole its own")));
-        }
-        if hole.is_open {
-            list.open_depths.push(index);
-        }
-        list.holes.holes.push(hole.hole);
+        Ok(())
+    };
+    let rows = read_rows();
+    if let Some([first, second]) = repeated_id(&list.holes.holes) {
+        let id = list.holes.holes[second].id.as_deref().unwrap_or_default();
+        let [first, line] = [first, second].map(|index| positions[index].map(line_at));
+        let first = first.map_or_else(String::new, |first| format!(", in line {first} first"));
+        return Err(error(line, format!("id '{id}' is used twice{first}: give each hole its own")));
     }
+    rows?;
     if list.holes.holes.is_empty() && stopped.is_none() {
         let example = example(&columns.names, separator);
         return Err(error(None, format!("no hole after the header: one line for each; {example}")));

@@ -125,6 +125,11 @@ fn name_of(value: OutsideValue, run: &Run) -> String {
 }
 
 impl Dependencies {
+    /// Returns true if the run has read no outside value.
+    pub(super) fn is_empty(&self) -> bool {
+        self.reads.is_empty()
+    }
+
     /// Returns the assumptions that can touch a hole or flute, each with its block; `names` returns the name of a hole or pass
     /// by its index in the extraction.
     pub fn assumptions(

@@ -40,6 +40,8 @@ struct Sweep {
     /// Direction of the tool, out of the part.
     axis: Unit<Vector3<f64>>,
     profile: u32,
+    /// It has cut a little of what has to stay.
+    has_scratched: bool,
 }
 
 /// Volumes that the tool has swept in feeds.
@@ -87,13 +89,13 @@ impl RemovedMetal {
         }
     }
 
-    /// Adds a straight feed.
+    /// Adds a straight feed; `has_scratched` if it has cut a little of what has to stay.
     pub(super) fn add(
         &mut self,
-        from: Point3<f64>,
-        to: Point3<f64>,
+        [from, to]: Line,
         axis: Unit<Vector3<f64>>,
         profile: &Profile,
+        has_scratched: bool,
     ) {
         let known = self.profiles.iter().rposition(|other| other == profile);
         let profile = known.unwrap_or_else(|| {
@@ -102,7 +104,7 @@ impl RemovedMetal {
         }) as u32;
         let last = self.sweeps.last_mut().filter(|_| self.is_last_open);
         let is_longer = last
-            .filter(|last| last.axis == axis && last.profile == profile)
+            .filter(|last| (last.axis, last.profile, last.has_scratched) == (axis, profile, has_scratched))
             .is_some_and(|last| last.lengthen_along_axis(&from, &to) || last.go_on(&from, &to, self.heading));
         if !is_longer {
             if self.sweeps.len() == MAX_SWEEPS {
@@ -110,7 +112,7 @@ impl RemovedMetal {
                 return;
             }
             self.add_last_to_slabs();
-            self.sweeps.push(Sweep { from, to, axis, profile });
+            self.sweeps.push(Sweep { from, to, axis, profile, has_scratched });
             self.common_axis = Some(self.common_axis.unwrap_or(Some(axis)).filter(|common| *common == axis));
             self.is_last_open = true;
             self.heading = Unit::try_new(to - from, ROUNDING);
@@ -120,7 +122,11 @@ impl RemovedMetal {
 
     /// Adds the last sweep, which is complete, to the slabs.
     fn add_last_to_slabs(&mut self) {
-        let Some(Sweep { from, to, axis, profile }) = self.sweeps.last() else { return };
+        let Some(Sweep { from, to, axis, profile, .. }) =
+            self.sweeps.last().filter(|last| !last.has_scratched)
+        else {
+            return;
+        };
         let tool = (&self.profiles[*profile as usize], *profile);
         if let Some(pass) = Slab::of_pass([*from, *to], axis, tool, self.sweeps.len() as u32) {
             let up = axis.into_inner();
@@ -140,9 +146,9 @@ impl RemovedMetal {
             let end = p + axis * top.min(self.height_of_round(&p, &axis, profile.radius));
             (low, high) = (low.inf(&end), high.sup(&end));
         }
-        let margin = Vector3::repeat(profile.radius + TOUCH_DEPTH);
+        let margin = axis.map(|along| profile.radius * (1.0 - along * along).max(0.0).sqrt() + TOUCH_DEPTH);
         let number = self.sweeps.len() - 1;
-        let sweep_box = SweepBox::new([&sweep.from, &sweep.to], &axis, top, margin.x);
+        let sweep_box = SweepBox::new([&sweep.from, &sweep.to], &axis, top, &margin);
         match self.sweep_boxes.get_mut(number) {
             Some(known) => *known = sweep_box,
             None => self.sweep_boxes.push(sweep_box),
@@ -192,6 +198,13 @@ impl RemovedMetal {
         self.voids.is_empty() && is_one_way && self.profiles.iter().all(is_open)
     }
 
+    /// Takes away the shares of a strip that are in voids.
+    pub(super) fn take_voids(&self, strip: &Strip, shares: &mut Shares) {
+        for void in &self.voids {
+            shares.take_away(strip.piece(|[from, to]| void.piece(from, to, -TOUCH_DEPTH)));
+        }
+    }
+
     /// Returns the number of sweeps so far.
     pub(super) fn count(&self) -> u32 {
         self.sweeps.len() as u32
@@ -209,6 +222,45 @@ impl RemovedMetal {
     }
 }
 
+/// Sweeps that count, and how far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Covers {
+    All,
+    /// Those of tools of known diameter.
+    Certain,
+    /// Those of tools of known diameter that have not scratched what has to stay: the next feed there is compared with the whole of it.
+    Kept,
+}
+
+impl RemovedMetal {
+    /// Returns true if a feed is as one that the same tool has made before, no more than [`TOUCH_DEPTH`] beside it.
+    pub(super) fn has_repeated(
+        &self,
+        travel: &Line,
+        axis: &Unit<Vector3<f64>>,
+        profile: &Profile,
+        covers: Covers,
+    ) -> bool {
+        let is_near = |p: &Point3<f64>, sweep: &Sweep| {
+            let along = sweep.to - sweep.from;
+            let share = (p - sweep.from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+            (p - sweep.from - along * share.clamp(0.0, 1.0)).norm() <= TOUCH_DEPTH
+        };
+        let has_made = |sweep: &Sweep| {
+            sweep.axis == *axis
+                && !(covers == Covers::Kept && sweep.has_scratched)
+                && travel.iter().all(|p| is_near(p, sweep))
+                && self.profiles[sweep.profile as usize] == *profile
+        };
+        let mut is_found = false;
+        self.boxes.near(&Strip::line(*travel).bounds(), &mut |place| {
+            is_found = group(place).filter_map(|index| self.sweeps.get(index)).any(has_made);
+            !is_found
+        });
+        is_found
+    }
+}
+
 /// Number of the sweeps that are tried before all others.
 const MAX_RECENT: usize = 8;
 
@@ -220,20 +272,18 @@ pub(super) struct FirstSweeps<'r> {
 }
 
 impl FirstSweeps<'_> {
-    /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included. `is_certain` leaves
-    /// out tools of unknown diameter.
-    pub(super) fn uncover(&self, strip: &Strip, is_certain: bool, shares: &mut Shares) {
-        for void in &self.removed.voids {
-            shares.take_away(strip.piece(|[from, to]| void.piece(from, to, -TOUCH_DEPTH)));
-        }
+    /// Takes away the shares between which the sweeps cover a strip, [`TOUCH_DEPTH`] beyond them included.
+    pub(super) fn uncover(&self, strip: &Strip, covers: Covers, shares: &mut Shares) {
+        self.removed.take_voids(strip, shares);
         let profiles = &self.removed.profiles;
-        let is_counted = |profile: u32| profiles[profile as usize].is_certain || !is_certain;
+        let is_counted = |profile: u32| profiles[profile as usize].is_certain || covers == Covers::All;
         self.removed.slabs.uncover(strip, self.sweeps.len(), is_counted, shares);
         let mut recent = self.removed.recent.borrow_mut();
-        let cover = |index: usize, shares: &mut Shares| {
-            let Some(sweep) = self.sweeps.get(index).filter(|sweep| is_counted(sweep.profile)) else {
-                return false;
-            };
+        let sweep_at = |index: usize| {
+            let leaves_out = |sweep: &Sweep| covers == Covers::Kept && sweep.has_scratched;
+            self.sweeps.get(index).filter(|sweep| is_counted(sweep.profile) && !leaves_out(sweep))
+        };
+        let cover = |sweep: &Sweep, shares: &mut Shares| {
             let mut has_covered = false;
             for part in &profiles[sweep.profile as usize].parts {
                 has_covered |= shares.take_away(strip.piece(|line| sweep.covered(part, line)));
@@ -244,7 +294,9 @@ impl FirstSweeps<'_> {
             if shares.is_empty() {
                 return;
             }
-            cover(recent[place], shares);
+            if let Some(sweep) = sweep_at(recent[place]) {
+                cover(sweep, shares);
+            }
         }
         let Some(extent) = shares.extent() else { return };
         let reach = StripReach::of(strip);
@@ -257,7 +309,8 @@ impl FirstSweeps<'_> {
                 if shares.is_empty() {
                     return false;
                 }
-                if is_near(index, shares) && cover(index, shares) {
+                let Some(sweep) = sweep_at(index) else { continue };
+                if is_near(index, shares) && cover(sweep, shares) {
                     recent.retain(|other| *other != index);
                     if recent.len() == MAX_RECENT {
                         recent.remove(0);

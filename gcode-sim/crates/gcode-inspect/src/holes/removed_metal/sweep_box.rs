@@ -16,11 +16,16 @@ pub(super) struct SweepBox([[f32; 2]; 3]);
 
 impl SweepBox {
     /// Returns the box about a tool whose tip moves between two points; `top` is the height of its end.
-    pub(super) fn new([from, to]: [&Point3<f64>; 2], axis: &Vector3<f64>, top: f64, margin: f64) -> Self {
+    pub(super) fn new(
+        [from, to]: [&Point3<f64>; 2],
+        axis: &Vector3<f64>,
+        top: f64,
+        margin: &Vector3<f64>,
+    ) -> Self {
         Self(std::array::from_fn(|i| {
             let up = if axis[i] == 0.0 { 0.0 } else { axis[i] * top };
             let (low, high) = (from[i].min(to[i]), from[i].max(to[i]));
-            let margin = margin + MARGIN;
+            let margin = margin[i] + MARGIN;
             [below(low + up.min(0.0) - margin), -below(-(high + up.max(0.0) + margin))]
         }))
     }
@@ -98,7 +103,7 @@ mod tests {
             }
             let [from, to] = tips.map(point);
             let axis = Vector3::from(axis);
-            let sweep_box = SweepBox::new([&from, &to], &axis, top, 2.0);
+            let sweep_box = SweepBox::new([&from, &to], &axis, top, &Vector3::repeat(2.0));
             let strip = Strip::between([ends[0], ends[1]], [ends[2], ends[3]]);
             let found = StripReach::of(&strip).shares_in(&sweep_box);
             let up = axis.map(|one| if one == 0.0 { 0.0 } else { one * top });

@@ -11,7 +11,7 @@ fn p(x: f64, y: f64, z: f64) -> Point3<f64> {
 fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f64; 2]> {
     let mut shares = Shares::default();
     shares.extend([[0.0, 1.0]]);
-    removed.first(u32::MAX).uncover(&Strip::line([from, to]), true, &mut shares);
+    removed.first(u32::MAX).uncover(&Strip::line([from, to]), Covers::Certain, &mut shares);
     let mut pieces: Vec<_> =
         shares.pieces().iter().map(|piece| piece.map(|share| (share * 1e6).round() / 1e6)).collect();
     pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -23,7 +23,7 @@ fn rest_of(removed: &RemovedMetal, from: Point3<f64>, to: Point3<f64>) -> Vec<[f
 #[test]
 fn a_slot_covers_its_width_and_all_above_it() {
     let mut removed = RemovedMetal::new([p(-100.0, -100.0, -20.0), p(100.0, 100.0, 0.0)], Vec::new());
-    removed.add(p(0.0, 0.0, -5.0), p(40.0, 0.0, -5.0), Vector3::z_axis(), &Profile::flat(5.0, true));
+    removed.add([p(0.0, 0.0, -5.0), p(40.0, 0.0, -5.0)], Vector3::z_axis(), &Profile::flat(5.0, true), false);
     for is_closed in [false, true] {
         if is_closed {
             removed.close();
@@ -44,8 +44,8 @@ fn pecks_are_one_sweep() {
     for depth in 1..=1000 {
         let bottom = f64::from(depth) / -50.0;
         let profile = Profile::flat(3.0, true);
-        removed.add(p(1.0, 0.0, bottom + 0.1), p(1.0, 0.0, bottom), Vector3::z_axis(), &profile);
-        removed.add(p(1.0, 0.0, bottom), p(1.0, 0.0, 0.0), Vector3::z_axis(), &profile);
+        removed.add([p(1.0, 0.0, bottom + 0.1), p(1.0, 0.0, bottom)], Vector3::z_axis(), &profile, false);
+        removed.add([p(1.0, 0.0, bottom), p(1.0, 0.0, 0.0)], Vector3::z_axis(), &profile, false);
     }
     assert_eq!(removed.sweeps.len(), 1);
     assert_eq!(rest_of(&removed, p(3.0, 0.0, 0.0), p(3.0, 0.0, -40.0)), [[0.50025, 1.0]]);
@@ -60,12 +60,12 @@ fn small_steps_along_a_line_are_one_sweep() {
         (RemovedMetal::new(bounds, Vec::new()), RemovedMetal::new(bounds, Vec::new()));
     for step in 0..1000 {
         let at = |step: i32| p(f64::from(step) * 0.05, 0.0, -5.0);
-        line.add(at(step), at(step + 1), Vector3::z_axis(), &profile);
+        line.add([at(step), at(step + 1)], Vector3::z_axis(), &profile, false);
         let on = |step: i32| {
             let angle = gcode_lang::units::Deg(f64::from(step) * 0.36);
             p(10.0 * angle.cos(), 10.0 * angle.sin(), -5.0)
         };
-        circle.add(on(step), on(step + 1), Vector3::z_axis(), &profile);
+        circle.add([on(step), on(step + 1)], Vector3::z_axis(), &profile, false);
     }
     assert_eq!(line.sweeps.len(), 1);
     assert_eq!(rest_of(&line, p(-10.0, 0.0, -1.0), p(90.0, 0.0, -1.0)), [[0.0, 0.0699], [0.6301, 1.0]]);
@@ -99,22 +99,24 @@ proptest! {
                 // Flutes that end below the surface.
                 tool.parts = vec![ToolPart::flutes(0.0, 3.0, 3.0)];
             }
-            removed.add(at, to, Vector3::z_axis(), &tool);
+            removed.add([at, to], Vector3::z_axis(), &tool, false);
             at = if kind == 0 { p(to.x, to.y + step, to.z) } else { to };
         }
         let count = first.min(removed.sweeps.len());
         for [a, b, c, d, e, f] in lines {
             let line = [p(a, b, c / 5.0), p(d, e, f / 5.0)];
-            for (count, is_certain) in [(count, true), (usize::MAX, true), (usize::MAX, false)] {
+            for (count, covers) in
+                [(count, Covers::Certain), (usize::MAX, Covers::Kept), (usize::MAX, Covers::All)]
+            {
                 let (mut indexed, mut plain) = (Shares::default(), Shares::default());
                 // What is above the metal is no share of it.
                 let in_metal = Surface::Block { min: removed.bounds[0], max: removed.bounds[1] };
                 indexed.extend(in_metal.piece(&line[0], &line[1], 0.0));
                 plain.extend(in_metal.piece(&line[0], &line[1], 0.0));
-                removed.first(count as u32).uncover(&Strip::line(line), is_certain, &mut indexed);
+                removed.first(count as u32).uncover(&Strip::line(line), covers, &mut indexed);
                 for sweep in removed.sweeps.iter().take(count) {
                     let profile = &removed.profiles[sweep.profile as usize];
-                    for part in profile.parts.iter().filter(|_| profile.is_certain || !is_certain) {
+                    for part in profile.parts.iter().filter(|_| profile.is_certain || covers == Covers::All) {
                         plain.take_away(sweep.covered(part, &line));
                     }
                 }
@@ -148,7 +150,7 @@ proptest! {
             ..ToolPart::flutes(low, low + length, 0.0)
         };
         let parts = if slope == 0.0 { vec![ToolPart::flutes(low, low + length, radius)] } else { vec![cone, cylinder] };
-        let sweep = Sweep { from, to, axis, profile: 0 };
+        let sweep = Sweep { from, to, axis, profile: 0, has_scratched: false };
         let (a, b) = (p(travel[0], travel[1], travel[2]), p(travel[3], travel[4], travel[5]));
         let covered: Vec<_> = parts.iter().filter_map(|part| sweep.covered(part, &[a, b])).collect();
         for s in 0..=50 {
