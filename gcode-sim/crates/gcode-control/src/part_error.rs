@@ -93,6 +93,23 @@ impl Planner<'_> {
         Err(self.not_simulated(what))
     }
 
+    /// Raises the alarm of G254 where it isn't that of a Haas: on a head that turns, and with a work offset of the axis that tilts
+    /// the table, which has to be 0 (Haas Mill Operator's Manual, G254).
+    pub(super) fn check_dynamic_offset(&self, state: &State) -> ExecResult<()> {
+        let Some(kinematics) = &self.data.settings.kinematics else { return Ok(()) };
+        if !kinematics.head.is_empty() {
+            return Err(self.not_simulated("G254 on a machine whose head turns"));
+        }
+        let tilting = kinematics.table.first().filter(|_| kinematics.table.len() > 1);
+        match tilting.map(|axis| axis.axis).filter(|axis| self.data.zero(state, *axis) != 0.0) {
+            Some(axis) => {
+                let letter = self.data.settings.axes.letter(axis);
+                Err(self.not_simulated(format!("G254 with a work offset of {letter} other than 0")))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// G10 L21: the axes of a fixture offset. G10 L23: shift X Y Z and rotations A B C of a setting error.
     pub(super) fn plan_part_error(&self, l: u32, number: u32, plan: &mut BlockPlan) -> ExecResult<()> {
         let most = if l == 21 { FIXTURES } else { SETTING_ERRORS };
