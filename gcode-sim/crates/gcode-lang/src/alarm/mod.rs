@@ -8,7 +8,7 @@ mod table;
 mod typos;
 
 use crate::source::{Span, Spanned};
-pub use code::AlarmCode;
+pub use code::{AlarmCode, AlarmRow};
 pub use digit_limit::DigitLimit;
 pub use typos::{lacking_code_help, missing_macro_help, remedy, repeats_in_p_help};
 
@@ -478,17 +478,6 @@ pub enum Alarm {
 
 /// Alarm with its span. Boxed, because almost every step of a run returns a result without an alarm.
 pub type LocatedAlarm = Box<Spanned<Alarm>>;
-
-/// Designation, wording and remedy of an alarm.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AlarmRow {
-    /// Designation.
-    pub code: AlarmCode,
-    /// Wording.
-    pub message: String,
-    /// Remedy: one instruction.
-    pub help: Option<String>,
-}
 
 impl Alarm {
     /// Returns the designation.
