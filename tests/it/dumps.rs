@@ -72,6 +72,45 @@ fn the_choice_of_a_main_program_is_said() {
     );
 }
 
+/// The end of a path is enough where one program has it.
+#[test]
+fn a_program_is_chosen_by_the_end_of_its_path() {
+    let dump = "%\n&F=//CNC_MEM/USER/PARTS/JOB1/\nO1\n#100=1\nM30\n\
+                &f=//CNC_MEM/USER/PARTS/JOB2/\nO1\n#100=2\nM30\n\
+                &F=//CNC_MEM/USER/OLD/JOB1/\nO1\n#100=3\nM30\n%\n";
+    let place = folder(&[("d.txt", dump.as_bytes())]);
+    let second = serde_json::json!({"#100": 2.0});
+    assert_eq!(commons("d.txt --program JOB2/O1", place.path()), second);
+    assert_eq!(commons("d.txt --program PARTS/JOB1/O1", place.path()), serde_json::json!({"#100": 1.0}));
+    for unclear in ["JOB1/O1", "OB2/O1", "JOB2/O2"] {
+        let (code, _, message) = run(&format!("run d.txt --program {unclear}"), place.path());
+        assert!(code == 2 && message.contains("contains no program"), "{unclear}: {message}");
+    }
+}
+
+/// Some senders write `;` for the end of a block, and a whole program in a line.
+#[test]
+fn a_program_behind_a_semicolon_is_one() {
+    let text = b"%\nO1;#100=1;M98P2;M30;O2;#101=2;M99;%\n";
+    let place = folder(&[("p.nc", text), ("q.nc", b"%\nO2\n#101=77\nM99\n%\n")]);
+    assert_eq!(commons("p.nc", place.path()), serde_json::json!({"#100": 1.0, "#101": 2.0}));
+    // Behind `;` a text with a number in front is a comment.
+    let remark = b"O1\n#100=1 ;O2 is the sensor\n#101=3\nM30\n";
+    let place = folder(&[("p.nc", remark)]);
+    assert_eq!(commons("p.nc", place.path()), serde_json::json!({"#100": 1.0, "#101": 3.0}));
+}
+
+/// A tape in ISO code: the eighth bit makes the number of ones of a byte even. Between its lines are pauses.
+#[test]
+fn a_tape_with_parity_and_pauses_is_read() {
+    let plain = b"%\r\n\0\0O1\r\n\0\0#100=17\r\n\0\0M30\r\n%\r\n";
+    let punched = plain.map(|byte| byte | ((byte.count_ones() as u8 & 1) << 7));
+    let place = folder(&[("plain.nc", plain), ("punched.nc", &punched)]);
+    for name in ["plain.nc", "punched.nc"] {
+        assert_eq!(commons(name, place.path()), serde_json::json!({"#100": 17.0}), "{name}");
+    }
+}
+
 /// A file may begin with the subprograms.
 #[test]
 fn the_only_main_program_is_executed_though_others_come_first() {

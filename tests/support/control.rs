@@ -9,7 +9,7 @@
 //! -- end=normal; #100=1
 //! ```
 //!
-//! A case with a `machine.toml` runs on the rotary axes of that machine file. A program that doesn't begin with O, `:` or `%` is
+//! A case with a `machine.toml` runs on the axes of that machine file. A program that doesn't begin with O, `:` or `%` is
 //! O0001. [`crate::expect`] has the words behind `--`.
 use gcode_inspect::machine::Machine;
 
@@ -17,7 +17,7 @@ use crate::{Case, expect};
 
 pub(crate) fn run(case: &Case) {
     let text = case.text("cases.txt");
-    let kinematics = case.optional("machine.toml").map(|text| Machine::parse(&text).unwrap().kinematics());
+    let machine = case.optional("machine.toml").map(|text| Machine::parse(&text).unwrap());
     let mut wrong = String::new();
     let mut names: Vec<&str> = Vec::new();
     for entry in text.split("== ").skip(1) {
@@ -30,7 +30,9 @@ pub(crate) fn run(case: &Case) {
         let head = if program.starts_with(['O', ':', '%']) { "" } else { "O0001\n" };
         let program = format!("{head}{program}");
         let mut settings = expect::settings(program.as_bytes());
-        settings.kinematics = kinematics.clone().flatten();
+        if let Some(machine) = &machine {
+            (settings.axes, settings.kinematics) = (machine.axes.clone(), machine.kinematics());
+        }
         for difference in expect::run_on(program.as_bytes(), settings, 100_000).differences(expected.trim()) {
             wrong.push_str(&format!("{name}: {difference}\n"));
         }

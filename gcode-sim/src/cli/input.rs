@@ -66,7 +66,15 @@ pub(super) fn program_text(path: &Path) -> Result<Bytes, UsageError> {
             "{name} is a job or a machine file, not a program: give it with --reference or --machine"
         )));
     }
-    Ok(to_utf8(bytes))
+    Ok(match has_even_parity(&bytes) {
+        true => Bytes::converted(bytes.iter().map(|byte| char::from(byte & 0x7f)).collect(), bytes),
+        false => to_utf8(bytes),
+    })
+}
+
+/// Returns true for a tape in ISO code: the eighth bit of a byte makes the number of its ones even, which no other text does.
+fn has_even_parity(bytes: &[u8]) -> bool {
+    bytes.iter().any(|byte| *byte >= 0x80) && bytes.iter().all(|byte| byte.count_ones() % 2 == 0)
 }
 
 /// Lines at the beginning of a file in which blocks are looked for.
@@ -75,14 +83,14 @@ const FIRST_LINES: usize = 200;
 /// Returns the reason why bytes are no program: zero bytes, or lines of which hardly one begins as a block does, or from the first that does
 /// on not a third.
 fn not_a_program(bytes: &[u8]) -> Option<String> {
-    // The leader and the trailer of a tape are zeros.
-    let start = bytes.iter().position(|byte| *byte != 0).unwrap_or(bytes.len());
-    let end = bytes.iter().rposition(|byte| *byte != 0).map_or(start, |last| last + 1);
-    let bytes = &bytes[start..end];
-    if bytes.iter().take(1 << 16).filter(|byte| **byte == 0).count() > 1 {
+    // The leader and the trailer of a tape are zeros, and the pauses between its lines.
+    let bytes = without_zeros(bytes);
+    let ends_line = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    let first_lines = bytes[..bytes.len().min(1 << 16)].split(ends_line).map(without_zeros);
+    if first_lines.flatten().filter(|byte| **byte == 0).count() > 1 {
         return Some("it has zero bytes; a program is text".to_owned());
     }
-    let lines = bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    let lines = bytes.split(ends_line).map(|line| without_zeros(line).trim_ascii());
     let lines: Vec<&[u8]> = lines.filter(|line| !line.is_empty()).take(FIRST_LINES).collect();
     let blocks = lines.iter().filter(|line| begins_as_block(line)).count();
     // A transfer can have text in front of the program.
@@ -90,6 +98,13 @@ fn not_a_program(bytes: &[u8]) -> Option<String> {
     let first = lines.first().filter(|_| blocks * 10 < lines.len() || blocks * 3 < program)?;
     let start = String::from_utf8_lossy(&first[..first.len().min(60)]);
     Some(format!("its first lines are no blocks; the first is '{}'", start.escape_debug()))
+}
+
+/// Returns a text without the zeros at its ends.
+fn without_zeros(text: &[u8]) -> &[u8] {
+    let start = text.iter().position(|byte| *byte != 0).unwrap_or(text.len());
+    let end = text.iter().rposition(|byte| *byte != 0).map_or(start, |last| last + 1);
+    &text[start..end]
 }
 
 /// Returns true for a line that begins as a block or a statement does: `%`, a comment, `/`, a letter with its number, `#`, IF.
@@ -227,7 +242,17 @@ mod tests {
             "its first lines are no blocks; the first is 'Dear colleague,'"
         );
         assert!(why("\x7fELF\0\0\0\0X").unwrap().starts_with("it has zero bytes"));
+        assert_eq!(why("%\n\0\0O1\n\0\0M30\0\n\0\0%\n"), None, "pauses between the lines");
+        assert!(why("%\nO1\nG0\0X1.\0\nG0\0Z1.\n").unwrap().starts_with("it has zero bytes"));
         assert_eq!(why("\0\0\0%\nO1\nM30\n%\n\0\0\0"), None, "a tape with leader and trailer");
+    }
+
+    /// `O` is 4F hex with five ones, CF with six; `G` is 47 with four.
+    #[test]
+    fn a_tape_with_even_parity_is_read() {
+        assert!(has_even_parity(&[0xcf, 0x47]));
+        assert!(!has_even_parity(&[0x4f, 0x47]), "without the bit");
+        assert!(!has_even_parity(&[0x47, 0x30]), "no bit is set");
     }
 
     #[test]

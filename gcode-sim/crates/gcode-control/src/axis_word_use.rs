@@ -25,6 +25,12 @@ impl AxisWordUse {
         [self, other] == pair || [other, self] == pair
     }
 
+    /// Returns true for a tilted plane, and a code that points the tool along it.
+    pub(super) fn is_plane_and_tool_axis(self, other: Self) -> bool {
+        let points = |other| matches!(other, Self::OneShot(OneShot::ToolAxis { .. }));
+        self == Self::Tilt && points(other) || other == Self::Tilt && points(self)
+    }
+
     /// Returns true if the block's P can be that of a work coordinate system.
     pub(super) fn leaves_p(self) -> bool {
         match self {

@@ -1,6 +1,7 @@
 //! Codes of a block: modal G codes, F S T D H, M codes, and the letters that need a code.
 use super::axis_word_use::{AxisWordUse, AxisWordUses};
 use super::functions::{ExecResult, locate};
+use super::haas_outputs::LAST_OUTPUT;
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan, TableWrite};
 use super::planner::Planner;
@@ -21,13 +22,8 @@ use gcode_lang::units::Rpm;
 /// M99, the end of a subprogram or macro.
 const RETURN: u32 = 99;
 
-/// Variable of output 0 of a Haas, and the number of the last output.
-const FIRST_OUTPUT: u32 = 12_000;
-const LAST_OUTPUT: u32 = 255;
-const LAST_OUTPUT_VARIABLE: u32 = FIRST_OUTPUT + LAST_OUTPUT;
-
-/// Variables of the outputs of a Haas before the NGC, which M59 and M69 name as they are.
-const OLDER_OUTPUTS: std::ops::RangeInclusive<u32> = 1100..=1155;
+/// G10 L23: the setting error of a part.
+const SETTING_ERROR_INPUT: u32 = 23;
 
 /// Variable of input 0 of a Haas.
 const FIRST_INPUT: u32 = 11_000;
@@ -143,12 +139,16 @@ impl Planner<'_> {
                 self.select_additional_work(state)?;
                 Ok(Some(other))
             }
+            (Some(first), Some(second)) if first.is_plane_and_tool_axis(second) => {
+                let what = "G53.1, G53.6 or G253 in the block of the tilted plane";
+                Err(Alarm::ToolAxisCode(what).located_at(self.block))
+            }
             _ => self.several_uses(),
         }
     }
 
     fn several_uses<T>(&self) -> ExecResult<T> {
-        Err(self.not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68) in one block"))
+        Err(self.not_simulated("several G codes of group 00 (or G51, G51.1, G54.1, G68, G68.2) in one block"))
     }
 
     /// Raises the alarm of modes that exclude one another or the codes of the block.
@@ -281,6 +281,12 @@ impl Planner<'_> {
             self.words.mark_read(Letters::of(b"E"));
             owned |= Letters::of(b"E").bits();
         }
+        if self.words.has_non_motion_code(|effect| effect == Effect::OneShot(OneShot::DataInput))
+            && self.words.count(b'L')? == Some(SETTING_ERROR_INPUT)
+        {
+            // Angles about X, Y and Z, whatever axes the machine has.
+            owned |= Letters::of(b"ABC").bits();
+        }
         if let Some(letter) = self.words.first_present(Letters::of(b"ENO").bits() & !owned & !axis_letters) {
             return Err(self.improper_address(letter));
         }
@@ -364,6 +370,12 @@ impl Planner<'_> {
                     plan.state.tool = plan.state.modal_words.t;
                     plan.push_event(EventKind::ToolChange { number: plan.state.modal_words.t });
                 }
+                MCodeEffect::RigidTapping if self.pulses_output() => {
+                    // The output is off again when the machine has answered.
+                    let number = self.output_variable(code)?;
+                    plan.push_event(EventKind::Auxiliary { code });
+                    plan.writes.push(TableWrite::Variable { number, value: Value::Number(0.0) });
+                }
                 MCodeEffect::RigidTapping => {
                     plan.state.rigid_tapping = if self.words.has(b'S') {
                         RigidTapping::Certain
@@ -381,18 +393,7 @@ impl Planner<'_> {
                 }
                 MCodeEffect::Output { is_on } => {
                     plan.push_event(EventKind::Auxiliary { code });
-                    let output = self.words.count(b'P')?;
-                    let number = match output {
-                        Some(output @ 0..=LAST_OUTPUT) => FIRST_OUTPUT + output,
-                        Some(output @ FIRST_OUTPUT..=LAST_OUTPUT_VARIABLE) => output,
-                        // The variables of older controls.
-                        Some(output) if OLDER_OUTPUTS.contains(&output) => output,
-                        _ => {
-                            let what =
-                                format!("M{code:02} without P0 to P255, P12000 to P12255 or P1100 to P1155");
-                            return Err(self.not_simulated(what));
-                        }
-                    };
+                    let number = self.output_variable(code)?;
                     let value = Value::Number(f64::from(u8::from(is_on)));
                     plan.writes.push(TableWrite::Variable { number, value });
                 }

@@ -110,6 +110,7 @@ mod axis_word_use;
 mod block;
 mod call_execution;
 mod checkpoint;
+mod haas_outputs;
 mod inspection;
 mod next_block;
 mod next_reads;

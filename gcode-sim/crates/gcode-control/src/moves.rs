@@ -68,12 +68,7 @@ impl Planner<'_> {
 
     /// 4. Plans a move by the modal codes: a canned cycle, or group 01.
     pub(super) fn plan_motion(&self, plan: &mut BlockPlan, has_new_length: bool) -> ExecResult<()> {
-        if plan.state.controls_tip() {
-            self.check_tip_control(&plan.state)?;
-        }
-        if plan.state.part_error.is_some() && self.names_axis() {
-            self.check_part_error(&plan.state)?;
-        }
+        self.check_turned(plan)?;
         if let Some(cycle) = plan.state.modal.cycle {
             // A block drills if it names an axis or R.
             if self.words.has(b'R') || self.names_axis() {

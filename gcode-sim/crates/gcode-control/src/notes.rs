@@ -52,6 +52,7 @@ gcode_lang::finding_kinds! {
     TANGENT_OF_90 = "tangent-of-90", Warning, "TAN of 90 degrees";
     UNCLOSED_COMMENT = "unclosed-comment", Note, "a comment without its closing bracket";
     SHIFT_MISSING = "shift-missing", Warning, "a boring cycle that shifts by 0";
+    POSTURE_CONTROL = "posture-control", Note, "tool posture control goes another way to the same ends";
     STROKE_AREA = "stroke-area", Warning, "the area of G22 is not checked";
     WORD_IGNORED = "word-ignored", Warning, "a word without effect in a straight move";
     WORDS_PASSED_ON = "words-passed-on", Warning, "a word beside an M code of the machine builder";
@@ -177,6 +178,8 @@ pub enum Note {
     },
     /// A canned cycle drills along Z while G18 or G19, × 10, is active, as with FXY 5101#0 = 0.
     DrillsAlongZ(u32),
+    /// P1 of G43.4 or G43.5, × 10: tool posture control.
+    PostureControl(u32),
     /// `#3000=n` with a number beyond those of the manuals.
     LargeAlarmNumber {
         /// Number in the program.
@@ -242,6 +245,7 @@ impl Note {
             Self::BlockSkip { switch, is_on: true } => (&BLOCK_SKIP, format!("the rest of the block after / is skipped: block skip {switch} is on; all results assume this setting"), "give --control BDT without its number to switch it off"),
             Self::BlockSkip { switch, is_on: false } => (&BLOCK_SKIP, format!("the rest of the block after / is executed: block skip {switch} is off; all results assume this setting"), "give --control BDT with its number, as BDT=2 or BDT=1+2, to switch it on"),
             Self::DrillsAlongZ(code) => (&DRILL_PLANE, format!("the cycle drills along Z while G{} is in force: a control may drill along the normal of that plane", spelled(code)), "write G17, or give --control FXY=1 for a control that drills along the normal"),
+            Self::PostureControl(code) => (&POSTURE_CONTROL, format!("P1 of {} is tool posture control: the ends of the blocks are right, and how the rotary axes turn on the way differs", name(code)), "check on the control the way of a block that turns two rotary axes"),
             Self::LargeAlarmNumber { number, max } => (&LARGE_ALARM_NUMBER, format!("#3000={number}: the manuals give numbers up to {max}"), "use a smaller number"),
         }
     }

@@ -54,6 +54,21 @@ impl ControlData {
 }
 
 impl Planner<'_> {
+    /// Raises the alarm of a move that the mode which turns X, Y and Z excludes.
+    pub(super) fn check_turned(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        if plan.state.controls_tip() {
+            self.check_tip_control(&plan.state)?;
+            self.read_posture(plan)?;
+        }
+        if plan.state.modal.dynamic == DynamicOffset::On {
+            self.check_dynamic_offset(&plan.state)?;
+        }
+        if plan.state.part_error.is_some() && self.names_axis() {
+            self.check_part_error(&plan.state)?;
+        }
+        Ok(())
+    }
+
     /// Selects the values of G54.2 and G54.4 by P, 1 without it; P0 ends both.
     pub(super) fn select_part_error(&self, mode: DynamicOffset, state: &mut State) -> ExecResult<()> {
         let number = self.words.count(b'P')?.unwrap_or(1);
@@ -72,7 +87,7 @@ impl Planner<'_> {
     }
 
     /// Raises the alarm of a block whose path leaves its plane, because the part is tilted.
-    pub(super) fn check_part_error(&self, state: &State) -> ExecResult<()> {
+    fn check_part_error(&self, state: &State) -> ExecResult<()> {
         let modal = &state.modal;
         let is_planar = modal.cycle.is_some()
             || modal.cutter != CutterSide::Off
@@ -91,6 +106,23 @@ impl Planner<'_> {
         }
         let what = "an arc, a canned cycle, compensation or a corner word on a part that G54.4 tilts";
         Err(self.not_simulated(what))
+    }
+
+    /// Raises the alarm of G254 where it isn't that of a Haas: on a head that turns, and with a work offset of the axis that tilts
+    /// the table, which has to be 0 (Haas Mill Operator's Manual, G254).
+    fn check_dynamic_offset(&self, state: &State) -> ExecResult<()> {
+        let Some(kinematics) = &self.data.settings.kinematics else { return Ok(()) };
+        if !kinematics.head.is_empty() {
+            return Err(self.not_simulated("G254 on a machine whose head turns"));
+        }
+        let tilting = kinematics.table.first().filter(|_| kinematics.table.len() > 1);
+        match tilting.map(|axis| axis.axis).filter(|axis| self.data.zero(state, *axis) != 0.0) {
+            Some(axis) => {
+                let letter = self.data.settings.axes.letter(axis);
+                Err(self.not_simulated(format!("G254 with a work offset of {letter} other than 0")))
+            }
+            None => Ok(()),
+        }
     }
 
     /// G10 L21: the axes of a fixture offset. G10 L23: shift X Y Z and rotations A B C of a setting error.

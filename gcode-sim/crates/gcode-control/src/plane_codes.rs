@@ -12,6 +12,10 @@ use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::Rotation;
 
+/// The other way round than `TIP_IN_PLANE`.
+pub(super) const PLANE_IN_TIP_CONTROL: &str =
+    "a tilted plane in tool centre point control (command G49 before it)";
+
 impl State {
     /// Returns X, Y and Z with the alignment of part and tool that G53.1 has set.
     #[inline]
@@ -38,9 +42,7 @@ impl Planner<'_> {
     /// G68.2, and G68.4 within the plane that is active: the forms P0 to P4. G268 of a Haas, and G68.3 along the tool.
     pub(super) fn plan_tilt(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         if plan.state.controls_tip() {
-            return Err(
-                self.not_simulated("a tilted plane in tool centre point control (command G49 before it)")
-            );
+            return Err(self.not_simulated(PLANE_IN_TIP_CONTROL));
         }
         let axes = self.locate(self.slides())?;
         let rotation = plan.state.modal.rotation;

@@ -2,13 +2,19 @@
 use std::mem::discriminant;
 
 use super::executor::Executor;
+use super::kinematics::{Alignment, Matrix};
 use super::plan::BlockPlan;
+use super::plane::{Plane, Tilt};
+use super::plane_codes::PLANE_IN_TIP_CONTROL;
 use super::state::CycleState;
+use super::tip_control::TIP_IN_PLANE;
+use super::tool_axis::NO_PLANE;
 use super::words::{BlockWords, DIRECT_DRAWING, WordNumber, count};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Settings;
+use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::cycles::Cycle;
-use gcode_lang::program::modes::{CutterSide, Mirror, Motion, Rotation, Scaling};
+use gcode_lang::program::modes::{CutterSide, Length, Mirror, Motion, Rotation, Scaling};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 use gcode_lang::source::Span;
 
@@ -36,17 +42,52 @@ pub struct CertainModes {
     pub mirror: bool,
     /// G41 or G42.
     pub cutter: bool,
+    /// G68.2, G68.3, G68.4, or G268 of a Haas.
+    pub plane: bool,
+    /// G53.1 or G53.6, or G253 of a Haas, in that plane.
+    pub aligned: bool,
+    /// True if no plane is set: G69 has ended it, or nothing has begun one.
+    pub level: bool,
+    /// G43.4 or G43.5, or G234 of a Haas.
+    pub tip: bool,
 }
 
 impl CertainModes {
     /// None is certainly on.
-    pub const NONE: Self = Self { rotation: false, scaling: false, mirror: false, cutter: false };
+    pub const NONE: Self = Self {
+        rotation: false,
+        scaling: false,
+        mirror: false,
+        cutter: false,
+        plane: false,
+        aligned: false,
+        level: false,
+        tip: false,
+    };
+    /// Those at power-on.
+    pub const POWER_ON: Self = Self { level: true, ..Self::NONE };
+
+    /// Returns those that are certain on two paths.
+    pub fn join(self, other: Self) -> Self {
+        Self {
+            rotation: self.rotation & other.rotation,
+            scaling: self.scaling & other.scaling,
+            mirror: self.mirror & other.mirror,
+            cutter: self.cutter & other.cutter,
+            plane: self.plane & other.plane,
+            aligned: self.aligned & other.aligned,
+            level: self.level & other.level,
+            tip: self.tip & other.tip,
+        }
+    }
 }
 
 /// A control at power-on that plans blocks and executes none.
 #[derive(Debug)]
 pub struct StaticPlanner {
     executor: Executor,
+    /// X, Y and Z.
+    slides: Option<[AxisIndex; 3]>,
     plan: BlockPlan,
     words: BlockWords,
 }
@@ -60,7 +101,8 @@ impl StaticPlanner {
         let mut executor = Executor::new(settings);
         let state = &mut executor.registers.state;
         (state.modal_words.f, state.modal_words.s) = (1.0, 1.0);
-        Self { executor, plan: BlockPlan::default(), words: BlockWords::default() }
+        let slides = executor.registers.data.linear_axes();
+        Self { executor, slides, plan: BlockPlan::default(), words: BlockWords::default() }
     }
 
     /// Returns the alarm that a block raises in each of some modes, whatever values its computed words have; `None` if one
@@ -92,7 +134,7 @@ impl StaticPlanner {
             let with_values = self.alarm(words, block, modes, Some(ANY_NUMBER))?;
             let without_values = self.alarm(words, block, modes, None)?;
             let kinds = [&with_values, &without_values].map(|alarm| discriminant(&alarm.node));
-            if kinds[0] != kinds[1] || !depends_on_words_alone(&without_values.node) {
+            if kinds[0] != kinds[1] || !depends_on_words_alone(&without_values.node, modes.certain) {
                 return None;
             }
             certain = Some(without_values);
@@ -110,8 +152,19 @@ impl StaticPlanner {
     ) -> Option<LocatedAlarm> {
         let state = &mut self.executor.registers.state;
         (state.modal.motion, state.modal.cycle) = (modes.motion, modes.cycle);
-        let CertainModes { rotation, scaling, mirror, cutter } = modes.certain;
-        state.modal.rotation = if rotation { Rotation::On } else { Rotation::Off };
+        let CertainModes { rotation, scaling, mirror, cutter, plane, aligned, level: _, tip } = modes.certain;
+        state.modal.rotation = match (plane, rotation) {
+            (true, _) => Rotation::Tilted,
+            (false, true) => Rotation::On,
+            (false, false) => Rotation::Off,
+        };
+        state.modal.length = if tip { Length::TipByAngles } else { Length::Off };
+        state.transform.tilt = self.slides.filter(|_| plane).map(|axes| Tilt {
+            axes,
+            plane: Plane { origin: [0.0; 3], matrix: Matrix::IDENTITY },
+            alignment: aligned.then(|| Alignment::level(&Matrix::IDENTITY, [0.0; 3])),
+            is_nested: false,
+        });
         state.modal.scaling = if scaling { Scaling::On } else { Scaling::Off };
         state.modal.mirror = if mirror { Mirror::On } else { Mirror::Off };
         state.modal.cutter = if cutter { CutterSide::Left } else { CutterSide::Off };
@@ -164,38 +217,45 @@ impl StaticPlanner {
     }
 }
 
-/// Returns true for an alarm that no value, offset, position or other mode of the control decides.
-fn depends_on_words_alone(alarm: &Alarm) -> bool {
-    let is_direct_drawing = matches!(alarm, Alarm::NotSimulated { what } if what == DIRECT_DRAWING);
-    is_direct_drawing
-        || matches!(
-            alarm,
-            Alarm::WordNotSimulated(_)
-                | Alarm::CodeInMode(..)
-                | Alarm::CodeInScaling(_)
-                | Alarm::SkipInCompensation
-                | Alarm::ToolOffsetInCompensation
-                | Alarm::NoCycle(_)
-                | Alarm::IllegalPoint { .. }
-                | Alarm::IllegalMinus { .. }
-                | Alarm::TwoSigns { .. }
-                | Alarm::TooManyDigits(_)
-                | Alarm::ImproperAddress { .. }
-                | Alarm::MissingWord { .. }
-                | Alarm::NoPeckDepth
-                | Alarm::NoRadiusOrCentre
-                | Alarm::ReferenceReturnInCycle
-                | Alarm::ReferenceReturnP { .. }
-                | Alarm::CornerInThread
-                | Alarm::CornerWords
-                | Alarm::ScaleRate { .. }
-                | Alarm::G10Format { .. }
-                | Alarm::TooManyArgumentSets
-                | Alarm::LookAheadFormat
-                | Alarm::TNotAllowed
-                | Alarm::TwoMacroCalls
-                | Alarm::TwoSubprogramCalls
-                | Alarm::SkipSignals { .. }
-                | Alarm::SkipTorque
-        )
+/// Returns true for an alarm that no value, offset, position or other mode than these of the control decides.
+fn depends_on_words_alone(alarm: &Alarm, certain: CertainModes) -> bool {
+    match alarm {
+        Alarm::ToolAxisCode(NO_PLANE) => return certain.level,
+        Alarm::NotSimulated { what } => {
+            let certain = [DIRECT_DRAWING, PLANE_IN_TIP_CONTROL, TIP_IN_PLANE];
+            return certain.iter().any(|certain| what.ends_with(certain));
+        }
+        _ => {}
+    }
+    matches!(
+        alarm,
+        Alarm::WordNotSimulated(_)
+            | Alarm::CodeInMode(..)
+            | Alarm::CodeInScaling(_)
+            | Alarm::SkipInCompensation
+            | Alarm::ToolOffsetInCompensation
+            | Alarm::NoCycle(_)
+            | Alarm::IllegalPoint { .. }
+            | Alarm::IllegalMinus { .. }
+            | Alarm::TwoSigns { .. }
+            | Alarm::TooManyDigits(_)
+            | Alarm::ImproperAddress { .. }
+            | Alarm::MissingWord { .. }
+            | Alarm::NoPeckDepth
+            | Alarm::NoRadiusOrCentre
+            | Alarm::ReferenceReturnInCycle
+            | Alarm::ReferenceReturnP { .. }
+            | Alarm::CornerInThread
+            | Alarm::CornerWords
+            | Alarm::ScaleRate { .. }
+            | Alarm::G10Format { .. }
+            | Alarm::TooManyArgumentSets
+            | Alarm::LookAheadFormat
+            | Alarm::TNotAllowed
+            | Alarm::TwoMacroCalls
+            | Alarm::TwoSubprogramCalls
+            | Alarm::SkipSignals { .. }
+            | Alarm::SkipTorque
+            | Alarm::ToolAxisCode(_)
+    )
 }

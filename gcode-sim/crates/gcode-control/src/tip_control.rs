@@ -5,6 +5,7 @@ use super::kinematics::{
     Alignment, Frame, Matrix, Vector, cross, dot, remove_noise, scaled, sum, unit_vector,
 };
 use super::linear_motion::Endpoint;
+use super::notes::Note;
 use super::plan::BlockPlan;
 use super::planner::Planner;
 use super::state::{State, is_circular};
@@ -14,6 +15,9 @@ use gcode_lang::motion::{AxisIndex, EventKind, PlanarArc, Position};
 use gcode_lang::program::g_codes::{Effect, name};
 use gcode_lang::program::modes::{CutterSide, DynamicOffset, Length, Motion, Plane};
 use gcode_lang::units::MmPerMin;
+
+/// Tool centre point control in a tilted plane: pages of the manuals that describe both are not at hand.
+pub(super) const TIP_IN_PLANE: &str = "in a tilted plane (command G69 before it)";
 
 /// Part and tool with the rotary axes at fixed angles, as G53.1 or tool centre point control sets them.
 pub(super) struct Aligned {
@@ -162,8 +166,10 @@ impl Planner<'_> {
     /// Checks that the block can start or keep tool centre point control.
     pub(super) fn check_tip_control(&self, state: &State) -> ExecResult<()> {
         let code = name(state.modal.length.code());
-        let with = if !state.transform.is_identity() {
-            "with G51, G51.1, G68 or G68.2"
+        let with = if state.transform.tilt.is_some() {
+            TIP_IN_PLANE
+        } else if !state.transform.is_identity() {
+            "with G51, G51.1 or G68"
         } else if self.is_compensating_tip(state) && !self.compensates_across_tool(state) {
             "with cutter compensation or a corner word outside G17, beside a rotary axis, or in a plane that is not square to the tool and to the machine's Z"
         } else if state.modal.cycle.is_some() && !self.drills_along_tool(state) {
@@ -212,6 +218,28 @@ impl Planner<'_> {
         state.modal.length == Length::TipByVector && self.words.has_any(b"IJK")
     }
 
+    /// P of G43.4 and G43.5: P0 turns the axes evenly, P1 is tool posture control, which has the same ends (A-79294E).
+    pub(super) fn read_posture(&self, plan: &mut BlockPlan) -> ExecResult<()> {
+        let is_start = |effect| matches!(effect, Effect::Length(Length::TipByAngles | Length::TipByVector));
+        // P beside G54 or G54.1 is the number of the work coordinate system.
+        let is_work = |effect| matches!(effect, Effect::Work(1) | Effect::AdditionalWork);
+        if plan.state.modal.cycle.is_some()
+            || self.words.has_non_motion_code(is_work)
+            || !self.words.has_non_motion_code(is_start)
+        {
+            return Ok(());
+        }
+        match self.words.count(b'P')? {
+            None | Some(0) => {}
+            Some(1) => plan.notes.push(Note::PostureControl(plan.state.modal.length.code())),
+            Some(_) => {
+                let code = name(plan.state.modal.length.code());
+                return Err(self.not_simulated(format!("P of {code} other than 0 and 1")));
+            }
+        }
+        Ok(())
+    }
+
     /// G234 of a Haas without H ends G43 and its H (Haas Mill Operator's Manual, G234).
     pub(super) fn cancel_length_offset(&self, plan: &mut BlockPlan) {
         let is_tip_of_haas = |effect| effect == Effect::Length(Length::TipOfHaas);
@@ -227,13 +255,18 @@ impl Planner<'_> {
             let what = "an arc without R in G43.5, where I J K are the direction of the tool at its end";
             return Err(self.not_simulated(what));
         }
+        let starts = self.words.has_non_motion_code(|effect| effect == Effect::Length(Length::TipByVector));
+        let kinematics = &self.data.settings.kinematics;
+        if starts && kinematics.as_ref().is_some_and(|kinematics| !kinematics.table.is_empty()) {
+            return Err(Alarm::DirectionWithTipControl.located_at(self.block));
+        }
         let Some(vector) = unit_vector(self.direction_ijk(state)?) else {
             return Err(self.not_simulated("G43.5 with I J K of length 0"));
         };
         if self.data.settings.tip_in_work_system {
             return Err(Alarm::MachineParameter("G43.5 with WKP 19696#5 = 1").located_at(self.block));
         }
-        let Some(kinematics) = &self.data.settings.kinematics else { return Ok(()) };
+        let Some(kinematics) = kinematics else { return Ok(()) };
         let target = self.tool_axis_target(state, kinematics, vector, &self.data.zeros(state), 0.0)?;
         for axis in kinematics.axes() {
             let axis = axis.axis;

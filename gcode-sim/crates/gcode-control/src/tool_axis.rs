@@ -16,6 +16,9 @@ use gcode_lang::motion::{AxisIndex, Position, UnknownAxes};
 use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{Length, Motion};
 
+/// G53.1 where nothing has set a plane.
+pub(super) const NO_PLANE: &str = "G53.1, G53.6 or G253 without a tilted plane";
+
 impl Planner<'_> {
     /// Makes X, Y and Z unknown on the part, until a code ends the mode and an absolute word commands them, and the rotary axes
     /// if they turn: nothing states the kinematics of the machine.
@@ -47,7 +50,7 @@ impl Planner<'_> {
         }
         let state = &mut plan.state;
         let Some(mut tilt) = state.transform.tilt.filter(|_| state.transform.plane_entry.is_none()) else {
-            return Err(illegal("G53.1, G53.6 or G253 without a tilted plane"));
+            return Err(illegal(NO_PLANE));
         };
         let side = match self.words.count(b'P')?.unwrap_or(0) {
             0 => 0.0,

@@ -1,8 +1,8 @@
 //! The feed, the motion mode and the canned cycle that are possible before a block.
 use gcode_control::static_plan::{CertainModes, ModesInForce};
 use gcode_lang::program::cycles::{Cycle, DRILLING as DRILLING_CYCLE};
-use gcode_lang::program::g_codes::Effect;
-use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Mirror, Motion, Rotation, Scaling};
+use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::program::modes::{CutterSide, Distance, FeedMode, Length, Mirror, Motion, Rotation, Scaling};
 
 /// A cycle that needs no word of its own.
 static DRILLING: Cycle = DRILLING_CYCLE;
@@ -50,10 +50,16 @@ impl PossibleModes {
         is_other_feed_mode: true,
         is_absolute: true,
         is_unreported: true,
-        certain: CertainModes::NONE,
+        certain: CertainModes::POWER_ON,
     };
-    pub(super) const ANYTHING: Self =
-        Self { has_feed: true, is_in_cycle: true, has_pecks: true, is_inverse_time: true, ..Self::POWER_ON };
+    pub(super) const ANYTHING: Self = Self {
+        has_feed: true,
+        is_in_cycle: true,
+        has_pecks: true,
+        is_inverse_time: true,
+        certain: CertainModes::NONE,
+        ..Self::POWER_ON
+    };
 
     pub(super) fn join(self, other: Self) -> Self {
         Self {
@@ -72,12 +78,7 @@ impl PossibleModes {
             is_other_feed_mode: self.is_other_feed_mode | other.is_other_feed_mode,
             is_absolute: self.is_absolute | other.is_absolute,
             is_unreported: self.is_unreported | other.is_unreported,
-            certain: CertainModes {
-                rotation: self.certain.rotation & other.certain.rotation,
-                scaling: self.certain.scaling & other.certain.scaling,
-                mirror: self.certain.mirror & other.certain.mirror,
-                cutter: self.certain.cutter & other.certain.cutter,
-            },
+            certain: self.certain.join(other.certain),
         }
     }
 
@@ -122,9 +123,18 @@ impl PossibleModes {
                 ..self
             },
             Effect::Distance(distance) => Self { is_absolute: distance == Distance::Absolute, ..self },
-            Effect::Rotation(rotation) => {
-                self.with_certain(|modes| modes.rotation = rotation == Rotation::On)
+            Effect::Rotation(rotation) => self.with_certain(|modes| {
+                modes.rotation = rotation == Rotation::On;
+                modes.level = rotation == Rotation::Off;
+                modes.plane = !matches!(rotation, Rotation::On | Rotation::Off);
+                modes.aligned = rotation == Rotation::AlongTool;
+            }),
+            Effect::OneShot(OneShot::ToolAxis { .. }) => {
+                self.with_certain(|modes| modes.aligned = modes.plane)
             }
+            Effect::Length(length) => self.with_certain(|modes| {
+                modes.tip = matches!(length, Length::TipByAngles | Length::TipByVector | Length::TipOfHaas)
+            }),
             Effect::Scaling(scaling) => self.with_certain(|modes| modes.scaling = scaling == Scaling::On),
             Effect::Mirror(mirror) => self.with_certain(|modes| modes.mirror = mirror == Mirror::On),
             Effect::Cutter(side) => self.with_certain(|modes| modes.cutter = side != CutterSide::Off),

@@ -1,4 +1,4 @@
-//! Designation of an alarm.
+//! Designation of an alarm, and its row of the table.
 use crate::diag::FindingKind;
 
 /// Designation of an alarm: `PS0112`, `OT0500`, `MC3021` if the program raises it; `SIM…` if the simulator, not the
@@ -26,4 +26,15 @@ impl std::fmt::Display for AlarmCode {
             None => self.kind.fmt(f),
         }
     }
+}
+
+/// Designation, wording and remedy of an alarm.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AlarmRow {
+    /// Designation.
+    pub code: AlarmCode,
+    /// Wording.
+    pub message: String,
+    /// Remedy: one instruction.
+    pub help: Option<String>,
 }

@@ -106,6 +106,7 @@ crate::finding_kinds! {
     PS5010 = "PS5010", Alarm, "the program ends without M02, M30 or M99";
     PS5044 = "PS5044", Alarm, "a rotation in space in a wrong form";
     PS5074 = "PS5074", Alarm, "an address repeated in one block";
+    PS5421 = "PS5421", Alarm, "G43.5 in a wrong form";
     PS5457 = "PS5457", Alarm, "a tilted plane in a wrong form";
     PS5458 = "PS5458", Alarm, "G53.1 where it is not allowed";
     PS5459 = "PS5459", Alarm, "a tilted plane that the rotary axes cannot reach, or parameters that rule out a function";

@@ -8,7 +8,7 @@ mod table;
 mod typos;
 
 use crate::source::{Span, Spanned};
-pub use code::AlarmCode;
+pub use code::{AlarmCode, AlarmRow};
 pub use digit_limit::DigitLimit;
 pub use typos::{lacking_code_help, missing_macro_help, remedy, repeats_in_p_help};
 
@@ -44,6 +44,8 @@ pub enum Alarm {
     PlaneFormat(&'static str),
     /// G53.1 is commanded where it is not allowed; the rule that it breaks.
     ToolAxisCode(&'static str),
+    /// G43.5 with I J K in its own block on a machine whose table turns.
+    DirectionWithTipControl,
     /// No angles of the rotary axes point the tool along Z of the tilted plane.
     ToolAxisUnreachable,
     /// A function is commanded that the parameters of the machine rule out.
@@ -417,6 +419,10 @@ pub enum Alarm {
     MissingComma,
     /// An IF statement has an error.
     IfFormat,
+    /// `IF[…]THEN GOTO 5` on a control that takes an assignment behind THEN.
+    ThenGoto,
+    /// Words behind THEN on such a control.
+    ThenWords,
     /// A WHILE statement has an error.
     WhileFormat,
     /// A SETVN statement has an error.
@@ -472,17 +478,6 @@ pub enum Alarm {
 
 /// Alarm with its span. Boxed, because almost every step of a run returns a result without an alarm.
 pub type LocatedAlarm = Box<Spanned<Alarm>>;
-
-/// Designation, wording and remedy of an alarm.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AlarmRow {
-    /// Designation.
-    pub code: AlarmCode,
-    /// Wording.
-    pub message: String,
-    /// Remedy: one instruction.
-    pub help: Option<String>,
-}
 
 impl Alarm {
     /// Returns the designation.

@@ -104,7 +104,9 @@ impl DialectSyntax {
                 Alarm::MacroFormat { what: "a statement behind DO in one block".into() }
             }
             Self::BlockAfterSemicolon => Alarm::TwoBlocksInOneLine,
-            Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,
+            Self::PlainIf => Alarm::IfFormat,
+            Self::ThenWords => Alarm::ThenWords,
+            Self::ThenGoto => Alarm::ThenGoto,
             Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
             Self::NewWord(word) => Alarm::NotAWord { text: word.into() },
             Self::GCodeCall(code) => g_codes::improper(code),

@@ -121,10 +121,11 @@ pub const M_CODES: &[MCodeRow] = &[
 ];
 
 /// M codes of a Haas's machine that move no axis of a program and change nothing that a program reads: brakes of the rotary
-/// axes, chip conveyor, coolant spigot, pallet ready, door, air, coolant through the spindle, sleep, probe arm, display, spindle
+/// axes, chip conveyor, coolant spigot, pallet ready, tool turret, door, air, coolant through the spindle, sleep, probe arm, display, spindle
 /// speed variation.
-const AUXILIARY_OF_HAAS: &[u32] =
-    &[10, 11, 12, 13, 31, 33, 34, 35, 36, 73, 74, 80, 81, 83, 84, 88, 89, 95, 104, 105, 130, 131, 138, 139];
+const AUXILIARY_OF_HAAS: &[u32] = &[
+    10, 11, 12, 13, 31, 33, 34, 35, 36, 39, 73, 74, 80, 81, 83, 84, 88, 89, 95, 104, 105, 130, 131, 138, 139,
+];
 
 /// Returns true for a code that the machine's logic executes without an effect on path and variables.
 pub fn is_auxiliary(code: u32, dialect: Dialect) -> bool {

@@ -116,10 +116,17 @@ impl Memory {
         Self { main: self.main, by_name: self.by_name.clone(), ..memory }
     }
 
-    /// Returns the first program with this path.
+    /// Returns the first program with this path; without one the only program whose path ends so.
     pub fn find_path(&self, path: &ProgramPath) -> Option<ProgramId> {
+        let named = || self.ids().filter(|id| self.get(*id).name == path.name);
         let is_in_folder = |program: &Program| path.folder.is_none() || path.folder == program.folder;
-        self.ids().find(|id| self.get(*id).name == path.name && is_in_folder(self.get(*id)))
+        named().find(|id| is_in_folder(self.get(*id))).or_else(|| {
+            let end = path.folder.as_ref()?;
+            let ends_so =
+                |program: &Program| program.folder.as_ref().is_some_and(|folder| folder.ends_with(end));
+            let mut found = named().filter(|id| ends_so(self.get(*id)));
+            found.next().filter(|_| found.next().is_none())
+        })
     }
 
     /// Chooses the main program; without a choice it is the first.

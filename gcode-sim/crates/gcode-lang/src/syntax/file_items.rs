@@ -116,7 +116,7 @@ impl<'a> FileItems<'a> {
             (self.blanked, self.is_behind_do) = (None, false);
             self.next_line_start = self.line_end + end_of_line(&text[length..]);
             let line = &text[..length];
-            if let Some(path) = unspaced(line).strip_prefix(b"&F=") {
+            if let [b'&', b'F' | b'f', b'=', path @ ..] = unspaced(line) {
                 self.folder = Some(path);
                 continue;
             }
@@ -130,6 +130,9 @@ impl<'a> FileItems<'a> {
     fn blank_comments(&mut self, text: &[u8]) {
         let Self { source, position: at, code, comments, .. } = self;
         blank_out_comments(*source, *at as u32, text, code, comments, |text| {
+            if is_program_number(spaces(text)) {
+                return true;
+            }
             let mut block = Block::default();
             let left =
                 read_block(LineInput { source: SourceId(0), end: text.len() as u32 }, text, &mut block);
@@ -339,6 +342,11 @@ fn program_word(at: Input<'_>) -> Option<(Input<'_>, ProgramName)> {
     }
     let (rest, text) = program_name(at).ok()?;
     Some((rest, ProgramName::of(text)))
+}
+
+/// Returns true for the number of a program and nothing behind it.
+fn is_program_number(text: Input<'_>) -> bool {
+    begins_program(text) && program_word(text).is_some_and(|(rest, _)| spaces(rest).is_empty())
 }
 
 /// Returns true for a byte of a line that may be more than one block without comments.

@@ -46,6 +46,11 @@ impl Folder {
         Self(if TOP_FOLDERS.contains(&top) { format!("CNC_MEM/{path}") } else { path })
     }
 
+    /// Returns true if the path is that of the other folder, or ends with it.
+    pub fn ends_with(&self, end: &Self) -> bool {
+        self.0.strip_suffix(&end.0).is_some_and(|before| before.is_empty() || before.ends_with('/'))
+    }
+
     /// Returns the path without slashes at its ends.
     pub fn path(&self) -> &str {
         &self.0
@@ -85,6 +90,14 @@ impl ProgramPath {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_folder_ends_with_whole_names() {
+        let of = |path: &str, end: &str| Folder::new(path).ends_with(&Folder::new(end));
+        assert!(of("//CNC_MEM/USER/PARTS/JOB2/", "JOB2"));
+        assert!(of("//CNC_MEM/USER/PARTS/JOB2/", "parts/job2"));
+        assert!(!of("//CNC_MEM/USER/PARTS/JOB12/", "JOB2") && !of("JOB12", "JOB2") && of("JOB2", "JOB2"));
+    }
 
     #[test]
     fn a_program_is_chosen_by_number_name_or_path() {

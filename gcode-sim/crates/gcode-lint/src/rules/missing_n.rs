@@ -1,4 +1,4 @@
-//! Rule: a jump to a sequence number that is not defined, PS0128 at GOTO and PS0078 at M99 P.
+//! Rule: a jump to a sequence number that is not defined, PS0128 at GOTO and PS0078 at M99 P; GOTO 0 is PS1128.
 use gcode_lang::alarm::kinds::{PS0078, PS0128};
 use gcode_lang::program::Program;
 
@@ -19,6 +19,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     for jump in unit.flow.jumps.iter().filter(|jump| unit.is_reached[jump.block]) {
         let Jump { block, number, .. } = *jump;
         if !jump.is_return {
+            if !(1..=99_999_999).contains(&number) {
+                let alarm = Alarm::SequenceNumberRange { number: number.into() };
+                let alarm = alarm.located_at(unit.op(block).span);
+                found
+                    .push(context.alarm_finding(unit, &RULE.kind, block, &alarm).help("write 1 to 99999999"));
+                continue;
+            }
             if jump.to.is_none() && !jump.is_far {
                 found.push(finding(block, format!("{PS0128}: sequence number N{number}"), unit.program));
             }
@@ -57,13 +64,20 @@ const HELP: &str = "number the target block, or correct the jump";
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{NOWHERE, lines};
+    use super::super::testing::{NOWHERE, lines, messages};
     use super::RULE;
 
     #[test]
     fn goto_needs_its_target() {
         assert_eq!(lines(&RULE, "O1\n#1=2\nIF[#1 EQ 1]GOTO 10\nGOTO 0020\nN20 M30\n"), [3]);
         assert_eq!(lines(&RULE, "O1\n#1=20\nGOTO #1\nN20 M30\n"), NOWHERE, "only a run knows #1");
+    }
+
+    #[test]
+    fn zero_is_no_target() {
+        let found = messages(&RULE, "O1\n#1=2\nGOTO 0\nN0 M30\n");
+        assert!(found.len() == 1 && found[0].starts_with("PS1128: GOTO 0"), "{found:?}");
+        assert_eq!(lines(&RULE, "O1\nGOTO 1\nN1 M30\n"), NOWHERE);
     }
 
     #[test]

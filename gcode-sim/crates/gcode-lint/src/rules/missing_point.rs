@@ -9,12 +9,12 @@ use gcode_lang::control::Settings;
 use gcode_lang::program::code_facts::Measured;
 use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::modes::{Motion, Unit};
-use gcode_lang::program::{LoweredWord, WordOperand, Words};
+use gcode_lang::program::{LoweredWord, WordOperand, Words, m_codes};
 use gcode_lang::source::SourceId;
 use gcode_lang::syntax::ast::Decimal;
 
 use crate::ControlKnowledge;
-use crate::literal::without_point;
+use crate::literal::{self, without_point};
 use crate::parameters;
 use crate::prelude::*;
 use crate::units::unit_in_force;
@@ -163,7 +163,14 @@ fn numbers_without_point(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> 
             let written = spelled(word.letter, number);
             let message = format!("{written} is {}", meaning(&values));
             let finding = unit.finding(&RULE.kind, block, message).with_span(word.span);
-            found.push(finding.with_severity(severity).help(format!("write {written}.")));
+            // A macro that counts with whole numbers is right where they stay such.
+            let otherwise = match words.call() {
+                Some(_) => {
+                    ", or give --control DPI=1 for a control that takes it as written (3401#0, setting 162 of a Haas)"
+                }
+                None => "",
+            };
+            found.push(finding.with_severity(severity).help(format!("write {written}.{otherwise}")));
         }
     }
     found
@@ -259,10 +266,22 @@ impl<'w> BlockCodes<'w> {
             (Measured::AsInMove | Measured::Axes, b'F') => settings.feed_in_increments,
             // J of a tapping cycle of a Haas multiplies the speed of the retract.
             (Measured::AsInMove, b'J') if self.taps() => false,
-            (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => true,
+            (Measured::AsInMove, b'I' | b'J' | b'K' | b'R') => !self.are_of_m_code(settings),
             (Measured::AsInMove, b'C') if word.comma => true,
             (Measured::AsInMove | Measured::Axes, _) => is_axis,
         }
+    }
+
+    /// Returns true if I, J, K and R go to the logic of an M code: the block has one of the machine builder, no G code and no axis.
+    fn are_of_m_code(&self, settings: &Settings) -> bool {
+        let is_axis = |word: &&LoweredWord| settings.axes.find(word.letter).is_some();
+        let is_of_builder = |word: &LoweredWord| {
+            let code = (word.letter == b'M').then(|| literal::word_count(word)).flatten();
+            code.is_some_and(|code| m_codes::find(code, settings.codes).is_none())
+        };
+        self.rows.is_empty()
+            && !self.words.list.iter().any(|word| is_axis(&word))
+            && self.words.list.iter().any(is_of_builder)
     }
 
     /// Returns the value of a number with its unit: two of a length if its unit is unknown.
@@ -402,6 +421,14 @@ mod tests {
         assert_eq!(lines(&RULE, &longer.replace("X1\n", "X1.\n")).len(), 9, "two have one");
         let two = format!("{longer}O2\nG0 X7\nM30\n");
         assert_eq!(lines(&RULE, &two), [2], "the file is one finding");
+    }
+
+    /// M138 P100 R20 of a Haas varies the speed; beside an axis R is a radius.
+    #[test]
+    fn words_of_an_m_code_are_no_lengths() {
+        assert_eq!(lines(&RULE, "O1\nG0 X1.5\nM138 P100 R20\nM30\n"), NOWHERE);
+        assert_eq!(lines(&RULE, "O1\nG2 X1.5 R5.\nM138 X3.5 R20\nM30\n"), [3]);
+        assert_eq!(lines(&RULE, "O1\nG2 X1.5 R5.\nM8 R20\nM30\n"), [3]);
     }
 
     /// Moves and calls that a check leaves out have points too: 9 numbers without one for each with one are hardly any.

@@ -149,6 +149,8 @@ mod tests {
             ("G10 P1 R50.", "PS1144"),
             ("G65 P2 I1. I2. I3. I4. I5. I6. I7. I8. I9. I10. I11.", "PS1095"),
             ("G01 X20. ,R4. ,C4. F300.", "PS0053"),
+            ("G53.1", "PS5458"),
+            ("G68.2 X0 Y0 Z0 I0 J30. K0 G53.1", "PS5458"),
         ] {
             let found = messages(&RULE, &format!("O1\n{block}\nM30\nO2\nM99\n"));
             assert!(found.len() == 1 && found[0].starts_with(alarm), "{block}: {found:?}");
@@ -179,6 +181,10 @@ mod tests {
             ("O1\nG51 X0 Y0 P2000\nG52 X1.\nG50\nG52 X0\nM30\n", 3),
             ("O1\nG51.1 X0\nG28 Z0\nG50.1 X0\nG28 Z0\nM30\n", 3),
             ("O1\nG41 D1 G1 X1. F9.\nG31 Z-5.\nG40 X0\nG31 Z-5.\nM30\n", 3),
+            ("O1\nG68.2 X0 Y0 Z0 I0 J9. K0\nG53.1\nG69\nG53.1\nM30\n", 5),
+            ("O1\nG68.2 X0 Y0 Z0 I0 J9. K0\nG53.1\nG92 X0\nG69\nG92 X0\nM30\n", 4),
+            ("O1\nG68.2 X0 Y0 Z0 I0 J9. K0\nG43.4 H1\nG69\nG43.4 H1\nG49\nM30\n", 3),
+            ("O1\nG43.4 H1\nG68.2 X0 Y0 Z0 I0 J9. K0\nG49\nG68.2 X0 Y0 Z0 I0 J9. K0\nG69\nM30\n", 3),
         ] {
             assert_eq!(lines(&RULE, text), [line], "{text}");
         }
@@ -188,6 +194,11 @@ mod tests {
             "O1\nG68 X0 Y0 R10.\nG53\nG69\nM30\n",
             "O1\nG68 X0 Y0 R10.\nG#1\nG28 Z0\nM30\n",
             "O2\nG28 Z0\nM99\n",
+            "O2\nG53.1\nM99\n",
+            "O1\nM98 P2\nG53.1\nM30\nO2\nG68.2 X0 Y0 Z0 I0 J9. K0\nM99\n",
+            "O1\nIF[#500 EQ 1]GOTO 5\nG68.2 X0 Y0 Z0 I0 J9. K0\nN5 G53.1\nM30\n",
+            "O1\nIF[#500 EQ 1]GOTO 5\nG43.4 H1\nN5 G68.2 X0 Y0 Z0 I0 J9. K0\nM30\n",
+            "O1\nG68.2 P3 Q1 X0 Y0 Z0 I1. J0 K0\nG68.2 P3 Q2 I0 J0 K1.\nG53.1\nG68.4 X1. Y0 Z0 I0 J0 K0\nG53.1\nG69\nM30\n",
         ] {
             assert_eq!(lines(&RULE, text), NOWHERE, "{text}");
         }

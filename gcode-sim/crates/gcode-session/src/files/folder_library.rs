@@ -178,7 +178,7 @@ pub fn begins_program(bytes: &[u8]) -> bool {
         let ends_line = matches!(digits.get(count), Some(b'\r' | b'\n'));
         return count > 0 && (ends_line || follows);
     }
-    matches!(text, [b'%' | b'<', ..]) || text.starts_with(b"&F=")
+    matches!(text, [b'%' | b'<', ..]) || matches!(text, [b'&', b'F' | b'f', b'=', ..])
 }
 
 /// Returns the programs in a file that have a number or a name.
