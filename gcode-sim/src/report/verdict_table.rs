@@ -30,12 +30,15 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
     if layout.worst_first {
         holes.sort_by(|a, b| b.position_deviation.total_cmp(&a.position_deviation));
     }
-    let mut text = format!(
-        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual − nominal\n\n",
-        count(all, "hole"),
-        verdict.tolerance,
-        verdict.basis
-    );
+    let mut text = match verdict.is_of_motion {
+        true => format!("Motion in the stated stock: {}\n\n", verdict.basis),
+        false => format!(
+            "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual − nominal\n\n",
+            count(all, "hole"),
+            verdict.tolerance,
+            verdict.basis
+        ),
+    };
     if layout.full {
         holes.iter().for_each(|hole| full(&mut text, hole, verdict.tolerance));
     } else {
