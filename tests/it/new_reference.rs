@@ -209,3 +209,39 @@ fn the_list_of_a_program_in_inches_is_in_inches() {
         serde_json::from_slice(&std::fs::read(dir.join("O1.json")).unwrap()).unwrap();
     assert_eq!((&json["unit"], &json["holes"][0]["depth"]), (&"inch".into(), &0.5.into()));
 }
+
+/// A helix of 2 a turn to Z-9. without a closing circle: full to its last but one turn at Z-7., and a ramp below. `verify` fails the
+/// program with such a list, and the list says so; with the circle the hole is 9 deep, and nothing is said.
+#[test]
+fn a_list_says_where_its_own_program_fails() {
+    let folder = with_machine(STOCK, 0);
+    let dir = folder.path();
+    let turns: String = [1, 3, 5, 7, 9].map(|depth| format!("G3 I-3. Z-{depth}. F200.\n")).concat();
+    for (circle, depth, fails) in [("", 7, true), ("G3 I-3.\n", 9, false)] {
+        let mill = with_tool(3, &format!("G17 G0 X45. Y20.\nZ1.\nG1 X48. F300.\n{turns}{circle}G1 X45."));
+        let (holes, messages) = list(dir, &[mill], "");
+        assert_eq!(holes, [format!("1,45,20,0,0,0,1,{depth},16")]);
+        let note =
+            "note: verify of the program against this list as it stands: FAIL: a feed cuts beside a hole";
+        assert_eq!(messages.contains(note), fails, "{messages}");
+        assert_eq!(verify(dir).0, i32::from(fails));
+    }
+}
+
+/// A drill of 8 to 10 below the floor of a pocket, and a countersink of 90° 5 below it from 2 above: its feed is 7 of the hole's 12, and
+/// the drill makes the hole all the same, as on the top beside it.
+#[test]
+fn a_countersink_on_a_milled_floor_is_not_the_diameter_of_the_hole() {
+    let folder = with_machine(STOCK, 0);
+    let dir = folder.path();
+    let drill = with_tool(2, "G99 G81 X15. Y20. Z-15. R-3. F90.\nX45. R2.");
+    let sink = with_tool(5, "G99 G81 X15. Y20. Z-10. R-3. F90.\nX45. Z-5. R2.");
+    let sunk = "10,,drill 8 10; countersink 10 angle=90";
+    let top = "15,,drill 8 15; countersink 10 angle=90";
+    let (holes, _) = list(dir, &[with_tool(3, FLOOR), drill, sink], "");
+    assert_eq!(holes, [format!("1,15,20,-5,0,0,1,{sunk}"), format!("2,45,20,0,0,0,1,{top}")]);
+    let done = run_line("gcode-sim holes O1.nc --format json", dir);
+    let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let diameters = [&json["holes"][0]["diameter"], &json["holes"][1]["diameter"]];
+    assert_eq!(diameters, [&serde_json::Value::from(8.0); 2]);
+}

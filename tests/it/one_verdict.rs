@@ -275,7 +275,7 @@ fn a_page_leaves_out_the_burr_of_a_project() {
 
 /// A blank of 100 by 70 by 8, of which the program may mill a strip 5 wide along x = 0.
 const BLANK: &str = "[head]\nkind = \"fixed\"\ndirection = [0, 0, 1]\n\n[[tool]]\nnumber = 1\nkind = \"end-mill\"\n\
-                     diameter = 10\n\n[stock]\nkind = \"box\"\nmin = [-5, -5, -8]\nmax = [95, 65, 0]\n\n\
+                     diameter = 10\nlength = 100\n\n[stock]\nkind = \"box\"\nmin = [-5, -5, -8]\nmax = [95, 65, 0]\n\n\
                      [[stock.pocket]]\nkind = \"box\"\nmin = [-20, -20, -10]\nmax = [0, 80, 0]\n";
 
 /// Mills along x = -5 with the mill of 10, up to the wall x = 0, and goes back by `back` inside the strip.
