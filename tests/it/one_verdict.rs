@@ -281,7 +281,7 @@ const BLANK: &str = "[head]\nkind = \"fixed\"\ndirection = [0, 0, 1]\n\n[[tool]]
 /// Mills along x = -5 with the mill of 10, up to the wall x = 0, and goes back by `back` inside the strip.
 fn milled_strip(back: &str) -> String {
     format!(
-        "O0001\nG90 G54 G17 G21\nT1 M06\nS3000 M03\nG00 Z50.\nX-5. Y-15.\nZ2.\nG01 Z-8. F300.\nY75.\n{back}\nG00 Z50.\nM30\n"
+        "O0001\nG90 G54 G17 G21\nT1 M06\nS3000 M03\nG00 G43 H1 Z50.\nX-5. Y-15.\nZ2.\nG01 Z-8. F300.\nY75.\n{back}\nG00 Z50.\nM30\n"
     )
 }
 
@@ -314,7 +314,7 @@ fn a_verdict_on_motion_alone_is_the_same_everywhere() {
         }
         assert_eq!(run("gcode-sim sheet O1.nc -o sheet.html", place.path()).1, row.exit);
         let sheet = std::fs::read_to_string(place.path().join("sheet.html")).unwrap();
-        let answer = format!("<b>{}. Predicted by simulation, not measured. </b>{}", row.answer, row.summary);
+        let answer = format!("<b>{}. </b>Predicted by simulation, not measured. {}", row.answer, row.summary);
         assert!(sheet.contains(&answer), "{answer}");
     }
 }
@@ -343,5 +343,5 @@ fn without_a_reference_a_stock_is_required_and_no_hole_passes() {
     let message = String::from_utf8(done.stderr).unwrap();
     assert_eq!(done.status.code(), Some(2));
     assert!(message.contains("error: no reference: give --reference REF"), "{message}");
-    assert!(message.contains("the machine file states [stock]"), "{message}");
+    assert!(message.contains("state [stock] in the machine file"), "{message}");
 }

@@ -98,8 +98,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         None => {
             return Err(UsageError::new(
                 "no reference: give --reference REF, name the program in [references] of gcode.toml, or put \
-                 reference.csv beside it. Of a program that makes no hole the motion alone is judged where the machine \
-                 file states [stock], and in [[stock.pocket]] what is milled",
+                 reference.csv beside it; for a program without holes state [stock] in the machine file, and what it \
+                 mills as [[stock.pocket]]: its motion is judged",
             ));
         }
     };

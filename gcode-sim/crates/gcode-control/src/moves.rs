@@ -1,5 +1,5 @@
 //! Moves by the modal codes: end points of axis words, the tool length, straight moves and threads.
-use super::functions::{ExecResult, locate};
+use super::functions::ExecResult;
 use super::kinematics::remove_noise;
 use super::linear_motion::Endpoint;
 use super::notes::Note;
