@@ -327,6 +327,7 @@ mod tests {
             tolerance: 0.1,
             depth_tolerance: 0.1,
             verdict: Answer::Fail,
+            is_of_motion: false,
             outcome: Ending::End,
             summary: "1 of 17 holes in tolerance, 15 missing".to_owned(),
             likely_causes: Vec::new(),
