@@ -293,12 +293,13 @@ fn a_verdict_on_motion_alone_is_the_same_everywhere() {
     let fail = Row { answer: "FAIL", exit: 1, ..pass };
     let milled = |lines: &str| format!("{judged}; not checked: the shape of the milling (O0001 {lines})");
     let beside = format!("a feed outside the stated pockets; {judged}");
-    let rapid = format!("a rapid through the part; {judged}");
+    let rapid = format!("a rapid through the part (2 times); {judged}");
     let alarm = format!("alarm PS0112 in O0001 line 10: division by zero; {judged}");
     for row in [
         Row { program: &milled_strip("X-15."), summary: &milled("line 9"), ..pass },
         // The mill reaches to x = 1 at x = -4.
         Row { program: &milled_strip("G01 X-4. Y50."), summary: &beside, ..fail },
+        // Across at Z-8. into the metal, and up through it.
         Row { program: &milled_strip("G00 X50. Y30."), summary: &rapid, ..fail },
         Row { program: &milled_strip("#1=1/0"), summary: &alarm, outcome: "alarm", exit: 3, ..fail },
     ] {
