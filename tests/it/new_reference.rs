@@ -2,6 +2,7 @@
 use std::path::Path;
 
 use gcode_tests::programs::run_line;
+use tempfile::TempDir;
 
 /// A block of 20 thick, with a floor 5 below its top that the program may mill.
 const STOCK: &str = "[stock]\nkind = \"box\"\nmin = [0, 0, -20]\nmax = [60, 40, 0]\n\n[[stock.pocket]]\nkind = \"box\"\n\
@@ -24,6 +25,18 @@ fn write_machine(dir: &Path, stock: &str, without: u32) {
         text += &format!("\n[[tool]]\nnumber = {number}\n{kind}diameter = {diameter}\n");
     }
     std::fs::write(dir.join("machine.toml"), text).unwrap();
+}
+
+/// Returns a new folder with such a machine file.
+fn with_machine(stock: &str, without: u32) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    write_machine(folder.path(), stock, without);
+    folder
+}
+
+/// Returns two drilling cycles at x = 45, y = 20, each by a tool down to a depth.
+fn two_cycles(cycles: [(u32, &str); 2]) -> [String; 2] {
+    cycles.map(|(tool, depth)| with_tool(tool, &format!("G98 G81 X45. Y20. Z-{depth} R2. F90.")))
 }
 
 /// Returns a use of a tool.
@@ -56,9 +69,8 @@ const FLOOR: &str =
 
 #[test]
 fn a_hole_begins_at_the_floor_that_the_program_mills_before_it() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = with_machine(STOCK, 0);
     let dir = folder.path();
-    write_machine(dir, STOCK, 0);
     let (floor, drill) = (with_tool(3, FLOOR), with_tool(2, DRILL));
 
     let (holes, messages) = list(dir, &[floor.clone(), drill.clone()], "");
@@ -89,9 +101,8 @@ fn a_hole_begins_at_the_floor_that_the_program_mills_before_it() {
 /// A countersink of 90° whose tip goes round 5 off the axis at Z-2. opens 2·(5 + 2) = 14 at the top.
 #[test]
 fn a_chamfer_that_a_pointed_tool_mills_is_a_countersink() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = with_machine(STOCK, 0);
     let dir = folder.path();
-    write_machine(dir, STOCK, 0);
     let bore = with_tool(3, "G0 X45. Y20.\nZ2.\nG1 Z-20.5 F90.\nX46.\nG3 I-1.\nG1 X45.");
     for (radius, depth, diameter) in [(5, 2, 14), (6, 1, 14), (6, 2, 16)] {
         let chamfer =
@@ -114,12 +125,10 @@ fn a_chamfer_that_a_pointed_tool_mills_is_a_countersink() {
 /// 2.5/tan 59° = 1.502 above its tip, as that edge is above the pilot's own: a pilot to Z-15. is gone too, one to Z-15.1 is not.
 #[test]
 fn a_pilot_that_nothing_remains_of_is_no_feature() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = with_machine(STOCK, 0);
     let dir = folder.path();
-    write_machine(dir, STOCK, 0);
     for (pilot, expected) in [("10.", "15,8"), ("15.", "15,8"), ("15.1", "15.1,,drill 5 15.1; drill 8 15")] {
-        let uses = [(4, pilot), (2, "15.")]
-            .map(|(tool, depth)| with_tool(tool, &format!("G98 G81 X45. Y20. Z-{depth} R2. F90.")));
+        let uses = two_cycles([(4, pilot), (2, "15.")]);
         let (holes, _) = list(dir, &uses, "");
         assert_eq!(holes, [format!("1,45,20,0,0,0,1,{expected}")], "{pilot}");
         let (code, text) = verify(dir);
@@ -130,9 +139,8 @@ fn a_pilot_that_nothing_remains_of_is_no_feature() {
 /// Spotted at x = 40, 45, 50 in this order; the middle hole is then milled, the outer ones plunged by a counterbore.
 #[test]
 fn holes_are_listed_in_the_order_of_their_first_cuts() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = with_machine(STOCK, 0);
     let dir = folder.path();
-    write_machine(dir, STOCK, 0);
     let spot = with_tool(1, "G99 G81 X8. Y20. Z-2. R2. F90.\nX30.\nX52.");
     let drill = with_tool(2, "G99 G81 X8. Y20. Z-15. R2. F90.\nX30.\nX52.");
     let mill = with_tool(3, "G0 X30. Y20.\nZ2.\nG1 Z-6. F90.\nX32.5\nG3 I-2.5\nG1 X30.");
@@ -148,8 +156,7 @@ fn holes_are_listed_in_the_order_of_their_first_cuts() {
 fn the_tool_whose_kind_is_unknown_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path();
-    let uses = [(2, "15."), (6, "6.")]
-        .map(|(tool, depth)| with_tool(tool, &format!("G98 G81 X45. Y20. Z-{depth} R2. F90.")));
+    let uses = two_cycles([(2, "15."), (6, "6.")]);
     write_machine(dir, STOCK, 6);
     let (holes, messages) = list(dir, &uses, "");
     assert_eq!(holes, ["1,45,20,0,0,0,1,15,8"]);
@@ -164,11 +171,9 @@ fn the_tool_whose_kind_is_unknown_is_named() {
 /// Without a surface nobody knows how wide a spot is there; 2 below the R point level one of Z-5. is 10 wide.
 #[test]
 fn no_cone_is_counted_from_the_r_point_level() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = with_machine("", 0);
     let dir = folder.path();
-    write_machine(dir, "", 0);
-    let uses = [(1, "5."), (2, "15.")]
-        .map(|(tool, depth)| with_tool(tool, &format!("G98 G81 X45. Y20. Z-{depth} R2. F90.")));
+    let uses = two_cycles([(1, "5."), (2, "15.")]);
     let (holes, _) = list(dir, &uses, "--clearance 2");
     assert_eq!(holes, ["1,45,20,0,0,0,1,15,,countersink 10 angle=90; drill 8 15"]);
     let (code, text) = verify(dir);
@@ -185,9 +190,8 @@ fn no_cone_is_counted_from_the_r_point_level() {
 /// X1.5 is 38.1 mm, a drill of 8 mm is 8/25.4 = 0.31496 inch; --clearance .1 brings R.1 to 0.
 #[test]
 fn the_list_of_a_program_in_inches_is_in_inches() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = with_machine("", 0);
     let dir = folder.path();
-    write_machine(dir, "", 0);
     let blocks = "G20\nG98 G81 X1.5 Y.75 Z-.5 R.1 F4.\nG80";
     let (holes, messages) = list(dir, &[with_tool(2, blocks)], "--clearance .1");
     assert_eq!(holes, ["1,1.5,0.75,0,0,0,1,0.5,0.31496"]);
@@ -204,4 +208,40 @@ fn the_list_of_a_program_in_inches_is_in_inches() {
     let json: serde_json::Value =
         serde_json::from_slice(&std::fs::read(dir.join("O1.json")).unwrap()).unwrap();
     assert_eq!((&json["unit"], &json["holes"][0]["depth"]), (&"inch".into(), &0.5.into()));
+}
+
+/// A helix of 2 a turn to Z-9. without a closing circle: full to its last but one turn at Z-7., and a ramp below. `verify` fails the
+/// program with such a list, and the list says so; with the circle the hole is 9 deep, and nothing is said.
+#[test]
+fn a_list_says_where_its_own_program_fails() {
+    let folder = with_machine(STOCK, 0);
+    let dir = folder.path();
+    let turns: String = [1, 3, 5, 7, 9].map(|depth| format!("G3 I-3. Z-{depth}. F200.\n")).concat();
+    for (circle, depth, fails) in [("", 7, true), ("G3 I-3.\n", 9, false)] {
+        let mill = with_tool(3, &format!("G17 G0 X45. Y20.\nZ1.\nG1 X48. F300.\n{turns}{circle}G1 X45."));
+        let (holes, messages) = list(dir, &[mill], "");
+        assert_eq!(holes, [format!("1,45,20,0,0,0,1,{depth},16")]);
+        let note =
+            "note: verify of the program against this list as it stands: FAIL: a feed cuts beside a hole";
+        assert_eq!(messages.contains(note), fails, "{messages}");
+        assert_eq!(verify(dir).0, i32::from(fails));
+    }
+}
+
+/// A drill of 8 to 10 below the floor of a pocket, and a countersink of 90° 5 below it from 2 above: its feed is 7 of the hole's 12, and
+/// the drill makes the hole all the same, as on the top beside it.
+#[test]
+fn a_countersink_on_a_milled_floor_is_not_the_diameter_of_the_hole() {
+    let folder = with_machine(STOCK, 0);
+    let dir = folder.path();
+    let drill = with_tool(2, "G99 G81 X15. Y20. Z-15. R-3. F90.\nX45. R2.");
+    let sink = with_tool(5, "G99 G81 X15. Y20. Z-10. R-3. F90.\nX45. Z-5. R2.");
+    let sunk = "10,,drill 8 10; countersink 10 angle=90";
+    let top = "15,,drill 8 15; countersink 10 angle=90";
+    let (holes, _) = list(dir, &[with_tool(3, FLOOR), drill, sink], "");
+    assert_eq!(holes, [format!("1,15,20,-5,0,0,1,{sunk}"), format!("2,45,20,0,0,0,1,{top}")]);
+    let done = run_line("gcode-sim holes O1.nc --format json", dir);
+    let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let diameters = [&json["holes"][0]["diameter"], &json["holes"][1]["diameter"]];
+    assert_eq!(diameters, [&serde_json::Value::from(8.0); 2]);
 }

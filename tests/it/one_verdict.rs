@@ -272,3 +272,77 @@ fn a_page_leaves_out_the_burr_of_a_project() {
     assert!(text.contains("is a burr: the page has no verdict"), "{text}");
     assert!(!std::fs::read_to_string(place.path().join("O1.html")).unwrap().contains("class=\"answer"));
 }
+
+/// A blank of 100 by 70 by 8, of which the program may mill a strip 5 wide along x = 0.
+const BLANK: &str = "[head]\nkind = \"fixed\"\ndirection = [0, 0, 1]\n\n[[tool]]\nnumber = 1\nkind = \"end-mill\"\n\
+                     diameter = 10\nlength = 100\n\n[stock]\nkind = \"box\"\nmin = [-5, -5, -8]\nmax = [95, 65, 0]\n\n\
+                     [[stock.pocket]]\nkind = \"box\"\nmin = [-20, -20, -10]\nmax = [0, 80, 0]\n";
+
+/// Mills along x = -5 with the mill of 10, up to the wall x = 0, and goes back by `back` inside the strip.
+fn milled_strip(back: &str) -> String {
+    format!(
+        "O0001\nG90 G54 G17 G21\nT1 M06\nS3000 M03\nG00 G43 H1 Z50.\nX-5. Y-15.\nZ2.\nG01 Z-8. F300.\nY75.\n{back}\nG00 Z50.\nM30\n"
+    )
+}
+
+/// Without a reference `verify` judges the motion in the stated stock; every output and every command states the same.
+#[test]
+fn a_verdict_on_motion_alone_is_the_same_everywhere() {
+    let judged = "the motion in the stated stock is judged, no hole is compared (no reference)";
+    let pass = Row { answer: "PASS", outcome: "end", ..Row::default() };
+    let fail = Row { answer: "FAIL", exit: 1, ..pass };
+    let milled = |lines: &str| format!("{judged}; not checked: the shape of the milling (O0001 {lines})");
+    let beside = format!("a feed outside the stated pockets; {judged}");
+    let rapid = format!("a rapid through the part (2 times); {judged}");
+    let alarm = format!("alarm PS0112 in O0001 line 10: division by zero; {judged}");
+    for row in [
+        Row { program: &milled_strip("X-15."), summary: &milled("line 9"), ..pass },
+        // The mill reaches to x = 1 at x = -4.
+        Row { program: &milled_strip("G01 X-4. Y50."), summary: &beside, ..fail },
+        // Across at Z-8. into the metal, and up through it.
+        Row { program: &milled_strip("G00 X50. Y30."), summary: &rapid, ..fail },
+        Row { program: &milled_strip("#1=1/0"), summary: &alarm, outcome: "alarm", exit: 3, ..fail },
+    ] {
+        let place = tempfile::tempdir().unwrap();
+        std::fs::write(place.path().join("O1.nc"), row.program).unwrap();
+        std::fs::write(place.path().join("machine.toml"), BLANK).unwrap();
+        compare(place.path(), "O1.nc", &row);
+        let heading = format!("{}, {}", row.answer, row.summary);
+        for line in ["gcode-sim verify O1.nc --page O1.html", "gcode-sim page O1.nc -o O1.html"] {
+            assert_eq!(run(line, place.path()).1, row.exit, "{line}");
+            let page = std::fs::read_to_string(place.path().join("O1.html")).unwrap();
+            assert!(page.contains(&heading), "{line}: {heading}");
+        }
+        assert_eq!(run("gcode-sim sheet O1.nc -o sheet.html", place.path()).1, row.exit);
+        let sheet = std::fs::read_to_string(place.path().join("sheet.html")).unwrap();
+        let answer = format!("<b>{}. </b>Predicted by simulation, not measured. {}", row.answer, row.summary);
+        assert!(sheet.contains(&answer), "{answer}");
+    }
+}
+
+/// Without a reference a program that makes a hole fails, and has a picture and a page without a verdict; without a stock nothing
+/// can be judged.
+#[test]
+fn without_a_reference_a_stock_is_required_and_no_hole_passes() {
+    let drilled = milled_strip("G00 Z50.\nX40. Y30.\nG98 G81 Z-3. R2. F90.\nG80");
+    let place = tempfile::tempdir().unwrap();
+    std::fs::write(place.path().join("O1.nc"), drilled).unwrap();
+    std::fs::write(place.path().join("machine.toml"), BLANK).unwrap();
+    let (text, code) = run("gcode-sim verify O1.nc", place.path());
+    assert!(
+        text.contains("\nFAIL     1 hole that no reference has; the motion in the stated stock "),
+        "{text}"
+    );
+    assert_eq!(code, 1);
+    let (drawn, code) = run("gcode-sim render O1.nc -o O1.png --size 480x360 --format json", place.path());
+    let drawn: Value = serde_json::from_str(&drawn).unwrap();
+    assert_eq!((&drawn["verdict"], code), (&Value::Null, 0));
+
+    let (head, _) = BLANK.split_once("[stock]").unwrap();
+    std::fs::write(place.path().join("machine.toml"), head).unwrap();
+    let done = run_line("gcode-sim verify O1.nc", place.path());
+    let message = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(2));
+    assert!(message.contains("error: no reference: give --reference REF"), "{message}");
+    assert!(message.contains("state [stock] in the machine file"), "{message}");
+}

@@ -41,10 +41,7 @@ impl Setup for Controls {
     type Library = NoLibrary;
 
     fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
-        let mut request = self.request.clone();
-        for (key, value) in settings {
-            request.settings.set(key, value).map_err(|error| error.to_string())?;
-        }
+        let request = self.request.with_settings(settings).map_err(|error| error.to_string())?;
         set_up(&request, self.call.as_deref()).map_err(|error| error.to_string())
     }
 

@@ -18,10 +18,7 @@ impl<'a> Setup for Controls<'a> {
     type Library = Programs<'a>;
 
     fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
-        let mut request = self.request.clone();
-        for (key, value) in settings {
-            request.settings.set(key, value).map_err(|error| error.to_string())?;
-        }
+        let request = self.request.with_settings(settings).map_err(|error| error.to_string())?;
         gcode_session::set_up(&request, self.call.as_deref()).map_err(|error| error.to_string())
     }
 

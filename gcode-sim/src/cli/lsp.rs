@@ -222,11 +222,14 @@ impl Host for EditorHost {
         reference: Option<&Path>,
     ) -> Result<String, String> {
         let nominal = reference.map(|path| options::read_nominal(path, request, &mut library)).transpose();
-        let nominal = sentence(nominal)?.and_then(NominalPart::into_holes);
+        let nominal = match sentence(nominal)? {
+            Some(nominal) => nominal.into_holes(),
+            None => sentence(gcode_session::motion_reference(request, &mut library))?,
+        };
         let mut trace = Trace::default();
         let criteria = nominal.as_ref().map(Criteria::of);
         let revision = sentence(Revision::observed(request, &mut library, criteria, &mut trace))?;
-        let judged = reference.zip(nominal.as_ref());
+        let judged = nominal.as_ref().map(|nominal| (reference, nominal));
         let program = Path::new(&request.name);
         let given = RunConditions {
             main_program: request.main.as_ref().map(|main| main.name.label()),
@@ -248,10 +251,7 @@ impl Setup for EditedProgram<'_> {
     type Library = EditedPrograms;
 
     fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
-        let mut request = self.request.clone();
-        for (key, value) in settings {
-            sentence(request.settings.set(key, value))?;
-        }
+        let request = sentence(self.request.with_settings(settings))?;
         sentence(gcode_session::set_up(&request, None))
     }
 

@@ -27,7 +27,7 @@ pub(super) fn judge_traced(
 pub(super) fn write_alone(
     request: &Request,
     traced: &(Revision, Trace),
-    reference: Option<(&Path, &Reference)>,
+    reference: Option<(Option<&Path>, &Reference)>,
     conditions: &RunConditions,
     path: &Path,
 ) -> Result<(), UsageError> {
@@ -38,7 +38,7 @@ pub(super) fn write_alone(
 pub(super) fn alone(
     request: &Request,
     (revision, trace): &(Revision, Trace),
-    reference: Option<(&Path, &Reference)>,
+    reference: Option<(Option<&Path>, &Reference)>,
     conditions: &RunConditions,
 ) -> Result<String, UsageError> {
     let page = Page {
@@ -46,8 +46,8 @@ pub(super) fn alone(
         new: ObservedProgram::of(request, revision, trace),
         machine: &request.machine,
         reference: reference.map(|(_, reference)| reference),
-        conditions: &flags(conditions, reference.map(|(path, _)| path)),
-        documents: &documents(conditions, reference.map(|(path, _)| path))?,
+        conditions: &flags(conditions, reference.and_then(|(path, _)| path)),
+        documents: &documents(conditions, reference.and_then(|(path, _)| path))?,
     };
     html(&page)
 }

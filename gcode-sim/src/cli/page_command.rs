@@ -39,10 +39,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let note = "the reference of the program in gcode.toml is a burr: the page has no verdict";
         output::print_message(&format!("note: {}: {note}\n", path.display()));
     }
-    let nominal = nominal.and_then(NominalPart::into_holes);
+    let nominal = match reference {
+        Some(_) => nominal.and_then(NominalPart::into_holes),
+        None => gcode_session::motion_reference(&request, &mut folders)?,
+    };
     let traced = page::judge_traced(&mut request, &mut folders, nominal.as_ref().map(Criteria::of))?;
     page::check_has_moves("page", &traced.0.simulation)?;
-    let judged = reference.as_deref().zip(nominal.as_ref());
+    let judged = nominal.as_ref().map(|nominal| (reference.as_deref(), nominal));
     page::write_alone(&request, &traced, judged, &program.conditions, &arguments.output)?;
     output::written("page", &arguments.output, true)?;
     Ok(super::judged(&traced.0.simulation, traced.0.verdict.as_ref()))

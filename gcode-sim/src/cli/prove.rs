@@ -125,11 +125,8 @@ impl<'a> Setup for Controls<'a> {
     type Library = SharedFolders<'a>;
 
     fn control(&self, settings: &[(String, String)]) -> Result<Control, String> {
-        let mut request = self.request.clone();
-        for (key, value) in settings {
-            let taken = request.settings.set(key, value);
-            taken.map_err(|error| format!("--claim travel: {error}"))?;
-        }
+        let request = self.request.with_settings(settings);
+        let request = request.map_err(|error| format!("--claim travel: {error}"))?;
         gcode_session::set_up(&request, self.call).map_err(|error| error.to_string())
     }
 

@@ -152,7 +152,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             }
         }
         None | Some(NominalPart::Holes(_)) => {
-            let reference = nominal.and_then(NominalPart::into_holes);
+            let reference = match nominal {
+                Some(nominal) => nominal.into_holes(),
+                None => gcode_session::motion_reference(&request, &mut folders)?,
+            };
             let style = Style { views, projection: arguments.projection, color_by: arguments.color_by };
             let criteria = reference
                 .as_ref()

@@ -22,12 +22,13 @@ use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_inspect::verify::{Conclusion, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Flutes;
-use gcode_part::NominalPart;
+use gcode_part::{NominalPart, Reference};
 use gcode_session::{Criteria, Request, Run, Simulation};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct Arguments {
-    /// The reference: a hole list (JSON or CSV) or a job file (TOML) [default: that of the program in gcode.toml, or reference.csv beside it]
+    /// The reference: a hole list (JSON or CSV) or a job file (TOML) [default: that of the program in gcode.toml, or
+    /// reference.csv beside it; without one the motion in the machine file's [stock] is judged, and the program may make no hole]
     #[arg(long, value_name = "REF", display_order = 0)]
     reference: Option<PathBuf>,
 
@@ -69,8 +70,8 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Completes the arguments by the project of the program; returns them with the reference.
-    fn completed(&self) -> Result<(Self, PathBuf), UsageError> {
+    /// Completes the arguments by the project of the program; returns them with the reference, if one is named.
+    fn completed(&self) -> Result<(Self, Option<PathBuf>), UsageError> {
         let (program, project) = self.program.completed()?;
         let stated = self.reference.clone().or_else(|| project.reference());
         let beside = || {
@@ -78,12 +79,7 @@ impl Arguments {
             project::say(&[format!("reference: {}", path.display())]);
             Some(path)
         };
-        let reference = stated.or_else(beside).ok_or_else(|| {
-            UsageError::new(
-                "no reference: give --reference REF, name the program in [references] of gcode.toml, or put \
-                 reference.csv beside it",
-            )
-        })?;
+        let reference = stated.or_else(beside);
         Ok((Self { program, ..self.clone() }, reference))
     }
 }
@@ -94,14 +90,31 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let results = (arguments.picture.as_ref().map(PictureFile::path), arguments.page.as_deref());
     let (mut request, mut folders) =
-        options::checked_request(&arguments.program, Some(path), results.0, results.1)?;
+        options::checked_request(&arguments.program, path.as_deref(), results.0, results.1)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
-    match options::read_nominal(path, &request, &mut folders)? {
+    let nominal = match path {
+        Some(path) => options::read_nominal(path, &request, &mut folders)?,
+        None if request.can_judge_motion() => NominalPart::Holes(Reference::without_holes()),
+        None => {
+            return Err(UsageError::new(
+                "no reference: give --reference REF, name the program in [references] of gcode.toml, or put \
+                 reference.csv beside it; for a program without holes state [stock] in the machine file, and what it \
+                 mills as [[stock.pocket]]: its motion is judged",
+            ));
+        }
+    };
+    match nominal {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
             let reference = ManuallyDrop::new(reference);
-            holes(arguments, &mut request, folders, path, Criteria { reference: &reference, tolerances })
+            holes(
+                arguments,
+                &mut request,
+                folders,
+                path.as_deref(),
+                Criteria { reference: &reference, tolerances },
+            )
         }
         NominalPart::Flutes(mut nominal) => {
             let of_holes = [
@@ -164,7 +177,7 @@ fn holes(
     arguments: &Arguments,
     request: &mut Request,
     mut folders: Folders,
-    path_of_reference: &Path,
+    path_of_reference: Option<&Path>,
     criteria: Criteria<'_>,
 ) -> Result<ExitStatus, UsageError> {
     let (machine, reference) = (request.machine.clone(), criteria.reference);

@@ -132,7 +132,7 @@ pub fn of_verdict(
             ))
             .collect(),
         verdict: Some(drawn_conclusion(&verdict.conclusion())),
-        tolerance: Some(verdict.tolerance),
+        tolerance: (!verdict.is_of_motion).then_some(verdict.tolerance),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,

@@ -30,12 +30,15 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
     if layout.worst_first {
         holes.sort_by(|a, b| b.position_deviation.total_cmp(&a.position_deviation));
     }
-    let mut text = format!(
-        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual − nominal\n\n",
-        count(all, "hole"),
-        verdict.tolerance,
-        verdict.basis
-    );
+    let mut text = match verdict.is_of_motion {
+        true => format!("Motion in the stated stock: {}\n\n", verdict.basis),
+        false => format!(
+            "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual − nominal\n\n",
+            count(all, "hole"),
+            verdict.tolerance,
+            verdict.basis
+        ),
+    };
     if layout.full {
         holes.iter().for_each(|hole| full(&mut text, hole, verdict.tolerance));
     } else {
@@ -324,6 +327,7 @@ mod tests {
             tolerance: 0.1,
             depth_tolerance: 0.1,
             verdict: Answer::Fail,
+            is_of_motion: false,
             outcome: Ending::End,
             summary: "1 of 17 holes in tolerance, 15 missing".to_owned(),
             likely_causes: Vec::new(),

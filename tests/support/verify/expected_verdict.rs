@@ -7,6 +7,7 @@
 //! | `start X=0 Z=250` | always: these axes stand there before the program, as with `--start` |
 //! | `machine grinder.toml` | always: the program runs on this machine file in `suite/verify/` |
 //! | `reference burr.toml` | always: the program is compared with this reference there |
+//! | `reference none` | always: the motion alone is judged, as by `verify` without a reference |
 //! | `FAIL 16 of 28, 12 missing, 16 extra, 28 folded` | the verdict, the number of good nominal holes or of flutes, and the counts other than 0 agree; folded findings are those on single holes that one on several holes replaces |
 //! | `error row-group at O5:6 with 4.069 9.069` | the next finding: its severity, its code, its line, the calls that led there (`from O1:7`), its hole (`of r1h0`); its message or its notes have these numbers and names; the words behind `help` are in its help |
 //! | `missing r3h0 r3h1` | these holes are missing, in the order of the reference |

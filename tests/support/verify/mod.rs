@@ -15,7 +15,7 @@ use gcode_inspect::verify::{Answer, Finding, HoleVerdict, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Call};
 use gcode_lang::program::NoLibrary;
-use gcode_part::{Assumption, AssumptionPlace, NominalPart};
+use gcode_part::{Assumption, AssumptionPlace, NominalPart, Reference};
 use gcode_session::{
     Criteria, Request, Run, Simulation, complete_depths, judge_flutes, judge_holes, simulate,
 };
@@ -36,7 +36,11 @@ pub(crate) fn run(case: &Case) {
         (axis, position.parse::<f64>().unwrap())
     }));
     let request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
-    let nominal = reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap());
+    let of_motion = text.lines().any(|line| line == "reference none").then(Reference::without_holes);
+    let nominal = match of_motion {
+        Some(reference) => Some(NominalPart::Holes(reference)),
+        None => reference_of(&case.dir).map(|text| NominalPart::parse(&text).unwrap()),
+    };
     let (actual, layout) = match nominal {
         Some(NominalPart::Flutes(flutes)) => {
             let (grinding, verdict) = judge_flutes(&request, &mut NoLibrary, &flutes).unwrap();
@@ -75,6 +79,9 @@ pub fn reference_of(folder: &Path) -> Option<String> {
 fn file_of(folder: &Path, word: &str, own: &[&str]) -> Option<String> {
     let expected = std::fs::read_to_string(folder.join("expect.txt")).unwrap_or_default();
     let named = expected.lines().find_map(|line| line.strip_prefix(word)?.strip_prefix(' '));
+    if named == Some("none") {
+        return None;
+    }
     if let Some(named) = named {
         let path = folder.parent().unwrap().join(named);
         return Some(std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())));

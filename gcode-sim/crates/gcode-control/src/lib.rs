@@ -76,6 +76,7 @@ pub mod static_eval;
 
 mod planner;
 
+mod arcs;
 mod askew_tapping;
 mod block_codes;
 mod calls;

@@ -217,7 +217,7 @@ pub(super) fn computed_row(raw: WordNumber, settings: &Settings) -> Result<&'sta
     let value = match raw {
         WordNumber::Computed(value) => value,
         WordNumber::Literal(number) => {
-            return Err(Alarm::ImproperGCode { code: number.value().to_string(), control: None });
+            return Err(Alarm::ImproperGCode { code: number.value().to_string(), other: None });
         }
     };
     // A computed code is rounded to one decimal.
@@ -226,7 +226,7 @@ pub(super) fn computed_row(raw: WordNumber, settings: &Settings) -> Result<&'sta
         return Err(Alarm::IllegalMinus { letter: 'G' });
     }
     if !(0.0..=9999.0).contains(&tenths) {
-        return Err(Alarm::ImproperGCode { code: value.to_string(), control: None });
+        return Err(Alarm::ImproperGCode { code: value.to_string(), other: None });
     }
     let code = tenths as u32;
     let row = g_codes::row_on(code, g_codes::find(code), settings);

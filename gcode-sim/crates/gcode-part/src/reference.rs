@@ -59,15 +59,26 @@ impl Reference {
         let hole_axes = Arc::new(NominalAxes::of(&holes));
         Ok(Self {
             holes,
+            stock: list.stock,
+            process_limits: ProcessLimits { hole_axes, ..ProcessLimits::default() },
+            ..Self::without_holes()
+        })
+    }
+
+    /// Returns the reference of a program for which none is named: it has no hole. Only the motion is judged, and each hole that
+    /// the program makes is extra.
+    pub fn without_holes() -> Self {
+        Self {
+            holes: Vec::new(),
             position: None,
             depth: None,
             surface: None,
-            stock: list.stock,
-            process_limits: ProcessLimits { hole_axes, ..ProcessLimits::default() },
+            stock: None,
+            process_limits: ProcessLimits::default(),
             pattern: None,
             open_depths: Vec::new(),
             note: None,
-        })
+        }
     }
 
     /// Returns the reference of a list read as CSV.

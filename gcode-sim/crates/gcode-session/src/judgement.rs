@@ -6,10 +6,12 @@
 //!
 //! The reference decides more than the comparison: the metal round its holes, the limits of its process and the axes by which
 //! passes belong to one hole. Thus the same program without a reference may have other findings.
-use super::{GrindingError, GrindingRun, Request, SessionError, Simulation, grind, simulate_observed};
+use super::{
+    GrindingError, GrindingRun, Request, SessionError, Simulation, grind, simulate, simulate_observed,
+};
 use gcode_control::Observer;
 use gcode_inspect::verify::flutes::FluteVerdict;
-use gcode_inspect::verify::{Tolerances, Verdict};
+use gcode_inspect::verify::{Tolerances, Verdict, verify};
 use gcode_lang::motion::EventSink;
 use gcode_lang::program::Library;
 use gcode_part::{Flutes, Metal, Reference};
@@ -26,10 +28,36 @@ impl Request {
         self.machine.tools.iter().any(|tool| tool.number == h && tool.stated_length_offset().is_some())
     }
 
+    /// Returns true if the machine file states the stock, so that the motion can be judged without a reference.
+    pub fn can_judge_motion(&self) -> bool {
+        self.machine.stock.as_ref().is_some_and(|stock| stock.body(None).is_some())
+    }
+
     /// Returns what is known to be metal of a reference: its stock overrides that of the machine.
     pub fn metal(&self, reference: &Reference) -> Metal {
         reference.metal(self.machine.stock.as_ref())
     }
+}
+
+/// Returns the reference of a picture, a page or a sheet of a program for which none is named: that without holes, by which the
+/// motion alone is judged. `None` if the machine file states no stock with a pocket, so that all milling would be an error, or if the
+/// program makes holes: only a reference can judge them.
+///
+/// # Errors
+/// [`SessionError`] if the run cannot begin.
+pub fn motion_reference(
+    request: &Request,
+    library: &mut impl Library,
+) -> Result<Option<Reference>, SessionError> {
+    let has_pockets = request.machine.stock.as_ref().is_some_and(|stock| !stock.pockets().is_empty());
+    if !has_pockets || !request.can_judge_motion() {
+        return Ok(None);
+    }
+    let reference = Reference::without_holes();
+    let simulation = simulate(request, library, request.metal(&reference))?;
+    let (tolerances, locate) = (Tolerances::of(&reference, None), |span| simulation.run.locate(span));
+    let verdict = verify(&simulation.extracted, &reference, tolerances, &request.machine, &locate);
+    Ok(verdict.extra.is_empty().then_some(reference))
 }
 
 /// What the holes of a program are judged by.

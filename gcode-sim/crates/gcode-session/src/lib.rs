@@ -28,12 +28,14 @@ mod completion;
 mod error;
 pub mod file_uri;
 pub mod files;
+mod grinding;
 mod judgement;
 mod marked_events;
 mod open_depths;
 mod outside_text;
 mod reset_lengths;
 mod second_start;
+mod set_up;
 mod stubs;
 mod trace;
 
@@ -41,27 +43,28 @@ use std::sync::Arc;
 
 pub use assumptions::Dependencies;
 pub use error::SessionError;
-pub use judgement::{Criteria, HoleJudgement, judge_flutes, judge_holes, simulate_judged};
+pub use grinding::{GrindingError, GrindingRun, grind};
+pub use judgement::{Criteria, HoleJudgement, judge_flutes, judge_holes, motion_reference, simulate_judged};
 pub use open_depths::complete_depths;
+pub use set_up::set_up;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
+use self::set_up::{load, set_up_control};
 use gcode_control::{Control, Limits, Observer, Outcome, Progress};
-use gcode_inspect::flutes::{FluteTracker, GrinderError, GrindingResult};
 use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
-use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
 use gcode_inspect::verify::{Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::remedy;
 use gcode_lang::control::Settings;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, EventSink};
+use gcode_lang::program::Library;
 use gcode_lang::program::modes::Unit;
-use gcode_lang::program::{Library, Memory};
 use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::ast::ProgramPath;
-use gcode_part::{Flutes, HoleList, Metal, ProcessLimits, Reference, Surface};
+use gcode_part::{HoleList, Metal, ProcessLimits, Reference, Surface};
 
 /// A program and the conditions of its run.
 #[derive(Clone, Debug)]
@@ -157,148 +160,6 @@ pub fn run_observed<S: EventSink>(
     }
     let outcome = control.run_observed(request.limits, library, sink, observer);
     Ok(Run { control, outcome, main_note })
-}
-
-/// Returns a control before its first block, set up as [`run`] does; `call` is a block to run instead of the program, which it
-/// can call.
-///
-/// # Errors
-/// See [`run`].
-pub fn set_up(request: &Request, call: Option<&str>) -> Result<Control, SessionError> {
-    let (mut memory, _) = load(request)?;
-    if let Some(call) = call {
-        memory.load("--call", format!("{call}\nM30\n").into_bytes());
-        if let Some(main) = memory.ids().last() {
-            memory.set_main(main);
-        }
-    }
-    set_up_control(request, memory)
-}
-
-/// Loads the programs of a request; returns the note that the file has further main programs.
-fn load(request: &Request) -> Result<(Memory, Option<Diagnostic>), SessionError> {
-    let mut memory = Memory::default();
-    memory.load(request.name.clone(), request.bytes.clone());
-    if memory.programs().is_empty() {
-        return Err(SessionError::NoProgram { name: request.name.clone() });
-    }
-    if let Some(path) = &request.main {
-        let main = memory.find_path(path).ok_or_else(|| error::no_such_program(request, &memory, path))?;
-        memory.set_main(main);
-    }
-    if let Some(second) = memory.duplicates().next() {
-        let (line, program) = (memory.sources().line_column(second.span).line, second.label());
-        return Err(SessionError::DuplicateProgram { name: request.name.clone(), line, program });
-    }
-    let is_choice_open = request.main.is_none() && memory.programs().len() > 1;
-    let main_note = is_choice_open.then(|| causes::choose_main(&mut memory, request)).flatten();
-    Ok((memory, main_note))
-}
-
-/// Returns a control with these programs, set up as the request states.
-fn set_up_control(request: &Request, memory: Memory) -> Result<Control, SessionError> {
-    set_up_control_behind(request, memory, None)
-}
-
-/// Returns a control set up like [`set_up_control`], with the offsets and modes that the run before has left.
-fn set_up_control_behind(
-    request: &Request,
-    memory: Memory,
-    left: Option<&Control>,
-) -> Result<Control, SessionError> {
-    let mut control = Control::new(memory, request.settings.clone());
-    let presets = presets(&request.machine, &request.settings);
-    let refused = |number| move |alarm| SessionError::Variable { number, alarm };
-    for (number, value) in presets {
-        control.set_metric_variable(number, value).map_err(refused(number))?;
-    }
-    for (number, value) in request.variables.iter().copied() {
-        control.set_variable(number, value).map_err(refused(number))?;
-    }
-    if let Some(left) = left {
-        control.take_left_state(left);
-    }
-    for (axis, position) in &request.machine.start {
-        control.set_start(*axis, *position);
-    }
-    Ok(control)
-}
-
-/// Returns the variables of a machine that is set up: work offsets (#5221…, #14001…), and the length offsets and cutter radii as
-/// geometry offsets H and D (#11001…, #13001…, or #2001…, #2401… on a Haas).
-fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
-    let work = machine.offsets.iter().flat_map(|offset| {
-        let first = offset.system.first_variable();
-        (0..machine.axes.len()).map(move |axis| {
-            let stated = offset.values.iter().find(|(stated, _)| *stated == axis);
-            (first + axis as u32, stated.map_or(0.0, |(_, value)| *value))
-        })
-    });
-    let tools =
-        machine.tools.iter().filter(|tool| (1..=settings.tool_offsets).contains(&(tool.number as usize)));
-    let offsets = tools.flat_map(move |tool| {
-        let unit = if settings.has_diameter_offsets() { 2.0 } else { 1.0 };
-        let length = settings.length_variable(tool.number).zip(tool.stated_length_offset());
-        let radius =
-            settings.radius_variable(tool.number).zip(tool.radius_offset.map(|radius| radius * unit));
-        length.into_iter().chain(radius)
-    });
-    work.chain(offsets)
-}
-
-/// A run with the flutes that it grinds.
-#[derive(Debug)]
-pub struct GrindingRun {
-    /// The run.
-    pub run: Run,
-    /// The ground flutes, and the findings of the run.
-    pub result: GrindingResult,
-    /// The nominal flutes.
-    pub nominal: Flutes,
-}
-
-/// An error that prevents following the wheel.
-#[derive(Debug, thiserror::Error)]
-pub enum GrindingError {
-    /// The machine is not a grinder for this burr.
-    #[error(transparent)]
-    Machine(#[from] GrinderError),
-    /// The run cannot begin.
-    #[error(transparent)]
-    Session(#[from] SessionError),
-}
-
-/// Runs a program and follows the wheel's contact on the nominal burr.
-///
-/// # Errors
-/// [`GrindingError`] if the machine is not a grinder for this burr or the run cannot begin.
-pub fn grind(
-    request: &Request,
-    library: &mut impl Library,
-    nominal: &Flutes,
-) -> Result<GrindingRun, GrindingError> {
-    let mut tracker = FluteTracker::new(&request.machine, *nominal)?;
-    let run = run(request, library, &mut tracker)?;
-    let mut result = tracker.finish();
-    result.findings.extend(run.note_findings());
-    result.findings.extend(causes::unset_work_offsets(&run, &request.machine, "flutes"));
-    result.findings.extend(run.stop_finding());
-    Ok(GrindingRun { run, result, nominal: *nominal })
-}
-
-impl GrindingRun {
-    /// Verifies the ground flutes against the nominal ones, and completes the verdict by the request of the run.
-    pub fn verify(&self, request: &Request) -> FluteVerdict {
-        let locate = |span| self.run.locate(span);
-        let mut verdict = verify_flutes(&self.nominal, &self.result, &locate);
-        let assumptions = || {
-            let tracker = FluteTracker::new(&request.machine, self.nominal).ok();
-            let followed = tracker.map(|tracker| assumptions::of_flutes(request, &self.run, tracker));
-            followed.unwrap_or_default().numbered(&self.run)
-        };
-        completion::complete(&mut verdict, request, &self.run, Vec::new(), assumptions);
-        verdict
-    }
 }
 
 /// A run with the readings of an edge finder.

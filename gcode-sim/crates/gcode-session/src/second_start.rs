@@ -2,7 +2,8 @@
 use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
-use super::{Request, Run, extractor, set_up_control, set_up_control_behind};
+use super::set_up::{set_up_control, set_up_control_behind};
+use super::{Request, Run, extractor};
 use gcode_control::{Limits, Outcome, ResidualKind, ResidualValue};
 use gcode_inspect::findings::SECOND_START;
 use gcode_inspect::holes::{DrilledHole, HoleExtraction};

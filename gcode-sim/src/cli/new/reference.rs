@@ -7,14 +7,16 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::{ExitStatus, OutputFile, UsageError};
 use crate::cli::conditions::{ProgramArguments, RunConditions};
+use crate::cli::library::Folders;
 use crate::cli::{common, options, output, progress};
 use crate::report::figures::count as count_of;
 use crate::report::holes as report;
 use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT, MAIN_PROGRAM};
 use gcode_inspect::holes::DrilledHole;
+use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Diagnostic;
-use gcode_part::{FeatureKind, Hole, HoleList, MM_PER_INCH, Metal, Stock, Surface};
-use gcode_session::{Request, Simulation};
+use gcode_part::{FeatureKind, Hole, HoleList, MM_PER_INCH, Metal, Reference, Stock, Surface};
+use gcode_session::{Criteria, Request, Simulation};
 
 /// Largest difference between levels that are one, mm.
 const SAME_LEVEL: f64 = 0.001;
@@ -112,7 +114,25 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
              pockets in [[stock.pocket]]\n",
         );
     }
+    if let Some(line) = failure_against_itself(&list, &request, &mut folders)? {
+        output::print_message(&format!(
+            "note: verify of the program against this list as it stands: {line}\n"
+        ));
+    }
     Ok(ExitStatus::Passed)
+}
+
+/// Returns the first line of the verdict on the program with its own list if it fails: as by a helix without a closing circle, which
+/// leaves a ramp below the depth in the list.
+fn failure_against_itself(
+    list: &HoleList,
+    request: &Request,
+    folders: &mut Folders,
+) -> Result<Option<String>, UsageError> {
+    let Ok(reference) = Reference::of_list(list.clone()) else { return Ok(None) };
+    let criteria = Criteria::of(&reference);
+    let (_, verdict) = gcode_session::judge_holes(request, folders, criteria, &mut (), &mut ())?;
+    Ok((verdict.verdict == Answer::Fail).then(|| verdict.conclusion().line()))
 }
 
 /// Returns true for a file with the ending of JSON; refuses other endings than those of lists.

@@ -174,7 +174,10 @@ impl Case {
         let reference = REFERENCES.into_iter().find_map(own);
         let reference = reference.or_else(|| project.reference());
         let read = |path: &Path| options::read_nominal(path, &request, &mut folders);
-        let nominal = reference.as_deref().map(read).transpose()?;
+        let nominal = match reference.as_deref().map(read).transpose()? {
+            Some(nominal) => Some(nominal),
+            None => gcode_session::motion_reference(&request, &mut folders)?.map(NominalPart::Holes),
+        };
         let criteria = match &nominal {
             Some(NominalPart::Holes(reference)) => Some(Criteria::of(reference)),
             Some(NominalPart::Flutes(_)) | None => None,

@@ -1,6 +1,6 @@
 //! Arcs of a symbolic run: centres and radii that depend on the ranges, with the alarms that they can raise.
+use super::super::arcs::centre_letters;
 use super::super::data::ControlData;
-use super::super::moves::centre_letters;
 use super::super::state::State;
 use super::SymbolicRun;
 use super::moves::{AxisEnd, MoveBlock};

@@ -11,7 +11,7 @@ use crate::findings::FEED_BESIDE_HOLE;
 use crate::machine::{TOUCH_DEPTH, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
-use gcode_part::Collar;
+use gcode_part::{Collar, EntryPlanes};
 
 /// Largest radius of a hole of unknown diameter that is milled, mm.
 const MAX_OPEN_RADIUS: f64 = 50.0;
@@ -89,6 +89,12 @@ impl HoleExtractor<'_> {
                         format!("{distance:.3} mm outside its pocket")
                     }
                     (None, None, Some(_), _) => "the part beside its pocket".to_owned(),
+                    // Farther from every pocket than the tool is wide, or without any.
+                    (None, None, None, _)
+                        if self.metal.holes.as_deref().is_some_and(EntryPlanes::is_empty) =>
+                    {
+                        "the part outside its pockets".to_owned()
+                    }
                     (None, None, None, _) => "the part beside its holes".to_owned(),
                 };
                 let what = if matches!(part, ToolRegion::Side) { "the side of the tool" } else { "the feed" };

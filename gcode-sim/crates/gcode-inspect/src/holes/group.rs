@@ -5,7 +5,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::drill_pass::{DrillPass, PassCut};
 use super::swallowed::swallowing_passes;
-use crate::machine::Machine;
+use crate::machine::{Machine, ToolKind};
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
 use gcode_part::{Clusters, Hole, NominalAxes, Origin, PARALLEL_COSINE, PointTree};
@@ -330,8 +330,18 @@ fn finishing_pass<'p>(
     let start = starts(false).reduce(f64::max).or_else(|| starts(true).reduce(f64::min));
     let longest = start.map_or(0.0, |start| start - lowest);
     let deep = |p: &DrillPass| height(&p.cut.bottom) <= lowest + longest / 2.0;
-    let mut best = cutting[0];
-    for pass in &cutting[1..] {
+    // A cone makes no hole that another tool makes deeper, however low its feed begins, as on the floor of a pocket.
+    let is_cone = |p: &DrillPass| {
+        let tool = p.tool.and_then(|number| machine.find_tool(number));
+        tool.is_some_and(|tool| matches!(tool.kind, Some(ToolKind::SpotDrill | ToolKind::Countersink)))
+    };
+    let others = cutting.iter().filter(|pass| !is_cone(pass)).map(|pass| height(&pass.cut.bottom));
+    let lowest_other = others.fold(f64::INFINITY, f64::min);
+    let is_above_another =
+        |p: &DrillPass| lowest_other < height(&p.cut.bottom) - MIN_DEPTH_GAIN && is_cone(p);
+    let mut candidates = cutting.iter().copied().filter(|pass| !is_above_another(pass));
+    let mut best = candidates.next().unwrap_or(cutting[0]);
+    for pass in candidates {
         let goes_on = deep(pass) && height(&pass.cut.bottom) < height(&best.cut.bottom) - MIN_DEPTH_GAIN;
         let is_wider =
             deep(pass) && !deep(best) || deep(pass) == deep(best) && pass.is_as_wide(best, machine);

@@ -1,12 +1,10 @@
 //! Blocks that mill stated pockets: what they leave has no nominal shape, and no check judges it.
-use nalgebra::{Point3, Unit, Vector3};
+use nalgebra::{Unit, Vector3};
 
 use super::HoleExtractor;
-use super::feed_law::is_along;
-use super::near_metal::{FeedPart, Judged};
+use super::near_metal::{Contact, FeedPart, Judged};
 use super::strip::{Line, Strip};
-use super::swept_tool::rim;
-use crate::machine::TOUCH_DEPTH;
+use super::swept_tool::{TipPaths, contact};
 use gcode_lang::motion::Event;
 use gcode_lang::source::Span;
 
@@ -88,25 +86,15 @@ impl HoleExtractor<'_> {
             && self.metal.is_touched(&chord[0], &chord[1], axis, margin.x)
     }
 
-    /// Returns true if the tip or the rim of the tool cuts metal outside the nominal holes on a straight feed.
+    /// Returns true if the tip or the side of the tool cuts metal outside the nominal holes on a straight feed.
     fn mills_a_pocket(&self, chord: &Line, axis: &Unit<Vector3<f64>>) -> bool {
-        let cuts = |travel: &Line, part| self.metal.judged_on(travel, Judged::Milled(part)).is_some();
-        if cuts(chord, FeedPart::Tip) {
+        if self.metal.judged_on(chord, Judged::Milled(FeedPart::Tip)).is_some() {
             return true;
         }
-        let along = chord[1] - chord[0];
-        // The full diameter of a point is above the tip; a tool that moves sideways cuts with the whole point.
-        // Edges whose end is below the part cut it above.
-        let edges = self.tool_body.iter().filter(|part| part.is_cutter).map(|part| part.to);
-        let upper = edges.reduce(f64::max).map(|to| to - TOUCH_DEPTH);
-        self.machine.tool_end(self.setup.tool).first().is_some_and(|full| {
-            let lower = if is_along(axis, &along) { full.from } else { 0.0 };
-            let side = FeedPart::Side { radius: full.radius(), slope: 0.0 };
-            let offsets = rim(axis, &along, full.radius());
-            [Some(lower), upper].into_iter().flatten().any(|height| {
-                let up = axis.into_inner() * height;
-                offsets.iter().any(|offset| cuts(&chord.map(|tip: Point3<f64>| tip + offset + up), side))
-            })
+        let paths = TipPaths::line(chord);
+        self.tool_body.iter().filter(|part| part.is_cutter).any(|part| {
+            let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
+            matches!(contact(part, axis, &paths, &self.metal, Judged::Milled(side)), Contact::Metal(_))
         })
     }
 }

@@ -183,8 +183,16 @@ pub(super) fn uncounted_errors(findings: &[HoleFinding]) -> Option<String> {
     (!words.is_empty()).then(|| words.join(", "))
 }
 
-/// Returns `5 of 6 holes in tolerance, 1 missing, 2 extra`.
+/// Returns `5 of 6 holes in tolerance, 1 missing, 2 extra`; without nominal holes what is judged instead.
 pub(super) fn hole_counts(good: usize, missing: usize, extra: usize, nominal: usize) -> String {
+    if nominal == 0 {
+        let made = match extra {
+            0 => String::new(),
+            1 => "1 hole that no reference has; ".to_owned(),
+            _ => format!("{extra} holes that no reference has; "),
+        };
+        return format!("{made}the motion in the stated stock is judged, no hole is compared (no reference)");
+    }
     let noun = if nominal == 1 { "hole" } else { "holes" };
     let others = [(missing, "missing"), (extra, "extra")];
     let others = others.into_iter().filter(|(number, _)| *number != 0);

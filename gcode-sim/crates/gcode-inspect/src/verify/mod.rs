@@ -47,7 +47,7 @@ use self::rounding::RoundingDeviation;
 use self::rows::PatternRows;
 use self::transformation::Transformation;
 use self::voids::Blank;
-use crate::findings::START_UNKNOWN;
+use crate::findings::{FEED_BESIDE_HOLE, START_UNKNOWN};
 use crate::holes::HoleExtraction;
 use crate::machine::Machine;
 use gcode_lang::diag::Diagnostic;
@@ -148,7 +148,14 @@ pub fn verify(
             .is_some_and(|own| unknown_by_block.get(&block(own)).is_some_and(|holes| holes.contains(&own)))
     };
     for finding in extraction.findings.iter().filter(|finding| !is_of_hole(finding)) {
-        findings.add(Subject::Motion, finding.clone());
+        match finding.kind == &FEED_BESIDE_HOLE && reference.holes.is_empty() {
+            true => findings.add_summed(
+                Subject::Motion,
+                finding.clone(),
+                "a feed outside the stated pockets".to_owned(),
+            ),
+            false => findings.add(Subject::Motion, finding.clone()),
+        }
     }
     for check in checks::ALL {
         check(&inspection, &mut findings);

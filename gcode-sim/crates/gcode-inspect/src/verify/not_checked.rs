@@ -62,6 +62,12 @@ pub(super) fn list(
 ) -> Vec<NotChecked> {
     let HoleInspection { comparison, extraction, reference, machine, .. } = inspection;
     let mut all = diameters(comparison, machine);
+    if comparison.nominal.is_empty() {
+        all.push(NotChecked::aside(
+            "the holes (no reference)",
+            "the program has to make none; only its motion is judged",
+        ));
+    }
     let open: Vec<&str> = reference.open_depths.iter().map(|index| comparison.id(*index)).collect();
     if !open.is_empty() {
         let what = format!("the depth of {}", hole_names(&open));

@@ -57,6 +57,9 @@ pub struct Verdict {
     pub not_checked: Vec<String>,
     /// Values that the run read and nothing in the program set, and the holes that each can touch.
     pub assumptions: Vec<Assumption>,
+    /// True without a reference: only the motion is judged.
+    #[serde(skip)]
+    pub is_of_motion: bool,
     /// The words of the summary.
     #[serde(skip)]
     pub words: SummaryWords,
@@ -192,6 +195,7 @@ pub(super) fn verdict(
         verdict: Answer::to(all()),
         outcome: Ending::of(all()),
         summary: String::new(),
+        is_of_motion: comparison.nominal.is_empty(),
         words,
         likely_causes: Vec::new(),
         worst: worst.map(|index| holes[index].position_deviation),

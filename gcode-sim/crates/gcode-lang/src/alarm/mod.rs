@@ -10,7 +10,7 @@ mod typos;
 use crate::source::{Span, Spanned};
 pub use code::{AlarmCode, AlarmRow};
 pub use digit_limit::DigitLimit;
-pub use typos::{lacking_code_help, missing_macro_help, remedy, repeats_in_p_help};
+pub use typos::{OtherControl, lacking_code_help, missing_macro_help, remedy, repeats_in_p_help};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,8 +91,8 @@ pub enum Alarm {
     ImproperGCode {
         /// Code without its letter.
         code: String,
-        /// Name of a control that has it.
-        control: Option<&'static str>,
+        /// A control that has it.
+        other: Option<OtherControl>,
     },
     /// A cutting feed has no feed rate.
     FeedZero,

@@ -50,17 +50,23 @@ pub fn repeats_in_p_help(digits: u32) -> String {
     )
 }
 
-/// Codes of turning cycles that some mills have for patterns of holes.
-const LATHE_CYCLES: [&str; 3] = ["70", "71", "72"];
+/// A control that has a code which another one lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OtherControl {
+    /// Its name.
+    pub name: &'static str,
+    /// True if the code is a turning cycle on a lathe.
+    pub is_turning_cycle: bool,
+}
 
-/// Returns what to do about a G code that the control lacks; `control` is one that has it.
-pub fn lacking_code_help(code: &str, control: Option<&str>) -> String {
-    match control {
-        Some(control) if LATHE_CYCLES.contains(&code) => format!(
-            "on a lathe it is a turning cycle, and turning is not simulated; on a mill with {control} it drills a pattern of holes: give --dialect {control}"
+/// Returns what to do about a G code that the control lacks; `other` is one that has it.
+pub fn lacking_code_help(code: &str, other: Option<OtherControl>) -> String {
+    match other {
+        Some(OtherControl { name, is_turning_cycle: true }) => format!(
+            "on a lathe it is a turning cycle, and turning is not simulated; on a mill with {name} it drills a pattern of holes: give --dialect {name}"
         ),
-        Some(control) => {
-            format!("{control} has it: give --dialect {control} for such a control, or correct the code")
+        Some(OtherControl { name, .. }) => {
+            format!("{name} has it: give --dialect {name} for such a control, or correct the code")
         }
         None => format!(
             "correct it; if this machine has it, give what it does: --code G{code}=wait, --code G{code}=nothing, or the number of the macro that it calls"
@@ -70,8 +76,8 @@ pub fn lacking_code_help(code: &str, control: Option<&str>) -> String {
 
 /// Explains a G code that the control lacks.
 fn lacking_code(alarm: &Alarm, _: &AlarmLine<'_>) -> Option<String> {
-    let Alarm::ImproperGCode { code, control } = alarm else { return None };
-    Some(lacking_code_help(code, *control))
+    let Alarm::ImproperGCode { code, other } = alarm else { return None };
+    Some(lacking_code_help(code, *other))
 }
 
 /// Detects `GOTO#1` with a vacant #1.
@@ -460,10 +466,9 @@ mod tests {
 
     #[test]
     fn a_code_of_another_control_names_it() {
-        let improper = |control| Alarm::ImproperGCode { code: "187".into(), control };
-        assert!(help(improper(Some("haas-ngc")), "G187 P1", "G187").starts_with("haas-ngc has it"));
-        let turning = Alarm::ImproperGCode { code: "71".into(), control: Some("haas-ngc") };
-        assert!(help(turning, "G71 U2. R1.", "G71").starts_with("on a lathe it is a turning cycle"));
+        let improper = |other| Alarm::ImproperGCode { code: "187".into(), other };
+        let haas = OtherControl { name: "haas-ngc", is_turning_cycle: false };
+        assert!(help(improper(Some(haas)), "G187 P1", "G187").starts_with("haas-ngc has it"));
         assert_eq!(
             help(improper(None), "G187 P1", "G187"),
             "correct it; if this machine has it, give what it does: --code G187=wait, --code G187=nothing, or the number of the macro that it calls"

@@ -176,6 +176,8 @@ pub struct CodeFacts {
     pub unsimulated: Unsimulated,
     /// True for a code that some machine builders add.
     pub is_of_builder: bool,
+    /// True for a code that is a turning cycle on a lathe.
+    pub is_turning_cycle: bool,
 }
 
 use AxisWords::{Hole, Move, Other, Position, PositionInAbsolute, Tables};
@@ -197,6 +199,7 @@ pub(super) const MODAL: CodeFacts = CodeFacts {
     timing: ReadAhead,
     unsimulated: Unsimulated::No,
     is_of_builder: false,
+    is_turning_cycle: false,
 };
 
 pub(super) const CYCLE: CodeFacts = CodeFacts { axis_words: Hole, ..MODAL };
@@ -349,13 +352,15 @@ pub(super) const SET_COORDINATE_SYSTEM: CodeFacts = CodeFacts {
 };
 pub(super) const CORNER_ARC: CodeFacts =
     CodeFacts { lookahead: CornerArc, coordinates: NotScaled, ..ONE_SHOT };
-/// G12, G13 and G70 to G72 of a Haas.
-pub(super) const PATTERN: CodeFacts = CodeFacts {
+/// G12 and G13 of a Haas.
+pub(super) const CIRCLE_POCKET: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     words: CodeWords { own: Letters::of(b"L"), ..CodeWords::NONE },
     coordinates: NotScaled,
     ..ONE_SHOT
 };
+/// G70 to G72 of a Haas.
+pub(super) const BOLT_HOLES: CodeFacts = CodeFacts { is_turning_cycle: true, ..CIRCLE_POCKET };
 /// G174 and G184 of a Haas.
 pub(super) const ASKEW_TAPPING: CodeFacts =
     CodeFacts { axis_words: PositionInAbsolute, lookahead: Refused, coordinates: NotScaled, ..ONE_SHOT };

@@ -2,7 +2,7 @@
 use super::code_facts::{AxisWords, Unsimulated};
 pub use super::g_code_row::{Effect, GCodeRow, HolePattern, MeasuringCode, OneShot, name, spelled};
 use super::g_code_table::{CODES, DECLARED, DECLARED_WAIT};
-use crate::alarm::Alarm;
+use crate::alarm::{Alarm, OtherControl};
 use crate::control::{DeclaredEffect, Dialect, Settings};
 
 /// Rows of a code × 10 by family, as indices; 255 for a code that the controls lack.
@@ -48,9 +48,15 @@ pub fn row_on(code: u32, found: RowLookup, settings: &Settings) -> Option<&'stat
 /// Returns the alarm of a code × 10 that a control does not have.
 #[cold]
 pub fn improper(code: u32) -> Alarm {
-    let has_code = |(_, dialect): &&(&str, Dialect)| find(code).row_for(*dialect).is_some();
-    let control = Dialect::ALL.iter().find(has_code).map(|(name, _)| *name);
-    Alarm::ImproperGCode { code: spelled(code), control }
+    Alarm::ImproperGCode { code: spelled(code), other: other_control(code) }
+}
+
+/// Returns the first control that has a code × 10.
+pub fn other_control(code: u32) -> Option<OtherControl> {
+    Dialect::ALL.iter().find_map(|(name, dialect)| {
+        let row = find(code).row_for(*dialect)?;
+        Some(OtherControl { name, is_turning_cycle: row.facts.is_turning_cycle })
+    })
 }
 
 /// Returns the row of a code × 10 that the user declares.
@@ -103,6 +109,17 @@ mod tests {
             assert!(ascends, "G{}", spelled(pair[1].code));
         }
         assert!(find(143).row_for(Dialect::Fanuc31i).is_none());
+    }
+
+    /// G70 to G72 of a Haas are turning cycles on a lathe; G187 is none.
+    #[test]
+    fn the_control_that_has_a_code_is_named() {
+        let other = |code| other_control(code).map(|other| (other.name, other.is_turning_cycle));
+        for code in [700, 710, 720] {
+            assert_eq!(other(code), Some(("haas-ngc", true)), "{code}");
+        }
+        assert_eq!(other(1870), Some(("haas-ngc", false)));
+        assert_eq!(other(9990), None);
     }
 
     #[test]

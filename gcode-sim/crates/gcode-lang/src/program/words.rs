@@ -317,7 +317,7 @@ impl Lowering {
                 return Err(Alarm::IllegalMinus { letter: 'G' }.located_at(word.span));
             }
             WordValue::Literal(number) => literal(letter, *number).ok_or_else(|| {
-                Alarm::ImproperGCode { code: number.value().to_string(), control: None }.located_at(word.span)
+                Alarm::ImproperGCode { code: number.value().to_string(), other: None }.located_at(word.span)
             })?,
             // All axes have the same increment.
             WordValue::Expr(expr) if letter == AX => self.lower_computed_word(expr, b'X')?,

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use gcode_lang::alarm::kinds::PS0010;
 use gcode_lang::alarm::lacking_code_help;
 use gcode_lang::control::Dialect;
-use gcode_lang::program::g_codes::{Effect, spelled};
+use gcode_lang::program::g_codes::{Effect, other_control, spelled};
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::{LoweredWord, WordOperand};
 
@@ -43,13 +43,11 @@ fn code_fault(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String,
     let settings = context.settings;
     let is_call = |code: u32| settings.code_calls.find_call(word.letter, code).is_some();
     match (word.letter, word.value) {
-        (b'G', WordOperand::G(code, found)) if !is_call(code) => {
+        (b'G', WordOperand::G(code, _)) if !is_call(code) => {
             let name = format!("G{}", spelled(code));
             match context.g_code_row(word) {
                 None => {
-                    let has_code = |(_, dialect): &&(&str, Dialect)| found.row_for(*dialect).is_some();
-                    let other = Dialect::ALL.iter().find(has_code).map(|(other, _)| *other);
-                    let help = lacking_code_help(&spelled(code), other);
+                    let help = lacking_code_help(&spelled(code), other_control(code));
                     Some((format!("{PS0010}: {} has no {name}", settings.codes.name()), Some(help)))
                 }
                 Some(row) if row.effect == Effect::NotSimulated => {

@@ -13,6 +13,11 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                     "remove the second call or block: the same tool drills this hole twice; a cycle's block that only \
                      prepares the points below it has K0 (L0 on a Haas)",
                 ),
+            None if comparison.nominal.is_empty() => Diagnostic::new(&HOLE_EXTRA, explain(comparison, index))
+                .help(
+                    "give --reference with the holes of the drawing: `gcode-sim new reference --from` writes those that \
+                     the program makes, to be corrected; if this is milling, state it in [[stock.pocket]]",
+                ),
             None => Diagnostic::new(&HOLE_EXTRA, explain(comparison, index))
                 .help("remove it from the program, or correct its position"),
         };
@@ -31,8 +36,9 @@ pub(in crate::verify) fn explain(comparison: &Comparison<'_>, extra: usize) -> S
         return format!("hole {} is drilled a second time", comparison.id(nominal));
     }
     let p = comparison.actual[extra].entry;
-    format!(
-        "extra hole at x {:.3} y {:.3} z {:.3} on the part: the reference has no hole there",
-        p.x, p.y, p.z
-    )
+    let lacking = match comparison.nominal.is_empty() {
+        true => "no reference has it",
+        false => "the reference has no hole there",
+    };
+    format!("extra hole at x {:.3} y {:.3} z {:.3} on the part: {lacking}", p.x, p.y, p.z)
 }
