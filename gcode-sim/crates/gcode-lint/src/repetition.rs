@@ -97,9 +97,9 @@ impl Repetitions {
         }
         let program = memory.get(id);
         let mut repeated = RepeatedBlocks::of(program, settings, &JumpTargets::default());
-        if !repeated.numbers.is_empty() {
+        if !repeated.numbers.is_empty() && repeated.is_left_out.contains(&true) {
             let targets = JumpTargets::of(program, &repeated.others);
-            if repeated.numbers().any(|left_out| targets.has(left_out.number)) {
+            if repeated.numbers.iter().any(|(_, of_run)| targets.has(of_run.number)) {
                 repeated = RepeatedBlocks::of(program, settings, &targets);
             }
         }
@@ -180,7 +180,7 @@ impl Repetitions {
 #[derive(Debug, Default)]
 struct RepeatedBlocks {
     is_left_out: Vec<bool>,
-    /// Sequence numbers of blocks that repeat others, also of those that are kept as the last of their run.
+    /// Sequence numbers of the blocks of runs.
     numbers: Vec<(OpIndex, LeftOutNumber)>,
     /// Blocks that belong to no run.
     others: Vec<OpIndex>,
@@ -229,8 +229,8 @@ impl RepeatedBlocks {
                 if called.is_some() {
                     *run.calls.entry(first).or_default() += 1;
                 }
-                found.numbers.extend(number.map(|number| (block, LeftOutNumber { number, block: span })));
             }
+            found.numbers.extend(number.map(|number| (block, LeftOutNumber { number, block: span })));
             run.modes = after;
         });
         found.end_run(run, source);
@@ -426,6 +426,8 @@ mod tests {
         for call in others {
             assert_eq!(left_out(&format!("O1\n{}", format!("{call}\n").repeat(5))), 0, "{call}");
         }
+        let targets = "GOTO10\nN20 G65P2\nN20 G65P2\nN20 G65P2\nN10 G65P2F1\nM30\nO2\nM99\n";
+        assert_eq!(left_out(&format!("O1\n{targets}")), 0, "the run ends before N10: its last call stays");
         assert_eq!(left_out("O1\nX1.\nX2. (A)\nX3.(B) \nX4.\n"), 2, "comments are none of the form");
         let read = ["(CHECK-OFF MISSING-FEED)", "(IF[#1 EQ 1]goto 5)", "(A)(B)", "(A(B))", "(A", "(A) Y1."];
         for comment in read {
