@@ -168,6 +168,8 @@ fn strips(
     let is_across = TOUCH_DEPTH < (paths.travel - out * along).norm();
     let length = match is_across {
         _ if metal.is_endless(part) => f64::INFINITY,
+        // The height of a cone is that of its place at the lower end; `risen` is the rest.
+        true if part.taper.slope != 0.0 => part.to - part.from,
         true => part.to - part.from + paths.rise,
         // Along its axis a part sweeps no more than its place at the lower end, but for a cylinder that is shorter than the way.
         false => (part.to - part.from).max(if part.taper.slope == 0.0 { along.abs() } else { 0.0 }),
@@ -234,12 +236,21 @@ pub(super) fn contact(
 ) -> Contact {
     match contact_at_surface(part, axis, paths, metal, judged) {
         Contact::Clear => {
-            let inner = inside_walls(part, axis, paths, metal).into_iter();
-            let mut contacts = inner.map(|inner| contact_at_surface(&inner, axis, paths, metal, judged));
+            let others = inside_walls(part, axis, paths, metal).into_iter().chain(risen(part, paths));
+            let mut contacts = others.map(|other| contact_at_surface(&other, axis, paths, metal, judged));
             contacts.find(|contact| !matches!(contact, Contact::Clear)).unwrap_or(Contact::Clear)
         }
         found => found,
     }
+}
+
+/// Returns the widest circle of a cone, which sweeps a cylinder where the tip rises.
+fn risen(part: &ToolPart, paths: &TipPaths) -> Option<ToolPart> {
+    let Taper { slope, .. } = part.taper;
+    let height = if 0.0 < slope { part.to } else { part.from };
+    let circle =
+        ToolPart { from: height, to: height, taper: Taper::cylinder(part.taper.at(height)), ..*part };
+    (slope != 0.0 && 0.0 < paths.rise).then_some(circle)
 }
 
 /// Returns the cylinders inside a part that end in the walls of the holes which it covers whole: without a body the metal ends
