@@ -20,11 +20,11 @@ impl Request {
     }
 }
 
-/// Returns a control before its first block, set up as [`run`] does; `call` is a block to run instead of the program, which it
+/// Returns a control before its first block, set up as [`crate::run`] does; `call` is a block to run instead of the program, which it
 /// can call.
 ///
 /// # Errors
-/// See [`run`].
+/// See [`crate::run`].
 pub fn set_up(request: &Request, call: Option<&str>) -> Result<Control, SessionError> {
     let (mut memory, _) = load(request)?;
     if let Some(call) = call {
