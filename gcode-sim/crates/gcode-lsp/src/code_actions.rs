@@ -39,12 +39,10 @@ pub(crate) fn code_actions(
     };
     let mut actions = Vec::new();
     if is_wanted(&CodeActionKind::QUICKFIX) {
-        let given = params.context.diagnostics.iter();
-        let published =
-            snapshot.published.get(&file).map(|published| published.as_slice()).unwrap_or_default();
-        let here = published.iter().filter(|_| params.context.diagnostics.is_empty());
-        let here = here.filter(|diagnostic| touches(diagnostic.range, params.range));
-        for diagnostic in given.chain(here) {
+        let given = &params.context.diagnostics;
+        let own = if given.is_empty() { snapshot.diagnostics(file) } else { Arc::default() };
+        let here = own.iter().filter(|diagnostic| touches(diagnostic.range, params.range));
+        for diagnostic in given.iter().chain(here) {
             quick_fixes(snapshot, file, diagnostic, &mut actions)?;
         }
     }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use gcode_ide::{FileId, FileIndex, Project, TextEdit, TextRange};
 use gcode_lang::source::Bytes;
 use gcode_lang::syntax::ast::ProgramName;
+use gcode_lint::CheckedBlocks;
 use lsp_types::{
     Diagnostic, Location, TextDocumentContentChangeEvent, TextDocumentIdentifier, TextDocumentPositionParams,
     Uri,
@@ -16,6 +17,7 @@ use crate::client::Client;
 use crate::configuration::EditorSettings;
 use crate::document_uri;
 use crate::failure::Failure;
+use crate::findings;
 use crate::overlay::Overlay;
 use crate::program_setup::ProgramSetup;
 use crate::runs::Runs;
@@ -39,8 +41,8 @@ pub(crate) struct Snapshot {
     pub folders: Arc<Vec<PathBuf>>,
     pub project: Arc<Project>,
     pub documents: Arc<BTreeMap<FileId, OpenDocument>>,
-    /// Diagnostics last published for open documents.
-    pub published: Arc<BTreeMap<FileId, Arc<Vec<Diagnostic>>>>,
+    /// Diagnostics last published for documents, with the version of each; `None` for a file of the disk.
+    pub published: Arc<BTreeMap<FileId, (Option<i32>, Arc<Vec<Diagnostic>>)>>,
     /// Runs of this state of the texts.
     pub runs: Arc<Runs>,
     addresses: Arc<Addresses>,
@@ -55,6 +57,20 @@ struct Addresses {
 }
 
 impl Snapshot {
+    /// Returns the diagnostics of a document: those published if they are of its present text, else those of a check.
+    pub(crate) fn diagnostics(&self, file: FileId) -> Arc<Vec<Diagnostic>> {
+        let version = self.documents.get(&file).map(|document| document.version);
+        let published = self.published.get(&file).filter(|(published, _)| *published == version);
+        let checked = || {
+            let (text, uri, setup) = (self.text(file)?, self.uri(file)?, self.setup(file));
+            let conditions = (&setup, BTreeMap::new());
+            let checked =
+                findings::check(uri, &text, CheckedBlocks::default(), conditions, &self.files, &self.client);
+            Some(Arc::new(checked.0.diagnostics))
+        };
+        published.map(|(_, diagnostics)| Arc::clone(diagnostics)).or_else(checked).unwrap_or_default()
+    }
+
     pub(crate) fn new(files: Overlay) -> Self {
         Self {
             client: Arc::default(),

@@ -408,7 +408,7 @@ impl ServerState {
         }
         let CheckedDocument { called, surroundings, is_in_project, stamps, .. } = checked;
         self.checked.insert(file, CheckBasis { called, surroundings, is_in_project, stamps });
-        let published = Arc::new(checked.diagnostics.clone());
+        let published = (version, Arc::new(checked.diagnostics.clone()));
         Arc::make_mut(&mut self.snapshot.published).insert(file, published);
         self.publish(uri, version, checked.diagnostics);
         if self.is_outdated(file, changes) {

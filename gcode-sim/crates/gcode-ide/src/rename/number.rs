@@ -6,10 +6,17 @@ use super::file_edit;
 use crate::entry::EntryKind;
 use crate::navigation::Access;
 use crate::project::{ProgramKey, Project};
-use crate::text::{FileEdit, Refusal, TextRange};
+use crate::text::{FileEdit, Refusal, TextRange, lossy};
 
 /// Largest sequence number.
 pub(crate) const MAX_NUMBER: u32 = 99_999_999;
+
+/// Returns the word of a statement, or the letter of an address, right before a range.
+fn letters_before(text: &[u8], range: TextRange) -> String {
+    let before = text[..range.start as usize].trim_ascii_end();
+    let letters = before.iter().rev().take_while(|byte| byte.is_ascii_alphabetic()).count();
+    lossy(&before[before.len() - letters..])
+}
 
 impl Project {
     /// Refuses a sequence number that cannot be renamed, whatever its new number.
@@ -92,7 +99,14 @@ impl Project {
                 let reason = match entry.kind {
                     EntryKind::Unreadable => format!("cannot be read: {}", text()),
                     EntryKind::Call => "makes N an argument of every block".to_owned(),
-                    _ => format!("jumps to {}, which may be any sequence number", text()),
+                    EntryKind::ComputedReturn => {
+                        format!("may lead to any sequence number by M99 P{}", text())
+                    }
+                    _ => format!(
+                        "may lead to any sequence number by {}{}",
+                        letters_before(index.text(), entry.range),
+                        text()
+                    ),
                 };
                 let reason = format!("{} {reason}", self.place(other, entry.range));
                 return Err(Refusal::new(reason).at(other.file, entry.range));

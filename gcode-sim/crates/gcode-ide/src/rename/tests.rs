@@ -110,11 +110,11 @@ fn a_sequence_number_changes_with_its_jumps() {
 #[test]
 fn a_sequence_number_that_cannot_be_followed_is_refused() {
     for (text, reason) in [
-        ("O1\nN$010\nGOTO#1\n", "jumps to #1"),
-        ("O2\nN$010 M99\nO1\nM98 P2 Q#1\n", "jumps to #1"),
-        ("O1\nM98 P#1 Q#2\nN$010\n", "jumps to #2"),
-        ("O1\nN$010\nM99 P#2\n", "jumps to #2"),
-        ("O1\nN$010\nM98 P2\nM30\nO2\nM99 P#2\n", "jumps to #2"),
+        ("O1\nN$010\nGOTO#1\n", "by GOTO#1"),
+        ("O2\nN$010 M99\nO1\nM98 P2 Q#1\n", "by Q#1"),
+        ("O1\nM98 P#1 Q#2\nN$010\n", "by Q#2"),
+        ("O1\nN$010\nM99 P#2\n", "by M99 P#2"),
+        ("O1\nN$010\nM98 P2\nM30\nO2\nM99 P#2\n", "by M99 P#2"),
         ("O1\nN$010\nN20\n", "N20 is in use"),
         ("O1\nN$010\nN10\n", "more than once"),
         ("O1\nN$010\nGOTO 20\nM30\n", "which is missing, would find it"),
