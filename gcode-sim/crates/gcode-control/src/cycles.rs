@@ -12,8 +12,8 @@ use gcode_lang::control::Dialect;
 use gcode_lang::motion::{AxisIndex, Position};
 use gcode_lang::program::code_facts::Letters;
 use gcode_lang::program::cycles::{Cycle, CycleStep};
-use gcode_lang::program::g_codes::HolePattern;
-use gcode_lang::program::modes::{Distance, Plane, Polar, ReturnTo};
+use gcode_lang::program::g_codes::{HolePattern, spelled};
+use gcode_lang::program::modes::{Distance, FeedMode, Plane, Polar, ReturnTo};
 use gcode_lang::units::Deg;
 
 /// Holes round the current position, or on a straight line from it.
@@ -61,6 +61,10 @@ impl Planner<'_> {
         cycle: &'static Cycle,
         pattern: Option<BoltHolePattern>,
     ) -> ExecResult<()> {
+        // Whether F is the time of each stroke or of the cycle, or is refused, manuals don't say.
+        if plan.state.modal.feed_mode == FeedMode::InverseTime {
+            return Err(self.code_in_mode(spelled(cycle.code), ("G93", "G94")));
+        }
         let axis = self.locate(self.drilling_axis(&plan.state))?;
         let scale_factor = self.locate(scale_factor_along(plan, cycle, axis))?;
         let repeats = self.cycle_repeats(pattern)?;

@@ -14,7 +14,7 @@ use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Settings;
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::cycles::Cycle;
-use gcode_lang::program::modes::{CutterSide, Length, Mirror, Motion, Rotation, Scaling};
+use gcode_lang::program::modes::{CutterSide, FeedMode, Length, Mirror, Motion, Rotation, Scaling};
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
 use gcode_lang::source::Span;
 
@@ -50,6 +50,8 @@ pub struct CertainModes {
     pub level: bool,
     /// G43.4 or G43.5, or G234 of a Haas.
     pub tip: bool,
+    /// G93.
+    pub inverse_time: bool,
 }
 
 impl CertainModes {
@@ -63,6 +65,7 @@ impl CertainModes {
         aligned: false,
         level: false,
         tip: false,
+        inverse_time: false,
     };
     /// Those at power-on.
     pub const POWER_ON: Self = Self { level: true, ..Self::NONE };
@@ -78,6 +81,7 @@ impl CertainModes {
             aligned: self.aligned & other.aligned,
             level: self.level & other.level,
             tip: self.tip & other.tip,
+            inverse_time: self.inverse_time & other.inverse_time,
         }
     }
 }
@@ -152,7 +156,8 @@ impl StaticPlanner {
     ) -> Option<LocatedAlarm> {
         let state = &mut self.executor.registers.state;
         (state.modal.motion, state.modal.cycle) = (modes.motion, modes.cycle);
-        let CertainModes { rotation, scaling, mirror, cutter, plane, aligned, level: _, tip } = modes.certain;
+        let CertainModes { rotation, scaling, mirror, cutter, plane, aligned, level: _, tip, inverse_time } =
+            modes.certain;
         state.modal.rotation = match (plane, rotation) {
             (true, _) => Rotation::Tilted,
             (false, true) => Rotation::On,
@@ -168,6 +173,7 @@ impl StaticPlanner {
         state.modal.scaling = if scaling { Scaling::On } else { Scaling::Off };
         state.modal.mirror = if mirror { Mirror::On } else { Mirror::Off };
         state.modal.cutter = if cutter { CutterSide::Left } else { CutterSide::Off };
+        state.modal.feed_mode = if inverse_time { FeedMode::InverseTime } else { FeedMode::PerMinute };
         state.cycle = CycleState { q: modes.has_pecks.then_some(ANY_NUMBER), ..CycleState::default() };
         self.executor.flow.block = block;
         self.words.clear();

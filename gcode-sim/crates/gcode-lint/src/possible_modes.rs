@@ -120,6 +120,7 @@ impl PossibleModes {
             Effect::FeedMode(mode) => Self {
                 is_inverse_time: mode == FeedMode::InverseTime,
                 is_other_feed_mode: mode != FeedMode::InverseTime,
+                certain: CertainModes { inverse_time: mode == FeedMode::InverseTime, ..self.certain },
                 ..self
             },
             Effect::Distance(distance) => Self { is_absolute: distance == Distance::Absolute, ..self },

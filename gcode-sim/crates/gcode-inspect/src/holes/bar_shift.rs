@@ -1,9 +1,12 @@
 //! Boring bars that are shifted off the wall of their hole with the spindle stopped.
-use nalgebra::Point3;
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::line::MAX_BAR_SHIFT;
+use super::rapids::format_point;
 use super::{HoleExtractor, MotionKind};
+use crate::findings::RAPID_INTO_PART;
 use crate::machine::{TOUCH_DEPTH, ToolKind};
+use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, SpindleDirection};
 use gcode_lang::source::Span;
 
@@ -55,6 +58,7 @@ impl HoleExtractor<'_> {
         };
         let (along, across) = split(from);
         if across <= TOUCH_DEPTH {
+            self.check_shift_in_hole(event, from, &axis);
             return;
         }
         match self.bar_shift.home {
@@ -69,5 +73,27 @@ impl HoleExtractor<'_> {
             }
             None => {}
         }
+    }
+
+    /// Reports the edge of a shifted bar that goes through metal in rapid: it is nearer to the axis of the hole by the shift.
+    fn check_shift_in_hole(&mut self, event: &Event<'_>, from: &Point3<f64>, axis: &Unit<Vector3<f64>>) {
+        let Some(home) = self.bar_shift.home.filter(|_| self.surface.is_some()) else { return };
+        let Some(diameter) = self.machine.diameter_of(self.setup.tool) else { return };
+        let by = from - home;
+        let shift = by - axis.into_inner() * by.dot(axis);
+        let (length, radius) = (shift.norm(), diameter / 2.0);
+        let Some(direction) = Unit::try_new(shift, TOUCH_DEPTH).filter(|_| length < radius) else { return };
+        let edge = direction.into_inner() * (TOUCH_DEPTH - radius);
+        let Some(found) = self.metal.uncut(&[from + edge, self.pose.tip + edge]) else { return };
+        self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+            let (reach, point) = (radius - length, format_point(&found.point));
+            let message = format!(
+                "the edge of the boring bar, shifted by {length:.3} mm, is {reach:.3} mm from the axis of its hole and \
+                 meets metal in rapid at {point}"
+            );
+            Diagnostic::new(kind, message).help(
+                "shift the bar by more than half its diameter less the radius of the hole: Q of the cycle",
+            )
+        });
     }
 }

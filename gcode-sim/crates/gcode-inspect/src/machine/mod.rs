@@ -108,7 +108,7 @@ pub struct Tool {
     pub kind: Option<ToolKind>,
     /// Full angle of the point, 180° of a flat end; `None` if unknown.
     pub point_angle: Option<Deg>,
-    /// Hand; `None` for a right-hand tool.
+    /// Hand that the machine file states.
     pub hand: Option<Hand>,
 }
 
@@ -117,6 +117,11 @@ impl Tool {
     /// touched off at the part.
     pub fn stated_length_offset(&self) -> Option<f64> {
         self.length.or(self.length_offset)
+    }
+
+    /// Returns its hand: right unless stated; `None` if its kind is unknown too.
+    pub fn known_hand(&self) -> Option<Hand> {
+        self.hand.or(self.kind.map(|_| Hand::Right))
     }
 }
 

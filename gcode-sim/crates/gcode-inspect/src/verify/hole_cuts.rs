@@ -64,7 +64,7 @@ impl<'a> Cut<'a> {
                 start: depth(&pass.cut.start),
                 tip: depth(&pass.cut.bottom) + below,
                 kind: tool.and_then(|tool| tool.kind).or(is_end_mill.then_some(ToolKind::EndMill)),
-                hand: tool.and_then(|tool| tool.hand),
+                hand: tool.and_then(|tool| tool.known_hand()),
                 point,
                 may_be_cone,
                 is_void: false,

@@ -184,6 +184,7 @@ mod tests {
             ("O1\nG68.2 X0 Y0 Z0 I0 J9. K0\nG53.1\nG69\nG53.1\nM30\n", 5),
             ("O1\nG68.2 X0 Y0 Z0 I0 J9. K0\nG53.1\nG92 X0\nG69\nG92 X0\nM30\n", 4),
             ("O1\nG68.2 X0 Y0 Z0 I0 J9. K0\nG43.4 H1\nG69\nG43.4 H1\nG49\nM30\n", 3),
+            ("O1\nG93 G1 X1. F9.\nG81 Z-5. R1. F9.\nG80\nG94\nG81 Z-5. R1. F9.\nM30\n", 3),
             ("O1\nG43.4 H1\nG68.2 X0 Y0 Z0 I0 J9. K0\nG49\nG68.2 X0 Y0 Z0 I0 J9. K0\nG69\nM30\n", 3),
         ] {
             assert_eq!(lines(&RULE, text), [line], "{text}");
@@ -191,6 +192,8 @@ mod tests {
         for text in [
             "O1\nIF[#500 EQ 1]GOTO 5\nG68 X0 Y0 R10.\nN5 G28 Z0\nM30\n",
             "O1\nG68 X0 Y0 R10.\nM98 P2\nG28 Z0\nM30\nO2\nG69\nM99\n",
+            "O1\nG93 G1 X1. F9.\nG95 G81 Z-5. R1. F.1\nM30\n",
+            "O1\nIF[#500 EQ 1]GOTO 5\nG93 G1 X1. F9.\nN5 G81 Z-5. R1. F9.\nM30\n",
             "O1\nG68 X0 Y0 R10.\nG53\nG69\nM30\n",
             "O1\nG68 X0 Y0 R10.\nG#1\nG28 Z0\nM30\n",
             "O2\nG28 Z0\nM99\n",

@@ -204,7 +204,9 @@ fn hand(id: &str, feature: &Feature, cut: &Cut<'_>) -> Option<Diagnostic> {
             (format!("cuts a {} thread, nominal {nominal}", name(own)), remedy.to_owned())
         }
         Some(tap) if tap != feature.hand => {
-            (format!("is a {} tap, nominal {nominal}", name(tap)), format!("use a {nominal} tap"))
+            let word = if feature.hand == Hand::Left { "left" } else { "right" };
+            let remedy = format!("use a {nominal} tap, with hand = \"{word}\" in the machine file");
+            (format!("is a {} tap, nominal {nominal}", name(tap)), remedy)
         }
         _ => return None,
     };
