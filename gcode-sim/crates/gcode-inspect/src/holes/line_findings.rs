@@ -156,7 +156,10 @@ impl HoleExtractor<'_> {
         };
         self.cycles_in_air.add(&CYCLE_IN_AIR, line.backtrace(), 0, |kind| {
             Diagnostic::new(kind, format!("a drilling cycle cuts nothing: {place}"))
-                .help("check X, Y and Z of the cycle; remove it if it is not meant to cut")
+                .help(
+                    "check X, Y and Z of the cycle; if it drills another part, state all parts in one list and one [stock] over \
+                     all, or verify each with its own [part]; remove it if it is not meant to cut",
+                )
         });
     }
 
