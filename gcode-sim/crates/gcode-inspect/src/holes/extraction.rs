@@ -64,6 +64,8 @@ pub struct HoleExtraction {
     pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
     /// Warnings about drilling cycles that cut nothing.
     pub(crate) cycles_in_air: Vec<Diagnostic>,
+    /// Number of their strokes.
+    pub(crate) strokes_in_air: u64,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }

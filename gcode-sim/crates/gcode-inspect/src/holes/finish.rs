@@ -64,6 +64,7 @@ impl HoleExtractor<'_> {
             milled_blocks: self.milled_blocks.finish(),
             feeds_in_air: self.feeds_in_air,
             cycles_in_air: self.cycles_in_air.finish(),
+            strokes_in_air: self.strokes_in_air,
             is_removal_cut_short: self.metal.removed.is_full,
         }
     }

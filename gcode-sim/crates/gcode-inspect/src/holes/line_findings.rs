@@ -154,6 +154,7 @@ impl HoleExtractor<'_> {
                 format!("it stays {height:.3} mm above the part, at any position of {names}")
             }
         };
+        self.strokes_in_air += 1;
         self.cycles_in_air.add(&CYCLE_IN_AIR, line.backtrace(), 0, |kind| {
             Diagnostic::new(kind, format!("a drilling cycle cuts nothing: {place}"))
                 .help(

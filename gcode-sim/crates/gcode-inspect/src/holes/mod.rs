@@ -140,6 +140,8 @@ pub struct HoleExtractor<'m> {
     feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
     /// Cycles that cut nothing.
     cycles_in_air: Findings,
+    /// Strokes of these cycles.
+    strokes_in_air: u64,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -228,6 +230,7 @@ impl<'m> HoleExtractor<'m> {
             gouge_count: 0,
             feeds_in_air: Vec::new(),
             cycles_in_air: Findings::default(),
+            strokes_in_air: 0,
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),

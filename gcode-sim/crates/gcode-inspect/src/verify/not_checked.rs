@@ -167,6 +167,13 @@ pub(super) fn list(
         let reason = format!("the machine file has no diameter of {tool}; rapids near its feeds pass");
         all.push(NotChecked::gap(UNSIZED, reason));
     }
+    if 0 < extraction.strokes_in_air {
+        let (count, plural) =
+            (extraction.strokes_in_air, if extraction.strokes_in_air == 1 { "" } else { "s" });
+        let what = format!("{count} stroke{plural} of drilling cycles in the air");
+        let reason = "the part has no metal there: the cycle is wrong, or it drills another part, whose holes are not compared";
+        all.push(NotChecked::gap(what, reason));
+    }
     if 0 < extraction.milled_strokes {
         let (count, plural) =
             (extraction.milled_strokes, if extraction.milled_strokes == 1 { "" } else { "s" });
