@@ -31,6 +31,9 @@ pub(crate) struct OpenDocument {
     pub text: Arc<TextDocument>,
 }
 
+/// Version of a document, `None` for a file of the disk, and the diagnostics of that text.
+type VersionedDiagnostics = (Option<i32>, Arc<Vec<Diagnostic>>);
+
 /// State of documents, files and settings.
 #[derive(Clone)]
 pub(crate) struct Snapshot {
@@ -41,8 +44,8 @@ pub(crate) struct Snapshot {
     pub folders: Arc<Vec<PathBuf>>,
     pub project: Arc<Project>,
     pub documents: Arc<BTreeMap<FileId, OpenDocument>>,
-    /// Diagnostics last published for documents, with the version of each; `None` for a file of the disk.
-    pub published: Arc<BTreeMap<FileId, (Option<i32>, Arc<Vec<Diagnostic>>)>>,
+    /// Diagnostics last published.
+    pub published: Arc<BTreeMap<FileId, VersionedDiagnostics>>,
     /// Runs of this state of the texts.
     pub runs: Arc<Runs>,
     addresses: Arc<Addresses>,
