@@ -202,7 +202,10 @@ Keys of the launch request:
   reference    hole list or job file, for stops at bad holes
   stopOnEntry  stop in front of the first block
 
-gcode.toml and machine.toml count as for the other commands; the launch wins.")]
+gcode.toml and machine.toml count as for the other commands; the launch wins.
+
+Examples:
+  gcode-sim dap     (an editor starts it; the launch request of a program: {\"program\": \"O1234.nc\", \"stopOnEntry\": true})")]
     Dap,
 
     /// Explain an alarm or finding, with an example and a fix

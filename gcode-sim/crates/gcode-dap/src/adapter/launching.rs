@@ -15,6 +15,7 @@ const STOPPED: i64 = 3;
 
 impl<H: Host> Adapter<H> {
     pub(super) fn initialize(&mut self, arguments: &Initialize) -> Answer {
+        self.is_initialized = true;
         self.client = Client {
             first_line: i64::from(arguments.lines_start_at_1),
             first_column: i64::from(arguments.columns_start_at_1),

@@ -46,6 +46,7 @@ pub struct Adapter<H> {
     canonical: Rc<dyn Fn(&str) -> String>,
     outbox: Outbox,
     client: Client,
+    is_initialized: bool,
     files: ProgramFiles,
     breakpoints: RequestedBreakpoints,
     launch: Option<Launch>,
@@ -117,6 +118,7 @@ impl<H: Host> Adapter<H> {
             host,
             outbox: Outbox::default(),
             client: Client::default(),
+            is_initialized: false,
             files: ProgramFiles::default(),
             breakpoints: RequestedBreakpoints::default(),
             launch: None,
@@ -188,6 +190,11 @@ impl<H: Host> Adapter<H> {
     }
 
     fn handle(&mut self, command: &str, arguments: Value) -> Answer {
+        match (command, self.is_initialized) {
+            ("initialize", true) => return Err("the session is initialized already".to_owned()),
+            ("initialize", false) | ("disconnect", _) | (_, true) => {}
+            (_, false) => return Err(format!("the request 'initialize' comes before '{command}'")),
+        }
         match command {
             "initialize" => self.initialize(&read(command, or_empty(arguments))?),
             "launch" => self.launch(read(command, arguments)?),
@@ -238,8 +245,11 @@ impl<H: Host> Adapter<H> {
     }
 }
 
-/// Reads the arguments of a request.
-fn read<T: DeserializeOwned>(command: &str, arguments: Value) -> Result<T, String> {
+/// Reads the arguments of a request. One that is null is absent.
+fn read<T: DeserializeOwned>(command: &str, mut arguments: Value) -> Result<T, String> {
+    if let Value::Object(all) = &mut arguments {
+        all.retain(|_, argument| !argument.is_null());
+    }
     serde_json::from_value(arguments).map_err(|error| format!("arguments of '{command}': {error}"))
 }
 
