@@ -24,16 +24,20 @@ pub(super) struct Bore {
 impl Comparison<'_> {
     /// Returns the diameter of a nominal hole; where the list has none, that of its finishing tool.
     fn made_diameter(&self, index: usize) -> Option<f64> {
-        let pair = || self.pairs.binary_search_by_key(&index, |pair| pair.nominal).ok();
-        self.nominal[index].widest_diameter().or_else(|| self.actual[self.pairs[pair()?].actual].diameter)
+        self.nominal[index].widest_diameter().or_else(|| self.actual[self.pair_of(index)?.actual].diameter)
+    }
+
+    /// Returns the largest diameter that a hole without one in the list has, mm.
+    fn widest_open(&self) -> f64 {
+        let open = || self.pairs.iter().filter(|pair| self.nominal[pair.nominal].widest_diameter().is_none());
+        let widest = || open().filter_map(|pair| self.actual[pair.actual].diameter).fold(0.0, f64::max);
+        *self.widest_open.get_or_init(widest)
     }
 
     /// Returns the nominal bore, as a cylinder, in whose wall a hole ends: an oil hole.
-    pub(super) fn bore_at_end(&self, hole: &Hole) -> Option<Bore> {
-        let own = self.nominal.iter().position(|other| std::ptr::eq(other, hole));
-        let open = self.pairs.iter().filter(|pair| self.nominal[pair.nominal].widest_diameter().is_none());
-        let widest = open.filter_map(|pair| self.actual[pair.actual].diameter).fold(0.0, f64::max);
-        let margin = Vector3::repeat(widest / 2.0);
+    pub(super) fn bore_at_end(&self, own: usize) -> Option<Bore> {
+        let hole = &self.nominal[own];
+        let margin = Vector3::repeat(self.widest_open() / 2.0);
         let collars = self.collars.get_or_init(|| EntryPlanes::of(self.nominal, self.tolerances.depth));
         let (out, end) = (Vector3::from(hole.axis), bottom(hole));
         let mut found = None;
@@ -44,7 +48,7 @@ impl Comparison<'_> {
                 return;
             };
             let bore = Rod { radius: diameter / 2.0, ..rod };
-            let radius = own.and_then(|own| self.made_diameter(own)).unwrap_or(0.0) / 2.0;
+            let radius = self.made_diameter(own).unwrap_or(0.0) / 2.0;
             found = Bore::of(hole, radius, (&bore, index), self.tolerances.depth);
         });
         found

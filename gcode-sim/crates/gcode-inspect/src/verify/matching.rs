@@ -69,6 +69,8 @@ pub struct Comparison<'a> {
     pub(super) entries: OnceCell<PointTree>,
     /// Metal round the nominal holes, for the first query.
     pub(super) collars: OnceCell<EntryPlanes>,
+    /// Largest diameter of a drilled hole whose list has none, mm, for the first query.
+    pub(super) widest_open: OnceCell<f64>,
 }
 
 impl<'a> Comparison<'a> {
@@ -179,6 +181,7 @@ impl<'a> Comparison<'a> {
             nominal_by_line,
             entries: OnceCell::new(),
             collars: OnceCell::new(),
+            widest_open: OnceCell::new(),
         }
     }
 
@@ -291,6 +294,12 @@ impl<'a> Comparison<'a> {
         let far = pair.from_far_side.filter(|_| is_narrow).map(|index| &self.actual[index]);
         let is_as_wide = |far: &&DrilledHole| off(far).is_some_and(|off| !exceeds(off.abs(), limit));
         far.filter(is_as_wide).unwrap_or(near)
+    }
+
+    /// Returns the pair of a nominal hole; `None` of a missing one.
+    pub(super) fn pair_of(&self, nominal: usize) -> Option<&HolePair> {
+        let place = self.pairs.binary_search_by_key(&nominal, |pair| pair.nominal).ok()?;
+        Some(&self.pairs[place])
     }
 
     /// Returns the nominal hole that an extra hole drills a second time; `None` if there is none.

@@ -50,8 +50,7 @@ impl<'a> Comparison<'a> {
             let cosine = Vector3::from(other.axis).dot(&out);
             let is_open = MIN_ALIKE_COSINE < cosine || other.through && cosine < -MIN_ALIKE_COSINE;
             if !std::ptr::eq(other, hole) && is_open && aside <= self.tolerances.position {
-                let pair = self.pairs.binary_search_by_key(&index, |pair| pair.nominal);
-                found.extend(pair.ok().map(|pair| &self.actual[self.pairs[pair].actual]));
+                found.extend(self.pair_of(index).map(|pair| &self.actual[pair.actual]));
             }
         });
         found.into_iter()

@@ -42,6 +42,8 @@ pub(in crate::verify) struct FeatureFindings {
 /// Cuts of a nominal hole, its findings and what they leave open.
 pub(super) struct Judgement<'c> {
     pub comparison: &'c Comparison<'c>,
+    /// Index of the nominal hole.
+    pub index: usize,
     pub nominal: &'c Hole,
     pub id: &'c str,
     /// Cuts from the side of the nominal entry, in the order of the program.
@@ -105,7 +107,9 @@ fn judge<'c>(
     size_mills(nominal, &mut near, comparison.tolerances);
     let id = comparison.id(pair.nominal);
     let (findings, gaps) = (Vec::new(), Vec::new());
-    let mut judged = Judgement { comparison, nominal, id, near, far, followers, blank, findings, gaps };
+    let index = pair.nominal;
+    let mut judged =
+        Judgement { comparison, index, nominal, id, near, far, followers, blank, findings, gaps };
     let surface = blank.body;
     if nominal.features.is_empty() {
         judged.judge_one_diameter(drilled, surface);

@@ -19,8 +19,7 @@ pub(super) fn strokes_through<'c>(
     let hole = &comparison.nominal[pair.nominal];
     let mut cuts = Vec::new();
     for next in followers {
-        let is_other = |other: &&HolePair| other.nominal == next.index && other.actual != pair.actual;
-        let other = comparison.pairs.iter().find(is_other);
+        let other = comparison.pair_of(next.index).filter(|other| other.actual != pair.actual);
         let Some(drilled) = other.map(|other| &comparison.actual[other.actual]) else { continue };
         if 0.0 < drilled.axis.dot(&Vector3::from(hole.axis)) {
             // A tap may turn in the wider hole.
@@ -40,8 +39,7 @@ impl Judgement<'_> {
         drilled: &DrilledHole,
         machine: &Machine,
     ) -> Option<Diagnostic> {
-        let Comparison { pairs, actual, .. } = self.comparison;
-        let other = &actual[pairs.iter().find(|pair| pair.nominal == index)?.actual];
+        let other = &self.comparison.actual[self.comparison.pair_of(index)?.actual];
         let strokes = |drilled| {
             let cuts = Cut::all(next, drilled, machine).into_iter();
             let is_whole = |cut: &Cut<'_>| !exceeds(next.depth, cut.full_depth(0.0).unwrap_or(cut.tip));

@@ -38,8 +38,7 @@ fn explain_depths(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) 
     findings.fold(&DEPTH_KINDS, |subject| match subject {
         Subject::Extra(extra) => is_wrong(extra),
         Subject::Nominal(nominal) => {
-            let pair = comparison.pairs.iter().find(|pair| pair.nominal == nominal);
-            pair.map_or(are_all_wrong, |pair| is_wrong(pair.actual))
+            comparison.pair_of(nominal).map_or(are_all_wrong, |pair| is_wrong(pair.actual))
         }
         Subject::Whole | Subject::Motion => are_all_wrong,
     });

@@ -33,10 +33,11 @@ pub(super) fn judge<'c>(judged: &mut Judgement<'c>, on_axis: &[Cut<'c>]) {
     }
     judged.findings.extend(findings);
     judge_side(judged);
-    let Judgement { comparison, id, .. } = *judged;
+    let Judgement { comparison, index, id, .. } = *judged;
     let (near, far) = (judged.far.clone(), judged.near.clone());
     let mut from_far_side = Judgement {
         comparison,
+        index,
         nominal: &nominal,
         id,
         near,

@@ -194,7 +194,7 @@ impl Judgement<'_> {
             surface.is_some_and(|surface| surface.value(&point) < 0.0)
         };
         let deepest = self.near.iter().max_by(|a, b| a.tip.total_cmp(&b.tip)).copied();
-        let Some((cut, bore)) = deepest.zip(self.comparison.bore_at_end(nominal)) else { return };
+        let Some((cut, bore)) = deepest.zip(self.comparison.bore_at_end(self.index)) else { return };
         if !exceeds(cut.tip - bore.ends, slack) || !is_solid(bore.ends + slack) {
             return;
         }
@@ -266,7 +266,7 @@ impl Judgement<'_> {
             true => opening_depth(self.blank.openings, self.nominal, diameter / 2.0),
             false => Some(self.nominal.depth),
         };
-        let bore = || self.comparison.bore_at_end(self.nominal).map(|bore| bore.opens);
+        let bore = || self.comparison.bore_at_end(self.index).map(|bore| bore.opens);
         let depth = opens.or_else(bore).map_or(depth, |opens| depth.min(opens));
         if exceeds(depth, cut) {
             let name = feature.map_or(String::new(), |feature| format!(": the {}", feature.describe()));
