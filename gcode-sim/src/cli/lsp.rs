@@ -221,11 +221,8 @@ impl Host for EditorHost {
         mut library: &mut dyn Library,
         reference: Option<&Path>,
     ) -> Result<String, String> {
-        let nominal = reference.map(|path| options::read_nominal(path, request, &mut library)).transpose();
-        let nominal = match sentence(nominal)? {
-            Some(nominal) => nominal.into_holes(),
-            None => sentence(gcode_session::motion_reference(request, &mut library))?,
-        };
+        let nominal = sentence(options::nominal_or_motion(reference, request, &mut library))?;
+        let nominal = nominal.and_then(NominalPart::into_holes);
         let mut trace = Trace::default();
         let criteria = nominal.as_ref().map(Criteria::of);
         let revision = sentence(Revision::observed(request, &mut library, criteria, &mut trace))?;

@@ -199,6 +199,24 @@ pub(super) fn read_nominal(
     Ok(nominal)
 }
 
+/// Reads the reference; where none is named, that without holes of a program whose motion alone can be judged.
+pub(super) fn nominal_or_motion(
+    path: Option<&Path>,
+    request: &Request,
+    library: &mut impl Library,
+) -> Result<Option<NominalPart>, UsageError> {
+    match path {
+        Some(path) => read_nominal(path, request, library).map(Some),
+        None => Ok(gcode_session::motion_reference(request, library)?.map(NominalPart::Holes)),
+    }
+}
+
+/// Returns the reference of a command that shows holes; a burr is refused with this sentence.
+pub(super) fn holes_of(nominal: Option<NominalPart>, refusal: &str) -> Result<Option<Reference>, UsageError> {
+    let refused = |nominal: NominalPart| nominal.into_holes().ok_or_else(|| UsageError::new(refusal));
+    nominal.map(refused).transpose()
+}
+
 /// Reads the reference of a command that shows holes; a burr is refused with this sentence.
 pub(super) fn read_holes(
     path: Option<&Path>,
@@ -206,9 +224,7 @@ pub(super) fn read_holes(
     library: &mut impl Library,
     refusal: &str,
 ) -> Result<Option<Reference>, UsageError> {
-    let nominal = path.map(|path| read_nominal(path, request, library)).transpose()?;
-    let refused = |nominal: NominalPart| nominal.into_holes().ok_or_else(|| UsageError::new(refusal));
-    nominal.map(refused).transpose()
+    holes_of(path.map(|path| read_nominal(path, request, library)).transpose()?, refusal)
 }
 
 /// Tolerance of the commands that compare two runs.

@@ -28,8 +28,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let reference = arguments.reference.clone().or_else(|| project.reference());
     let (mut request, mut folders) =
         options::checked_request(&program, reference.as_deref(), None, Some(&arguments.output))?;
-    let nominal =
-        reference.as_deref().map(|path| options::read_nominal(path, &request, &mut folders)).transpose()?;
+    let nominal = options::nominal_or_motion(reference.as_deref(), &request, &mut folders)?;
     if let (Some(NominalPart::Flutes(_)), Some(path)) = (&nominal, &reference) {
         if arguments.reference.is_some() {
             return Err(UsageError::new(
@@ -39,10 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let note = "the reference of the program in gcode.toml is a burr: the page has no verdict";
         output::print_message(&format!("note: {}: {note}\n", path.display()));
     }
-    let nominal = match reference {
-        Some(_) => nominal.and_then(NominalPart::into_holes),
-        None => gcode_session::motion_reference(&request, &mut folders)?,
-    };
+    let nominal = nominal.and_then(NominalPart::into_holes);
     let traced = page::judge_traced(&mut request, &mut folders, nominal.as_ref().map(Criteria::of))?;
     page::check_has_moves("page", &traced.0.simulation)?;
     let judged = nominal.as_ref().map(|nominal| (reference.as_deref(), nominal));

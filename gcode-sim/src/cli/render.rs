@@ -126,8 +126,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         Some(arguments.output.path()),
         None,
     )?;
-    let reference = arguments.reference.as_deref();
-    let nominal = reference.map(|path| options::read_nominal(path, &request, &mut folders)).transpose()?;
+    let nominal = options::nominal_or_motion(arguments.reference.as_deref(), &request, &mut folders)?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
     let drawn = match nominal {
@@ -152,10 +151,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
             }
         }
         None | Some(NominalPart::Holes(_)) => {
-            let reference = match nominal {
-                Some(nominal) => nominal.into_holes(),
-                None => gcode_session::motion_reference(&request, &mut folders)?,
-            };
+            let reference = nominal.and_then(NominalPart::into_holes);
             let style = Style { views, projection: arguments.projection, color_by: arguments.color_by };
             let criteria = reference
                 .as_ref()

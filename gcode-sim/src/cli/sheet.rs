@@ -39,10 +39,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) =
         options::checked_request(&program, path.as_deref(), None, Some(&arguments.output))?;
     let refusal = "this sheet shows holes, and the reference is a burr: `gcode-gen sheet JOB.toml` writes that of a burr";
-    let reference = match &path {
-        Some(path) => options::read_holes(Some(path), &request, &mut folders, refusal)?,
-        None => gcode_session::motion_reference(&request, &mut folders)?,
-    };
+    let nominal = options::nominal_or_motion(path.as_deref(), &request, &mut folders)?;
+    let reference = options::holes_of(nominal, refusal)?;
     let machine = request.machine.clone();
     let mut recorder = PathRecorder::new(&machine);
     let (mut uses, mut offsets) = (UseRecorder::default(), OffsetObserver::default());

@@ -2,7 +2,7 @@
 #![expect(clippy::disallowed_methods, reason = "the command line finds files")]
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::claims;
 use super::main_program::{self, MainProgram};
@@ -173,11 +173,7 @@ impl Case {
         }
         let reference = REFERENCES.into_iter().find_map(own);
         let reference = reference.or_else(|| project.reference());
-        let read = |path: &Path| options::read_nominal(path, &request, &mut folders);
-        let nominal = match reference.as_deref().map(read).transpose()? {
-            Some(nominal) => Some(nominal),
-            None => gcode_session::motion_reference(&request, &mut folders)?.map(NominalPart::Holes),
-        };
+        let nominal = options::nominal_or_motion(reference.as_deref(), &request, &mut folders)?;
         let criteria = match &nominal {
             Some(NominalPart::Holes(reference)) => Some(Criteria::of(reference)),
             Some(NominalPart::Flutes(_)) | None => None,
