@@ -14,3 +14,10 @@ pub(crate) fn path(uri: &Uri) -> Option<PathBuf> {
 pub(crate) fn of_path(path: &Path) -> Option<Uri> {
     Uri::from_str(&file_uri::of_path(path)?).ok()
 }
+
+/// Returns true for a text that is no program: a configuration file, which counts as it is edited.
+pub(crate) fn is_other_text(path: &Path) -> bool {
+    const OTHERS: [&str; 4] = ["toml", "json", "csv", "md"];
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other))
+}

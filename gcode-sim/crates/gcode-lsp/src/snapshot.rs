@@ -65,6 +65,9 @@ impl Snapshot {
         let version = self.documents.get(&file).map(|document| document.version);
         let published = self.published.get(&file).filter(|(published, _)| *published == version);
         let checked = || {
+            if document_uri::is_other_text(&self.path(file)) {
+                return None;
+            }
             let (text, uri, setup) = (self.text(file)?, self.uri(file)?, self.setup(file));
             let conditions = (&setup, BTreeMap::new());
             let checked =

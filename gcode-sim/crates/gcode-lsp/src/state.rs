@@ -135,7 +135,7 @@ impl ServerState {
 
     /// Schedules the check of a document.
     fn check(&mut self, file: FileId, is_edited: bool) {
-        if is_other_text(&self.snapshot.path(file)) {
+        if document_uri::is_other_text(&self.snapshot.path(file)) {
             return;
         }
         let changes = self.changes;
@@ -149,6 +149,8 @@ impl ServerState {
         self.take_settings(file);
         self.use_settings(file);
         let file = self.snapshot.open(uri, version, text);
+        // Its versions begin anew.
+        Arc::make_mut(&mut self.snapshot.published).remove(&file);
         self.read_neighbours(file);
         self.changed(file, true);
     }
@@ -262,7 +264,7 @@ impl ServerState {
     /// Has everything computed anew that rests on a text.
     fn changed(&mut self, file: FileId, has_other_programs: bool) {
         let path = self.snapshot.path(file);
-        if is_other_text(&path) {
+        if document_uri::is_other_text(&path) {
             return self.changed_on_disk(&[path]);
         }
         self.outdate_runs();
@@ -486,11 +488,4 @@ impl Drop for ScanEnd {
     fn drop(&mut self) {
         _ = self.0.send(BackgroundAnswer::Scanned(Vec::new()));
     }
-}
-
-/// Returns true for a text that is no program: a configuration file, which counts as it is edited.
-fn is_other_text(path: &Path) -> bool {
-    const OTHERS: [&str; 4] = ["toml", "json", "csv", "md"];
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other))
 }
