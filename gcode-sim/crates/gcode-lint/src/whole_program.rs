@@ -53,6 +53,7 @@ pub(super) struct WholeProgram {
 
 /// The check of a program in pieces is not possible.
 pub(super) struct NotInPieces;
+
 impl WholeProgram {
     /// Keeps the findings of a piece that are not suppressed, as far as the limit allows.
     pub(super) fn keep(&mut self, mut new: Vec<Diagnostic>, limit: FindingLimit<'_>) {
@@ -155,6 +156,7 @@ impl WholeProgram {
         Ok((start, findings))
     }
 }
+
 /// Returns true for a finding, or the lack of one, that the other blocks of a program decide too.
 fn rests_on_whole(context: &CheckContext<'_>, finding: &Diagnostic) -> bool {
     let is_haas = context.settings.codes == gcode_lang::control::Dialect::HaasNgc;

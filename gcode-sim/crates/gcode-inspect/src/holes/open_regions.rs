@@ -97,6 +97,14 @@ impl Section {
             }
         }
     }
+
+    /// Returns true if a section holds another one but for a thickness that counts as none.
+    fn covers(self, other: Self) -> bool {
+        match self {
+            Self::Disc { centre, radius } => Self::Disc { centre, radius: radius + TOUCH_DEPTH }.holds(other),
+            Self::Rectangle(_) => self.holds(other),
+        }
+    }
 }
 
 /// Returns the coordinates across an axis.
@@ -175,16 +183,6 @@ fn beyond_stock(region: &Surface, stock: &Surface) -> Surface {
         region = body(axis, [from, to], section);
     }
     region
-}
-
-impl Section {
-    /// Returns true if a section holds another one but for a thickness that counts as none.
-    fn covers(self, other: Self) -> bool {
-        match self {
-            Self::Disc { centre, radius } => Self::Disc { centre, radius: radius + TOUCH_DEPTH }.holds(other),
-            Self::Rectangle(_) => self.holds(other),
-        }
-    }
 }
 
 #[cfg(test)]

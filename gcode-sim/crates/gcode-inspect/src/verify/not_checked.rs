@@ -168,16 +168,12 @@ pub(super) fn list(
         all.push(NotChecked::gap(UNSIZED, reason));
     }
     if 0 < extraction.strokes_in_air {
-        let (count, plural) =
-            (extraction.strokes_in_air, if extraction.strokes_in_air == 1 { "" } else { "s" });
-        let what = format!("{count} stroke{plural} of drilling cycles in the air");
+        let what = format!("{} of drilling cycles in the air", strokes(extraction.strokes_in_air));
         let reason = "the part has no metal there: the cycle is wrong, or it drills another part, whose holes are not compared";
         all.push(NotChecked::gap(what, reason));
     }
     if 0 < extraction.milled_strokes {
-        let (count, plural) =
-            (extraction.milled_strokes, if extraction.milled_strokes == 1 { "" } else { "s" });
-        let what = format!("{count} stroke{plural} of a mill beside the holes");
+        let what = format!("{} of a mill beside the holes", strokes(extraction.milled_strokes));
         all.push(NotChecked::gap(what, "taken for milling, not for a hole"));
     }
     if !extraction.milled_blocks.is_empty() {
@@ -205,6 +201,11 @@ pub(super) fn list(
         all.push(NotChecked::gap(what, "rapids where they have removed the metal are reported"));
     }
     all
+}
+
+/// Returns `1 stroke`, `2 strokes`.
+fn strokes(count: u64) -> String {
+    if count == 1 { "1 stroke".to_owned() } else { format!("{count} strokes") }
 }
 
 /// Returns what a search for metal that is given up leaves out, the kind of its motions, and the reason.

@@ -1,7 +1,7 @@
 //! Typing errors behind alarms: a letter O for a zero, a comma for a point, a sign copied from a PDF.
 use std::ops::RangeInclusive;
 
-use super::Alarm;
+use super::{Alarm, lacking_code_help};
 use crate::source::{Sources, Span};
 
 /// Returns the remedy for an alarm: the one its text suggests, otherwise the one in the table.
@@ -48,30 +48,6 @@ pub fn repeats_in_p_help(digits: u32) -> String {
     format!(
         "P{digits} calls O{number:04} {repeats} times; to call O{digits}, write L behind it, M98 P{digits} L1, or give --control REPEATS-IN-P=0"
     )
-}
-
-/// A control that has a code which another one lacks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OtherControl {
-    /// Its name.
-    pub name: &'static str,
-    /// True if the code is a turning cycle on a lathe.
-    pub is_turning_cycle: bool,
-}
-
-/// Returns what to do about a G code that the control lacks; `other` is one that has it.
-pub fn lacking_code_help(code: &str, other: Option<OtherControl>) -> String {
-    match other {
-        Some(OtherControl { name, is_turning_cycle: true }) => format!(
-            "on a lathe it is a turning cycle, and turning is not simulated; on a mill with {name} it drills a pattern of holes: give --dialect {name}"
-        ),
-        Some(OtherControl { name, .. }) => {
-            format!("{name} has it: give --dialect {name} for such a control, or correct the code")
-        }
-        None => format!(
-            "correct it; if this machine has it, give what it does: --code G{code}=wait, --code G{code}=nothing, or the number of the macro that it calls"
-        ),
-    }
 }
 
 /// Explains a G code that the control lacks.
@@ -354,6 +330,7 @@ fn work_offset_range(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::alarm::OtherControl;
 
     /// Returns the remedy for an alarm at the first occurrence of `at` in the line.
     fn help(alarm: Alarm, line: &str, at: &str) -> String {
@@ -469,6 +446,9 @@ mod tests {
         let improper = |other| Alarm::ImproperGCode { code: "187".into(), other };
         let haas = OtherControl { name: "haas-ngc", is_turning_cycle: false };
         assert!(help(improper(Some(haas)), "G187 P1", "G187").starts_with("haas-ngc has it"));
+        let turning = OtherControl { is_turning_cycle: true, ..haas };
+        let begin = "on a lathe it is a turning cycle";
+        assert!(help(improper(Some(turning)), "G71 U2. R1.", "G71").starts_with(begin));
         assert_eq!(
             help(improper(None), "G187 P1", "G187"),
             "correct it; if this machine has it, give what it does: --code G187=wait, --code G187=nothing, or the number of the macro that it calls"
