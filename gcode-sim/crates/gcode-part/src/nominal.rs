@@ -32,7 +32,7 @@ impl NominalPart {
         if text.trim_start().starts_with('{') {
             return Reference::of_list(read::json(text)?).map(Self::Holes);
         }
-        if let Some((line, message)) = csv_list::lacking_header(text) {
+        if let Some((line, message)) = csv_list::wrong_header(text) {
             return Err(FileError { line: Some(line), message });
         }
         if csv_list::is_csv(text) {

@@ -310,7 +310,8 @@ fn fill_alarm_text(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
     {
         let rest = String::from_utf8_lossy(&bytes[alarm.span.start as usize..alarm.span.end as usize]);
         let shown: String = rest.chars().take(12).collect();
-        *text = shown.trim_end().to_owned();
+        let cut = if shown.len() < rest.len() { "…" } else { "" };
+        *text = format!("{}{cut}", shown.trim_end());
     }
 }
 

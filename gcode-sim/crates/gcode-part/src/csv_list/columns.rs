@@ -5,7 +5,7 @@ use crate::hole::{MM_PER_INCH, Unit};
 use gcode_lang::similar;
 
 /// Columns of a list, with other names of each; a feature's own columns are beside them.
-const COLUMNS: [(&str, &[&str]); 11] = [
+const COLUMNS: [(&str, &[&str]); 13] = [
     (
         "id",
         &[
@@ -89,8 +89,26 @@ const COLUMNS: [(&str, &[&str]); 11] = [
     ("i", &[]),
     ("j", &[]),
     ("k", &[]),
-    ("depth", &["tiefe", "深度", "孔深"]),
-    ("diameter", &["dia", "d", "ø", "φ", "durchmesser", "直径", "孔径"]),
+    ("angle", &["winkel", "角度"]),
+    ("radius", &["radius r", "半径"]),
+    ("depth", &["hole depth", "tiefe", "深度", "孔深"]),
+    (
+        "diameter",
+        &[
+            "dia",
+            "dia.",
+            "d",
+            "ø",
+            "φ",
+            "hole dia",
+            "hole dia.",
+            "hole diameter",
+            "hole size",
+            "durchmesser",
+            "直径",
+            "孔径",
+        ],
+    ),
     ("features", &[]),
     ("through", &["thru", "thru hole", "through hole", "durchgehend", "durchgangsbohrung", "通孔"]),
 ];
@@ -106,6 +124,12 @@ const FEATURE_NAMES: [(&str, FeatureKind); 8] = [
     ("tap drill", FeatureKind::Drill),
     ("bohrer", FeatureKind::Drill),
 ];
+
+/// Words for a diameter behind the name of a feature: `Drill Dia` means `drill`.
+const DIAMETER_WORDS: [&str; 5] = [" dia", " dia.", " diameter", " size", " ø"];
+
+/// Columns of a hole round the axis x, in place of y, z, i, j and k.
+const ROUND: [&str; 2] = ["angle", "radius"];
 
 /// Further values of a feature with columns of its own: `tap pitch`.
 pub(super) const FEATURE_COLUMNS: [&str; 5] = ["depth", "to", "angle", "pitch", "hand"];
@@ -125,15 +149,23 @@ pub(crate) fn is_csv(text: &str) -> bool {
     1 < names.len() && !first.contains('=') && !names[0].starts_with('[')
 }
 
-/// Returns the line and the fault of a list that begins with values instead of the names of its columns; `None` for
-/// another text.
-pub(crate) fn lacking_header(text: &str) -> Option<(usize, String)> {
+/// Returns the line and the fault of a list that begins with values instead of the names of its columns, or whose names
+/// have only spaces between them; `None` for another text.
+pub(crate) fn wrong_header(text: &str) -> Option<(usize, String)> {
     let first = first_line(text);
+    let line = text.lines().position(|line| line == first)? + 1;
+    let words: Vec<&str> = first.split_whitespace().collect();
+    if words.iter().any(|word| word.eq_ignore_ascii_case("x"))
+        && words.iter().any(|word| word.eq_ignore_ascii_case("y"))
+        && !first.contains([',', ';', '\t', '='])
+    {
+        let message = "columns are separated by spaces: separate them by commas, semicolons or tabs";
+        return Some((line, format!("{message}; {}", example(&[], ','))));
+    }
     let separator = separator(first);
     let cells: Vec<&str> = first.split(separator).map(str::trim).collect();
     let is_number = |cell: &&str| cell.replacen(',', ".", 1).parse::<f64>().is_ok();
     let numbers = cells.iter().filter(|cell| is_number(cell)).count();
-    let line = text.lines().position(|line| line == first)? + 1;
     let message = format!("the names of the columns are missing; {}", example(&[], separator));
     let is_x = |cell: &&str| COLUMNS[1].1.contains(&column_name(cell).as_str()) || column_name(cell) == "x";
     let has_names = cells.iter().any(is_x);
@@ -203,6 +235,8 @@ pub(super) fn example(names: &[String], separator: char) -> String {
         "x" => format!("30{point}5"),
         "y" => "10".to_owned(),
         "z" | "i" | "j" => "0".to_owned(),
+        "angle" => "90".to_owned(),
+        "radius" => "25".to_owned(),
         "depth" | "drill depth" => "15".to_owned(),
         "diameter" if !has_features => "6".to_owned(),
         "through" => "false".to_owned(),
@@ -248,6 +282,12 @@ pub(super) fn example(names: &[String], separator: char) -> String {
     }
 }
 
+/// Returns true for columns of holes round x: an angle in place of y.
+fn is_round(names: &[String]) -> bool {
+    let has = |wanted: &str| names.iter().any(|name| name == wanted);
+    has("angle") && !has("y")
+}
+
 /// The columns of a list by their names, other names and unused columns among them.
 pub(super) struct Columns {
     pub(super) names: Vec<String>,
@@ -269,6 +309,7 @@ impl Columns {
                 name.clone_into(&mut names[place]);
             }
         }
+        let kinds = FeatureKind::ALL.map(FeatureKind::name);
         for name in &mut names {
             for (other, kind) in FEATURE_NAMES {
                 match name.strip_prefix(other) {
@@ -278,8 +319,13 @@ impl Columns {
                     _ => {}
                 }
             }
+            let of_kind =
+                |kind: &str| DIAMETER_WORDS.iter().any(|word| name.strip_suffix(word) == Some(kind));
+            if let Some(kind) = kinds.into_iter().find(|kind| of_kind(kind)) {
+                kind.clone_into(name);
+            }
         }
-        let kinds = FeatureKind::ALL.map(FeatureKind::name);
+        let is_round = is_round(&names);
         let of_features =
             kinds.iter().flat_map(|kind| FEATURE_COLUMNS.map(|value| format!("{kind} {value}")));
         let known: Vec<String> = COLUMNS
@@ -293,6 +339,9 @@ impl Columns {
             if known.contains(name) {
                 if names[..index].contains(name) {
                     return Err(format!("column '{name}' is there twice"));
+                }
+                if !is_round && ROUND.contains(&name.as_str()) {
+                    unused.push(name.clone());
                 }
                 continue;
             }
@@ -313,8 +362,13 @@ impl Columns {
         let has_columns = |kind: &FeatureKind| names.iter().any(|name| is_of(name, *kind));
         let feature_kinds = FeatureKind::ALL.into_iter().filter(has_columns).collect();
         let columns = Self { names, unused, feature_kinds, separator, unit };
-        if let Some(missing) = ["x", "y"].into_iter().find(|name| !columns.has(name)) {
-            return Err(format!("column '{missing}' is missing"));
+        let place: &[&str] = if is_round { &["x", "angle", "radius"] } else { &["x", "y"] };
+        if let Some(missing) = place.iter().find(|name| !columns.has(name)) {
+            let round = if is_round { ": x, angle and radius are the place of a hole round x" } else { "" };
+            return Err(format!("column '{missing}' is missing{round}"));
+        }
+        if let Some(other) = ["z", "i", "j", "k"].into_iter().find(|name| is_round && columns.has(name)) {
+            return Err(format!("column '{other}' is there: it follows from angle and radius"));
         }
         let axis = ["i", "j", "k"];
         match axis.into_iter().find(|name| !columns.has(name)) {
@@ -331,8 +385,13 @@ impl Columns {
 
     /// Returns the length of the unit of a column's numbers, mm; 1 for a column without lengths.
     pub(super) fn length_of_unit(&self, column: &str) -> f64 {
-        let is_length = !matches!(column, "i" | "j" | "k") && !column.ends_with(" angle");
+        let is_length = !matches!(column, "i" | "j" | "k" | "angle") && !column.ends_with(" angle");
         if is_length && self.unit == Unit::Inch { MM_PER_INCH } else { 1.0 }
+    }
+
+    /// Returns true if `angle` and `radius` are the places of the holes, round the axis x.
+    pub(super) fn is_round(&self) -> bool {
+        is_round(&self.names)
     }
 
     pub(super) fn place(&self, name: &str) -> Option<usize> {
@@ -346,10 +405,13 @@ impl Columns {
         if self.unit == Unit::Inch {
             facts.push("lengths are in inches".to_owned());
         }
-        if !self.has("z") {
+        if self.is_round() {
+            facts.push("angle counts about x, from z towards y, and the axis is along radius".to_owned());
+        }
+        if !self.has("z") && !self.is_round() {
             facts.push("z is 0: no column z".to_owned());
         }
-        if !self.has("i") {
+        if !self.has("i") && !self.is_round() {
             facts.push("the axis is 0, 0, 1: no columns i, j, k".to_owned());
         }
         if has_open_depths {

@@ -5,7 +5,7 @@ mod columns;
 mod tests;
 
 pub(super) use columns::is_csv;
-pub(super) use columns::lacking_header;
+pub(super) use columns::wrong_header;
 use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator, unit};
 
 use super::feature::{DepthTo, Feature, FeatureKind};
@@ -221,9 +221,7 @@ impl Cells<'_> {
             let help = if has_doubt { ": decimal commas need semicolons between the columns" } else { "" };
             return Err(format!("{count} columns, the header has {expected}{help}"));
         }
-        let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
-        let axis =
-            [self.required("i", Some(0.0))?, self.required("j", Some(0.0))?, self.required("k", Some(1.0))?];
+        let (entry, axis) = if self.columns.is_round() { self.round_place()? } else { self.place()? };
         if is_through(self.text("depth")) {
             return Err(format!(
                 "column 'depth' is '{}': the thickness of the part is required, and true in a column 'through'",
@@ -261,6 +259,28 @@ impl Cells<'_> {
         }
         check(&hole, index)?;
         Ok(CsvHole { hole, is_open })
+    }
+
+    /// Returns the entry and the axis of the line.
+    fn place(&mut self) -> Result<([f64; 3], [f64; 3]), String> {
+        let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
+        let axis =
+            [self.required("i", Some(0.0))?, self.required("j", Some(0.0))?, self.required("k", Some(1.0))?];
+        Ok((entry, axis))
+    }
+
+    /// Returns the entry and the axis of a hole at an angle about x, in degrees from z towards y, that points away from x.
+    fn round_place(&mut self) -> Result<([f64; 3], [f64; 3]), String> {
+        let [x, angle, radius] =
+            [self.required("x", None)?, self.required("angle", None)?, self.required("radius", None)?];
+        if radius <= 0.0 {
+            return Err(format!(
+                "column 'radius' is '{}': a number above 0 is required",
+                self.text("radius")
+            ));
+        }
+        let (sine, cosine) = angle.to_radians().sin_cos();
+        Ok(([x, radius * sine, radius * cosine], [0.0, sine, cosine]))
     }
 
     /// Returns the features of the line: those of the column `features`, then those with columns of their own.

@@ -67,6 +67,52 @@ fn columns_have_the_words_of_drawings() {
     assert!(!is_csv("# holes, of the drawing\nfamily = \"pattern\"\n"));
 }
 
+/// A shaft's drawing has x and an angle: 0 degrees is on top, 90 towards y; the sine of 30 degrees is 0.5.
+#[test]
+fn holes_round_x_have_an_angle_and_a_radius() {
+    let list = read("Hole,X,Angle [°],Radius,Depth\n1,10,0,20,5\n2,10,90,20,5\n3,-4,-30,20,5\n");
+    let sixty = 0.75_f64.sqrt();
+    let expected = [
+        ([10.0, 0.0, 20.0], [0.0, 0.0, 1.0]),
+        ([10.0, 20.0, 0.0], [0.0, 1.0, 0.0]),
+        ([-4.0, -10.0, 20.0 * sixty], [0.0, -0.5, sixty]),
+    ];
+    for (hole, (entry, axis)) in list.holes.holes.iter().zip(expected) {
+        for (found, expected) in hole.entry.iter().chain(&hole.axis).zip(entry.iter().chain(&axis)) {
+            assert!((found - expected).abs() < 1e-12, "{hole:?}");
+        }
+    }
+    assert_eq!(list.note.unwrap(), "angle counts about x, from z towards y, and the axis is along radius");
+    let inches = read("x [inch],angle,radius,depth\n1,90,1,0.5\n");
+    assert_eq!(inches.holes.holes[0].entry[1], 25.4);
+    for (text, expected) in [
+        ("x,angle,depth\n1,2,3\n", "column 'radius' is missing: x, angle and radius are the place"),
+        ("x,angle,radius,z,depth\n1,2,3,4,5\n", "column 'z' is there: it follows from angle and radius"),
+        ("x,angle,radius,depth\n1,2,0,4\n", "column 'radius' is '0': a number above 0 is required"),
+    ] {
+        assert!(refused(text).contains(expected), "{}", refused(text));
+    }
+    let beside_y = read("x,y,angle,depth\n1,2,30,5\n");
+    assert!(beside_y.note.unwrap().ends_with("unused: angle"));
+}
+
+#[test]
+fn names_with_a_word_for_the_diameter_are_those_of_features() {
+    let plain =
+        read("id,x,y,depth,drill,drill depth,counterbore,counterbore depth\n1,30,10,20,6.8,20,11,5\n");
+    let text = "Hole,X,Y,Hole Depth,Drill Dia,Drill Depth,C'Bore Dia.,C'Bore Depth\n1,30,10,20,6.8,20,11,5\n";
+    assert_eq!(read(text).holes, plain.holes);
+    assert_eq!(read("x,y,depth,Hole Dia\n1,2,3,8\n").holes.holes[0].diameter, Some(8.0));
+}
+
+#[test]
+fn columns_with_spaces_between_them_are_refused_with_a_right_line() {
+    let (line, message) = wrong_header("\nid x y depth\n1 30 10 15\n").unwrap();
+    assert!(line == 2 && message.starts_with("columns are separated by spaces: "), "{message}");
+    assert!(message.ends_with("id,x,y,depth,diameter, and below them: 1,30,10,15,6"), "{message}");
+    assert_eq!(wrong_header("id,x y,y\n1,2,3\n"), None);
+}
+
 /// 1.5 inch is 38.1 mm, 0.25 inch 6.35; an axis and an angle have no length, and M10x1.5 is metric everywhere.
 #[test]
 fn a_header_with_inch_makes_all_lengths_inches() {
@@ -257,6 +303,7 @@ fn the_right_line_is_read() {
         "nr,x,y,csk",
         "nr,x,y,drill",
         "nr,x,y,drill,depth,ream,bore depth,bore",
+        "nr,x,angle,radius,depth,dia",
     ] {
         let separator = separator(header);
         let names: Vec<String> = header.split(separator).map(column_name).collect();

@@ -54,13 +54,13 @@ fn doubled_table(lines: &[&str], line: usize) -> Option<(usize, String)> {
     };
     let (single, double) = (format!("[{name}]"), format!("[[{name}]]"));
     let place = |of: &str| lines[..line - 1].iter().position(|other| header(other).as_deref() == Some(of));
-    let slip = |line: usize, fault: &str| {
-        Some((line, format!("{single} {fault}: a table of a list has double brackets; write {double}")))
-    };
+    let slip = |line: usize, fault: &str, remedy: &str| Some((line, format!("{single} {fault}: {remedy}")));
+    let of_list = format!("a table of a list has double brackets; write {double}");
+    let one = format!("put its keys below one {single}; in a list of several each is {double}");
     match (is_list, place(&single), place(&double)) {
-        (true, Some(other), _) => slip(other + 1, &format!("is {double} in line {line}")),
-        (false, Some(_), _) => slip(line, "is there twice"),
-        (false, None, Some(other)) => slip(line, &format!("is {double} in line {}", other + 1)),
+        (true, Some(other), _) => slip(other + 1, &format!("is {double} in line {line}"), &of_list),
+        (false, Some(_), _) => slip(line, "is there twice", &one),
+        (false, None, Some(other)) => slip(line, &format!("is {double} in line {}", other + 1), &of_list),
         _ => None,
     }
 }
@@ -416,7 +416,8 @@ mod tests {
             "{slip}"
         );
         let text = "[hole] # first\nx = 1\n[hole]\nx = 2\n";
-        let slip = "[hole] is there twice: a table of a list has double brackets; write [[hole]]";
+        let slip =
+            "[hole] is there twice: put its keys below one [hole]; in a list of several each is [[hole]]";
         assert_eq!(syntax_slip(text, 3), Some((3, slip.to_owned())));
         let text = "\n[hole] # first\nx = 1\n[[hole]]\nx = 2\n";
         let slip = "[hole] is [[hole]] in line 4: a table of a list has double brackets; write [[hole]]";

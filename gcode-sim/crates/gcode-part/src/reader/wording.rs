@@ -36,6 +36,13 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);
         let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
         let own = place.last().map_or("", String::as_str);
+        if let [tables @ .., code, number] = place.as_slice()
+            && number.starts_with(|c: char| c.is_ascii_digit())
+        {
+            let header: String = tables.iter().map(|table| format!("{table}.")).collect();
+            let code = quoted_code(code, number);
+            return format!("[{name}]: a name with a point has quotes; write [{header}{code}]");
+        }
         return match similar(own, allowed.split(", ")) {
             Some(meant) => format!("key '{name}' is unknown (did you mean '{meant}'?); allowed: {allowed}"),
             None => format!("key '{name}' is unknown; allowed: {allowed}"),
@@ -99,6 +106,13 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         _ => found.replace('`', ""),
     };
     format!("key '{name}' is {found}: {expected} is required{advice}")
+}
+
+/// Returns the code that a point without quotes divides, G54 and 1P1, as a key: "G54.1 P1".
+fn quoted_code(code: &str, number: &str) -> String {
+    let (fraction, letter) =
+        number.split_at(number.find(|c: char| !c.is_ascii_digit()).unwrap_or(number.len()));
+    format!("\"{}\"", format!("{code}.{fraction} {}", letter.trim()).trim_end())
 }
 
 /// Returns the place of the key or the list that a message is about within a section: of a section whose key `kind` decides which
@@ -216,6 +230,12 @@ mod tests {
                 "radius",
                 "unknown field `radius`, expected `a` or `b`",
                 "key 'hole.radius' is unknown; allowed: a, b",
+            ),
+            (
+                "[offsets.G54.1P12]\n",
+                "1P12",
+                "unknown field `1P12`, expected one of `X`, `Y`",
+                "[offsets.G54.1P12]: a name with a point has quotes; write [offsets.\"G54.1 P12\"]",
             ),
             (
                 JOB,
