@@ -245,3 +245,17 @@ fn a_countersink_on_a_milled_floor_is_not_the_diameter_of_the_hole() {
     let diameters = [&json["holes"][0]["diameter"], &json["holes"][1]["diameter"]];
     assert_eq!(diameters, [&serde_json::Value::from(8.0); 2]);
 }
+
+/// The block is 60 long: the cycle at x = 200 drills the next vise's part, and has no line in the list of this one.
+#[test]
+fn cycles_beside_the_stock_are_said_to_be_left_out() {
+    let folder = with_machine(STOCK, 0);
+    let cycle = |x: &str| with_tool(2, &format!("G98 G81 X{x} Y20. Z-10. R2. F90."));
+    let (lines, messages) = list(folder.path(), &[cycle("45."), cycle("200.")], "");
+    assert_eq!(lines.len(), 1);
+    let note = "not in the list: 1 stroke of drilling cycles where the part has no metal";
+    assert!(messages.contains(note), "{messages}");
+    let (lines, messages) = list(folder.path(), &[cycle("45."), cycle("50.")], "");
+    assert_eq!(lines.len(), 2);
+    assert!(!messages.contains("not in the list"), "{messages}");
+}

@@ -114,6 +114,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
              pockets in [[stock.pocket]]\n",
         );
     }
+    let in_air = simulation.extracted.strokes_in_air();
+    if 0 < in_air {
+        let strokes = count_of(in_air as usize, "stroke");
+        output::print_message(&format!(
+            "note: not in the list: {strokes} of drilling cycles where the part has no metal; a list of several parts needs a [stock] \
+             over all of them\n"
+        ));
+    }
     if let Some(line) = failure_against_itself(&list, &request, &mut folders)? {
         output::print_message(&format!(
             "note: verify of the program against this list as it stands: {line}\n"

@@ -71,6 +71,11 @@ pub struct HoleExtraction {
 }
 
 impl HoleExtraction {
+    /// Returns the number of strokes of drilling cycles that cut nothing.
+    pub fn strokes_in_air(&self) -> u64 {
+        self.strokes_in_air
+    }
+
     /// Returns the holes as a list; `locate` returns the program and the line of a block.
     pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
         let holes = self.holes.iter().map(|hole| hole.hole(&locate)).collect();

@@ -35,6 +35,7 @@ impl HoleExtractor<'_> {
     /// Applies a change of the source of the length offset, or its repetition.
     pub(super) fn apply_compensation(&mut self, event: &Event<'_>, compensation: LengthCompensation) {
         self.cutting_state.compensation = compensation;
+        self.length_change = Some(event.block);
         let is_on = compensation.number().is_some();
         let origin = || OffsetOrigin { backtrace: event.backtrace(), compensation, is_own: true };
         self.offset_origin = is_on.then(origin);

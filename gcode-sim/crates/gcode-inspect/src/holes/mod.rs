@@ -181,6 +181,8 @@ pub struct HoleExtractor<'m> {
     offset_tools: BTreeSet<Option<u32>>,
     /// Block that puts the length offset in force; `None` without an offset.
     offset_origin: Option<OffsetOrigin>,
+    /// Block of the last change of the length offset.
+    length_change: Option<Span>,
     /// A probing move without a signal has left the tool in the metal.
     is_probe_in_metal: bool,
     /// Number of probing moves.
@@ -256,6 +258,7 @@ impl<'m> HoleExtractor<'m> {
             flank_cuts: Vec::new(),
             offset_tools: BTreeSet::new(),
             offset_origin: None,
+            length_change: None,
             is_probe_in_metal: false,
             probe_count: 0,
             search_budget: SearchBudget::default(),

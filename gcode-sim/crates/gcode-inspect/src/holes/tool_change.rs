@@ -135,7 +135,12 @@ impl HoleExtractor<'_> {
         if self.change_retract.is_checked {
             self.change_retract.rapids.count(|| event.backtrace());
         } else {
-            self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, make);
+            let note = "this block changes the tool length offset, and the tool moves by it: bring it home before G49";
+            let is_by_length = self.length_change == Some(event.block);
+            self.findings.add(&RAPID_INTO_PART, &event.backtrace(), 0, |kind| {
+                let finding = make(kind);
+                if is_by_length { finding.note(note) } else { finding }
+            });
         }
     }
 }

@@ -318,7 +318,7 @@ undocumented_choices! {
     "K0-MOVES" k0_positions = false, "a canned cycle with K0 moves in the plane";
     "SKIP-KEEPS-END" skip_keeps_end = false, "#5001.. after a skipped G31 are the commanded end, not the position of the signal";
     "G31-R" skip_takes_r = true, "R beside G31 selects a skip signal, as P does; otherwise SIM0001";
-    "G43-MOVES" length_moves_at_once = true, "G43 H without an axis moves by the offset at once";
+    "G43-MOVES" length_moves_at_once = true, "G43 H or G49 without an axis moves by the offset at once";
     "TAP-DWELL-R" tap_dwells_at_r = true, "G84 and G74 dwell at the R point level as well";
     "SMALL-R-ALARM" small_radius_alarms = true, "an arc whose R is too small raises PS0020 instead of becoming a half circle";
     "TWO-ASSIGNMENTS" allows_several_assignments = false, "several assignments in a block are accepted";
