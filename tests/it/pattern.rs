@@ -106,6 +106,28 @@ fn a_tap_that_goes_into_the_cone_of_its_drill_is_refused() {
     }
 }
 
+/// A spot of 90° is twice as wide as deep: 7 mm at 3.5 mm in a hole of 8, 10 mm at 5 mm, which breaks the edge by 1 mm a side.
+/// The list has the drilled hole alone.
+#[test]
+fn a_spot_drill_makes_no_feature_and_stays_inside_its_hole() {
+    for (depth, is_refused) in [(3.5, false), (5.0, true)] {
+        let job = format!(
+            "family = \"pattern\"\ncontrol = {{ dialect = \"fanuc-31i\", increment = \"IS-B\" }}\n\
+             tolerance = {{ position = 0.05 }}\n\
+             [[tool]]\nnumber = 1\noperation = \"spot-drill\"\ndiameter = 12.0\nspeed = 1200\nfeed = 120.0\n\
+             [[tool]]\nnumber = 2\noperation = \"drill\"\ndiameter = 8.0\nspeed = 1500\nfeed = 200.0\n\
+             [[pattern]]\nid = \"A\"\npoints = [[5.0, 7.0], [40.0, 7.0]]\n\
+             make = [{{ tool = 1, depth = {depth:?} }}, {{ tool = 2, depth = 20.0 }}]\n"
+        );
+        let found = refusals(&Bench::of(&job)).join("\n");
+        assert_eq!(!found.is_empty(), is_refused, "{depth}: {found}");
+        assert!(!is_refused || found.contains("feature-extra"), "{found}");
+        let reference = gcode_part::NominalPart::parse(&job).unwrap().into_holes().unwrap();
+        let holes: Vec<_> = reference.holes.iter().map(|hole| (hole.diameter, hole.features.len())).collect();
+        assert_eq!(holes, [(Some(8.0), 0); 2]);
+    }
+}
+
 #[test]
 fn a_wrong_digit_of_a_macro_or_a_call_is_refused() {
     for (layout, program, edit) in [

@@ -242,7 +242,7 @@ fn operation_code(tool: &PatternTool) -> f64 {
     match tool.operation {
         Operation::Tap if tool.is_left_hand() => LEFT_TAP,
         Operation::ThreadMill if tool.is_left_hand() => 34.0,
-        Operation::Drill => 81.0,
+        Operation::SpotDrill | Operation::Drill => 81.0,
         Operation::Peck => 83.0,
         Operation::Tap => 84.0,
         Operation::Bore => 85.0,
@@ -272,6 +272,7 @@ fn machine_file(job: &PatternJob) -> String {
     };
     let tool = |tool: &PatternTool| {
         let kind = match tool.operation {
+            Operation::SpotDrill => "kind = \"spot-drill\"\n",
             Operation::Drill | Operation::Peck => "kind = \"drill\"\n",
             Operation::Tap => "kind = \"tap\"\n",
             Operation::Bore => "kind = \"boring-bar\"\n",

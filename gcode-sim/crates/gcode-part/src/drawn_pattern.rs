@@ -72,8 +72,8 @@ fn process_limits(job: &PatternJob) -> ProcessLimits {
 /// Returns a hole in the frame of its entry.
 fn hole(job: &PatternJob, pattern: &PatternSpec, number: u32, frame: &Isometry3<f64>) -> Hole {
     let steps = pattern.steps.iter().filter_map(|step| Some((step, job.tool(step.tool)?)));
-    let steps: Vec<(&PatternStep, &PatternTool)> = steps.collect();
-    let deepest = pattern.steps.iter().map(|step| step.depth).fold(0.0, f64::max);
+    let steps: Vec<(&PatternStep, &PatternTool)> = steps.filter(|(_, tool)| !tool.only_spots()).collect();
+    let deepest = steps.iter().map(|(step, _)| step.depth).fold(0.0, f64::max);
     let hole = Hole {
         id: Some(format!("{}-{number}", pattern.id)),
         entry: frame.transform_point(&Point3::origin()).coords.into(),
@@ -94,7 +94,7 @@ fn hole(job: &PatternJob, pattern: &PatternSpec, number: u32, frame: &Isometry3<
 
 fn feature(step: &PatternStep, tool: &PatternTool, deepest: f64) -> Feature {
     let kind = match tool.operation {
-        Operation::Drill | Operation::Peck => FeatureKind::Drill,
+        Operation::SpotDrill | Operation::Drill | Operation::Peck => FeatureKind::Drill,
         Operation::Bore => FeatureKind::Bore,
         Operation::MillCircle if step.depth < deepest => FeatureKind::Counterbore,
         Operation::MillCircle => FeatureKind::Bore,

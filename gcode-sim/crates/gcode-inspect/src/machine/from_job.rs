@@ -80,6 +80,7 @@ impl Machine {
             }
         };
         let kind = |operation: Operation| match operation {
+            Operation::SpotDrill => Some(ToolKind::SpotDrill),
             Operation::Drill | Operation::Peck => Some(ToolKind::Drill),
             Operation::Tap => Some(ToolKind::Tap),
             Operation::Bore => Some(ToolKind::BoringBar),

@@ -276,6 +276,11 @@ impl Family for PatternJob {
             for (place, step) in pattern.steps.iter().enumerate() {
                 step.check(reader, &format!("{key}.make.{place}"), self)?;
             }
+            if pattern.steps.iter().all(|step| self.tool(step.tool).is_some_and(PatternTool::only_spots)) {
+                let message =
+                    "key 'pattern.make' has spot drills alone, which make no hole: add the drill".to_owned();
+                return Err(reader.error_at(&format!("{key}.make"), message));
+            }
             if let Some(cylinder) = self.cylinder {
                 for (place, step) in pattern.steps.iter().enumerate() {
                     let (radius, depth) = (cylinder.diameter / 2.0, step.depth);

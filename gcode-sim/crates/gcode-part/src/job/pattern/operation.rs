@@ -14,9 +14,14 @@ const WALL: f64 = 0.02;
 /// Angle of a drill's point that a job leaves out, degrees: type N of DIN 1414.
 const POINT_ANGLE: f64 = 118.0;
 
+/// Angle of a spot drill's point that a job leaves out, degrees.
+const SPOT_ANGLE: f64 = 90.0;
+
 /// Operation of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
+    /// Spots the hole for the tools behind it: G81. It makes no feature of the drawing.
+    SpotDrill,
     /// Drills in one go: G81.
     Drill,
     /// Drills in pecks: G83.
@@ -35,6 +40,7 @@ impl Operation {
     /// Returns the name in job files.
     pub fn name(self) -> &'static str {
         match self {
+            Self::SpotDrill => "spot-drill",
             Self::Drill => "drill",
             Self::Peck => "peck",
             Self::Tap => "tap",
@@ -44,9 +50,13 @@ impl Operation {
         }
     }
 
-    /// Returns true for an operation that drills.
-    pub fn is_drilling(self) -> bool {
-        matches!(self, Self::Drill | Self::Peck)
+    /// Returns the angle of the point of its tool that a job leaves out, degrees; `None` for a tool without a point.
+    fn point_angle(self) -> Option<f64> {
+        match self {
+            Self::SpotDrill => Some(SPOT_ANGLE),
+            Self::Drill | Self::Peck => Some(POINT_ANGLE),
+            Self::Tap | Self::Bore | Self::MillCircle | Self::ThreadMill => None,
+        }
     }
 
     /// Returns true for an operation that goes round its hole, which is wider than the tool.
@@ -64,9 +74,16 @@ impl WordList for Operation {
     type Value = Self;
 
     fn all() -> Vec<(&'static str, Self)> {
-        [Self::Drill, Self::Peck, Self::Tap, Self::Bore, Self::MillCircle, Self::ThreadMill]
-            .map(|operation| (operation.name(), operation))
-            .into()
+        let all = [
+            Self::SpotDrill,
+            Self::Drill,
+            Self::Peck,
+            Self::Tap,
+            Self::Bore,
+            Self::MillCircle,
+            Self::ThreadMill,
+        ];
+        all.map(|operation| (operation.name(), operation)).into()
     }
 }
 
@@ -77,7 +94,7 @@ pub struct PatternTool {
     /// Its number, and that of its length offset; unique.
     #[serde(with = "DrillNumber")]
     pub number: u32,
-    /// Its name in comments and on the sheet [default: DRILL, TAP, BORING BAR, END MILL or THREAD MILL].
+    /// Its name in comments and on the sheet [default: that of its operation, such as DRILL].
     name: Option<String>,
     /// What it does.
     #[serde(with = "Word::<Operation>")]
@@ -85,7 +102,7 @@ pub struct PatternTool {
     /// Diameter, mm; of a tap, that of the thread.
     #[serde(with = "Length")]
     pub diameter: f64,
-    /// Angle of the point of `drill` and `peck`, degrees [default: 118].
+    /// Angle of the point of `drill` and `peck`, degrees [default: 118], and of `spot-drill` [default: 90].
     #[serde(default, with = "Optional::<PointAngle>")]
     point_angle: Option<f64>,
     /// Spindle speed, a whole number of r/min.
@@ -135,6 +152,7 @@ impl PatternTool {
     /// Returns the name in comments and on the set-up sheet.
     pub fn name(&self) -> String {
         let of_operation = match self.operation {
+            Operation::SpotDrill => "SPOT DRILL",
             Operation::Drill | Operation::Peck => "DRILL",
             Operation::Tap => "TAP",
             Operation::Bore => "BORING BAR",
@@ -144,9 +162,14 @@ impl PatternTool {
         self.name.clone().unwrap_or_else(|| of_operation.to_owned())
     }
 
-    /// Returns the angle of its point, degrees; `None` for a tool that doesn't drill.
+    /// Returns the angle of its point, degrees; `None` for a tool without one.
     pub fn point_angle(&self) -> Option<f64> {
-        self.operation.is_drilling().then(|| self.point_angle.unwrap_or(POINT_ANGLE))
+        self.point_angle.or(self.operation.point_angle())
+    }
+
+    /// Returns true for a spot drill, which makes no feature of the drawing.
+    pub fn only_spots(&self) -> bool {
+        self.operation == Operation::SpotDrill
     }
 
     /// Returns the hand of its thread.
@@ -178,7 +201,7 @@ impl PatternTool {
             (
                 "point_angle",
                 self.point_angle.is_some(),
-                self.point_angle.is_some() && operation.is_drilling(),
+                self.point_angle.is_some() && operation.point_angle().is_some(),
             ),
             ("feed", self.feed.is_some(), operation != Operation::Tap),
             ("peck", self.peck.is_some(), needs_peck),

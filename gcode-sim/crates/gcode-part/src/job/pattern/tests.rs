@@ -44,6 +44,7 @@ fn a_wrong_key_is_named_with_its_line() {
             "skip = [1, 2, 3, 4, 5, 6]\nmake = [",
             "line 16: key 'pattern.skip' is 6: left out of 6",
         ),
+        ("\"drill\"", "\"spot-drill\"", "line 16: key 'pattern.make' has spot drills alone"),
         ("tool = 1", "tool = 2", "line 16: key 'pattern.make.tool' names tool 2, which is not in [[tool]]"),
         ("\"drill\"", "\"peck\"", "line 9: key 'tool.peck' is missing: operation = \"peck\" needs it"),
         (
