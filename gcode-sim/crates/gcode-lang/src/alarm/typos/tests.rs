@@ -1,3 +1,4 @@
+//! Typing errors have a remedy, and others do not.
 use super::*;
 use crate::alarm::OtherControl;
 
