@@ -167,7 +167,7 @@ fn check_known(
     limit: FindingLimit<'_>,
     library: &mut impl Library,
 ) -> CheckResult {
-    let rules = PieceRules { knowledge, sizes: PieceSizes::USUAL, limit };
+    let rules = PieceRules { knowledge, sizes: PieceSizes::USUAL, limit, enters_numbers: true };
     let mut result = check_sized(texts, settings, library, rules);
     text_behind_end::leave_out(&mut result);
     result

@@ -8,6 +8,15 @@ use super::possible_modes::PossibleModes;
 use super::possible_units::PossibleUnits;
 use super::role::Role;
 
+/// How control enters the blocks of a program besides from the block before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Entries {
+    /// By jumps whose targets are known.
+    Known,
+    /// At each sequence number, in an unknown state.
+    EveryNumber,
+}
+
 /// Place of a piece in its program, and what the pieces before it leave.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
@@ -33,6 +42,12 @@ pub(crate) struct PieceEntry {
 }
 
 impl PieceEntry {
+    /// Returns the entry at a block by a jump from anywhere.
+    pub(super) fn of_unknown_state(block: OpIndex) -> Self {
+        let (modes, locals) = (PossibleModes::ANYTHING, Some(Locals::ANYTHING));
+        Self { block, modes, locals, pending_move: None }
+    }
+
     /// Adds the states of another jump to the same block.
     pub(super) fn join(&mut self, other: Self) {
         self.modes = self.modes.join(other.modes);

@@ -1,6 +1,7 @@
 //! Places at which a long program is divided into pieces: no loop and no near jump leads across.
 use std::ops::Range;
 
+use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{Memory, OpIndex, OpKind, Program, ProgramId, Statement};
 
 use super::control_flow::ControlFlowGraph;
@@ -61,11 +62,16 @@ fn crossed_places(
     memory.replace(id, whole.part(blocks.clone()));
     let part = memory.lower_program(id);
     let mut crossed: Vec<bool> = (part.ops().iter())
-        .map(|op| {
-            matches!(
-                op.kind(),
-                OpKind::Statement(Statement::While { .. } | Statement::Do { .. }) | OpKind::Alarm(_)
-            )
+        .map(|op| match op.kind() {
+            OpKind::Statement(Statement::While { .. } | Statement::Do { .. }) => true,
+            // A loop whose other end is not in the part.
+            OpKind::Alarm(alarm) => {
+                matches!(
+                    alarm.node,
+                    Alarm::MissingEnd { .. } | Alarm::MissingDo { .. } | Alarm::LoopNumber { .. }
+                )
+            }
+            _ => false,
         })
         .collect();
     for jump in ControlFlowGraph::new(part, &[]).jumps {

@@ -1,9 +1,9 @@
 //! Check of a long program in pieces: the trees and operations of one piece are in memory at a time.
 //!
 //! A piece ends where control passes in one way only, from its last block to the next one: no loop and no jump leads across.
-//! What the analyses know at its end is the start of the next piece. Where this does not hold (a jump over many blocks, a
-//! computed GOTO to numbers elsewhere, a modal macro), or a finding rests on the whole program, the program is checked as a
-//! whole.
+//! What the analyses know at its end is the start of the next piece. A jump whose target is unknown, as a computed GOTO or the
+//! return of a missing macro, may lead to every sequence number: each is entered in an unknown state then. Where this does
+//! not hold (a jump over many blocks, a modal macro), or a finding rests on the whole program, the program is checked as a whole.
 use std::collections::BTreeMap;
 
 use gcode_lang::diag::Diagnostic;
@@ -13,7 +13,7 @@ use gcode_lang::syntax::KnownBlocks;
 use super::context::{CheckContext, LoadedProgram, ProgramUnit, Role};
 use super::loader::Loader;
 use super::modes::modes_before;
-use super::piece::{Piece, PieceEntry, PieceStart};
+use super::piece::{Entries, Piece, PieceEntry, PieceStart};
 use super::piece_ends::{PieceSizes, far_jumps, piece_end};
 use super::rules::{self, doubled_numbers, limits_lookahead, pending_moves};
 use super::vacancy::states_without_arguments;
@@ -29,6 +29,9 @@ pub(super) struct PieceRules<'a> {
     pub knowledge: ControlKnowledge,
     pub sizes: PieceSizes,
     pub limit: FindingLimit<'a>,
+    /// Where a jump may lead to every sequence number, each is entered in an unknown state, which finds less than a check of the
+    /// whole program; otherwise such a program is checked as a whole.
+    pub enters_numbers: bool,
 }
 
 /// Returns the findings of all programs, and the number of those beyond the limit; `None` if a long one has to be checked as a whole.
@@ -109,11 +112,16 @@ fn findings_of_program<L: Library>(
     let part = whole.part(0..0);
     let whole = loader.memory.replace(id, part);
     let suggested = Role::of_uncalled(whole.number(), (false, false));
-    let mut result = findings_as(loader, (id, &whole, suggested), rules);
+    let mut entries = Entries::Known;
+    let mut result = findings_as(loader, (id, &whole, suggested), entries, rules);
+    if rules.enters_numbers && result.is_err() {
+        entries = Entries::EveryNumber;
+        result = findings_as(loader, (id, &whole, suggested), entries, rules);
+    }
     if let Ok(found) = &result {
         let role = Role::of_uncalled(whole.number(), (found.returns, found.ends));
         if role != suggested {
-            result = findings_as(loader, (id, &whole, role), rules);
+            result = findings_as(loader, (id, &whole, role), entries, rules);
         }
     }
     loader.memory.replace(id, whole);
@@ -124,6 +132,7 @@ fn findings_of_program<L: Library>(
 fn findings_as<L: Library>(
     loader: &mut Loader<'_, L>,
     (id, whole, role): (ProgramId, &Program, Role),
+    entered: Entries,
     rules: PieceRules<'_>,
 ) -> Result<WholeProgram, NotInPieces> {
     let mut found = WholeProgram::default();
@@ -138,7 +147,13 @@ fn findings_as<L: Library>(
         let mut program = LoadedProgram::new(loader.memory, id, &mut none, loader.settings);
         let behind = far.split_off(&end);
         let entries = std::mem::replace(&mut far, behind).into_iter();
-        let entries = entries.map(|(target, entry)| PieceEntry { block: target - first, ..entry }).collect();
+        let entries = entries.map(|(target, entry)| PieceEntry { block: target - first, ..entry });
+        let mut entries: Vec<_> = entries.collect();
+        if entered == Entries::EveryNumber {
+            let ops = loader.memory.get(id).ops().iter().enumerate();
+            let numbered = ops.filter(|(_, op)| op.number.is_some());
+            entries.extend(numbered.map(|(block, _)| PieceEntry::of_unknown_state(block)));
+        }
         let (targets, far_jumps) = far_jumps(loader.memory.get(id), (whole, first..end));
         if MAX_FAR_TARGETS < targets.len() || targets.iter().any(|target| whole.is_in_loop(*target)) {
             return Err(NotInPieces);
@@ -153,14 +168,16 @@ fn findings_as<L: Library>(
         let control = (loader.settings, rules.knowledge);
         let context = CheckContext::new(loader.memory, control, units, rules::codes());
         let result = match context.units.last() {
-            Some(unit) => found.add(&context, unit, (whole, first..end), &loader.long).map(|(start, new)| {
-                loader.repetitions.note_found(&new);
-                found.keep(new, rules.limit);
-                for (target, entry) in far_entries(&context, unit, &targets) {
-                    far.entry(target).and_modify(|known| known.join(entry)).or_insert(entry);
-                }
-                start
-            }),
+            Some(unit) => {
+                found.add(&context, unit, (whole, first..end), (entered, &loader.long)).map(|(start, new)| {
+                    loader.repetitions.note_found(&new);
+                    found.keep(new, rules.limit);
+                    for (target, entry) in far_entries(&context, unit, &targets) {
+                        far.entry(target).and_modify(|known| known.join(entry)).or_insert(entry);
+                    }
+                    start
+                })
+            }
             None => Err(NotInPieces),
         };
         loader.loaded = context.into_loaded();
@@ -214,8 +231,12 @@ mod tests {
     /// Pieces of two blocks and more.
     const SMALL: PieceSizes = PieceSizes { whole: 3, piece: 2, window: 4 };
 
-    const SMALL_RULES: PieceRules<'_> =
-        PieceRules { knowledge: ControlKnowledge::Stated, sizes: SMALL, limit: FindingLimit::NONE };
+    const SMALL_RULES: PieceRules<'_> = PieceRules {
+        knowledge: ControlKnowledge::Stated,
+        sizes: SMALL,
+        limit: FindingLimit::NONE,
+        enters_numbers: false,
+    };
 
     fn memory(text: &str) -> Memory {
         let mut memory = Memory::default();
@@ -225,11 +246,15 @@ mod tests {
 
     /// Returns the findings of a check in small pieces; `None` if a program has to be checked as a whole.
     fn in_pieces(text: &str) -> Option<Vec<Diagnostic>> {
+        in_pieces_by(text, SMALL_RULES)
+    }
+
+    fn in_pieces_by(text: &str, rules: PieceRules<'_>) -> Option<Vec<Diagnostic>> {
         let (mut memory, settings, mut library) = (memory(text), Settings::default(), NoLibrary);
         let mut loader = Loader::new(&mut memory, &settings, &mut library);
         loader.load_found(&mut KnownBlocks::default(), SMALL.whole);
         assert!(!loader.long.is_empty(), "{text}");
-        findings(&mut loader, SMALL_RULES).map(|(findings, _)| findings)
+        findings(&mut loader, rules).map(|(findings, _)| findings)
     }
 
     #[test]
@@ -293,11 +318,36 @@ mod tests {
         }
     }
 
+    /// A missing macro may return to any number, an unreadable block and a computed jump may lead there. Behind `N7` nothing is
+    /// known of #1 any more, which the check of the whole program knows to be unset at the jump.
+    #[test]
+    fn numbers_that_a_jump_from_anywhere_may_reach_are_entered_in_an_unknown_state() {
+        for jump in ["G65P2A1.", "IF[#100EQ1]GOTO#100", "X1..5"] {
+            let text = format!(
+                "O1\n#34=1\n#101=1\n#101=2\n#101=3\n{jump}\n#101=4\n#101=2\n#34=2\n#101=2\nN7#102=#1\n#101=2\n#34=3\nM30\n"
+            );
+            assert!(in_pieces(&text).is_none(), "{text}");
+            let rules = PieceRules { enters_numbers: true, ..SMALL_RULES };
+            let lines = |findings: &[Diagnostic], code: &str| {
+                let of_code = findings.iter().filter(|finding| finding.kind.code == code);
+                of_code.map(|finding| finding.backtrace.as_ref().unwrap().block.start).collect::<Vec<_>>()
+            };
+            let found = in_pieces_by(&text, rules).unwrap_or_else(|| panic!("{text}"));
+            let whole = check("O1.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary).findings;
+            for code in ["no-such-variable", "unreadable", "missing-program"] {
+                assert_eq!(lines(&found, code), lines(&whole, code), "{text}");
+            }
+            assert_eq!(lines(&found, "no-such-variable").len(), 3);
+            assert_eq!([found, whole].map(|all| lines(&all, "unset-variable").len()), [0, 1], "{text}");
+        }
+    }
+
     /// Blocks of all kinds, some of them with faults.
     const BLOCKS: &str = "(N[1-4]0 ?)?(G0?[0-3] ?)?X[0-9]\\.(Y[0-9]{1,2}\\.)?( F[0-9]0\\.)?|M30|M99|G81Z-1\\.R1\\.|#1=#2|#[1-4]=#[1-4]\\+1\
         |IF\\[#1EQ#0\\]GOTO[1-4]0|M98P2|G65P2A1\\.|WHILE\\[#1LT2\\]DO1|END1|\\(A\\)|O2|IF\\[#1EQ2\\]THEN#3000=1\\(A\\)|G4X#7|/2X1\\.\
         |#34=#[1-4]|#100=#10[0-9]\\+1|#101=#450|#2=#[1-4]\\*3\\.14|#101=SQRT\\[-4\\]|#3=#5021|IF\\[#0EQ#0\\]GOTO20\
-        |\\(CHECK-OFF ROUNDED-PI\\)|X#101|G10L52|G11|N[1-9]0|G80|G66P2|G67|#33=#0|X[1-9]0{0,3}";
+        |\\(CHECK-OFF ROUNDED-PI\\)|X#101|G10L52|G11|N[1-9]0|G80|G66P2|G67|#33=#0|X[1-9]0{0,3}\
+        |X1\\.\\.5|#1=|L X\\+1|END3|DO4|G1X\\[#1";
 
     proptest! {
         #[test]
@@ -315,6 +365,12 @@ mod tests {
             let whole = check("O1.nc", text.as_bytes(), &settings, &mut NoLibrary);
             prop_assert_eq!(shown(&findings), shown(&whole.findings), "{}", text);
             prop_assert_eq!(programs, whole.programs);
+            // Entered at every number, the pieces may find less, and never another thing.
+            let texts = (memory(&text), KnownBlocks::default());
+            let rules = PieceRules { enters_numbers: true, ..SMALL_RULES };
+            let found = shown(&check_sized(texts, &settings, &mut NoLibrary, rules).findings);
+            let whole = shown(&whole.findings);
+            prop_assert!(found.iter().all(|one| whole.contains(one)), "{}\n{:#?}\n{:#?}", text, found, whole);
         }
     }
 }

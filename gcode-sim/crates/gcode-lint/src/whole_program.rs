@@ -12,7 +12,7 @@ use super::literal;
 use super::locals::Locals;
 use super::modes::modes_before;
 use super::parameters::has_open_parameter_input;
-use super::piece::{Piece, PieceStart};
+use super::piece::{Entries, Piece, PieceStart};
 use super::possible_units::PossibleUnits;
 use super::rules::{
     self, PointCounts, alarming_cancel, limits_lookahead, pending_moves, point_counts, sequence_numbers,
@@ -97,9 +97,12 @@ impl WholeProgram {
         context: &CheckContext<'_>,
         unit: &ProgramUnit<'_>,
         (whole, blocks): (&Program, Range<OpIndex>),
-        long: &[ProgramId],
+        (entered, long): (Entries, &[ProgramId]),
     ) -> Result<(PieceStart, Vec<Diagnostic>), NotInPieces> {
         let is_last = blocks.end == whole.block_count();
+        if entered == Entries::Known && leads_to_numbers(unit, (whole, &blocks)) {
+            return Err(NotInPieces);
+        }
         if leads_elsewhere(context, unit, (whole, &blocks), long) || !is_last && !unit.reaches_end {
             return Err(NotInPieces);
         }
@@ -163,6 +166,13 @@ fn rests_on_whole(context: &CheckContext<'_>, finding: &Diagnostic) -> bool {
     rules::OF_WHOLE_PROGRAM.contains(&finding.kind) || is_haas && finding.kind == rules::LIVE_POSITION
 }
 
+/// Returns true if control may go from the piece to any sequence number elsewhere.
+fn leads_to_numbers(unit: &ProgramUnit<'_>, (whole, blocks): (&Program, &Range<OpIndex>)) -> bool {
+    let mut successors = unit.flow.block_successors.iter().zip(&unit.is_reached);
+    successors.any(|(block, is_reached)| *is_reached && block.jumps_anywhere)
+        && whole.has_number_outside(blocks)
+}
+
 /// Returns true if control may come from other blocks than the one before the piece, or go to others than the next one.
 fn leads_elsewhere(
     context: &CheckContext<'_>,
@@ -180,7 +190,6 @@ fn leads_elsewhere(
     let calls_own_blocks = |word: &gcode_lang::program::LoweredWord| {
         word.letter == b'M' && (literal::word_count(word) == Some(97) || literal::word_count(word).is_none())
     };
-    let is_computed = unit.flow.block_successors.iter().any(|block| block.jumps_anywhere);
     let calls_long = |call: &CallSite| {
         call.start_span.is_some()
             || call.is_modal
@@ -188,7 +197,6 @@ fn leads_elsewhere(
     };
     let others = &context.units[..context.units.len() - 1];
     leads_out
-        || is_computed && whole.has_number_outside(blocks)
         || unit.reached_words().any(|(_, words)| words.list.iter().any(calls_own_blocks))
         // A macro that is called modally elsewhere makes it right.
         || unit.reached_words().any(|(_, words)| alarming_cancel(context, words).is_some())
