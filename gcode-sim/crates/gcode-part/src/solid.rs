@@ -94,7 +94,7 @@ pub struct Rod {
 
 impl Rod {
     /// Returns the height above the base, the direction away from the axis and the distance from it.
-    fn cylindrical(&self, p: &Point3<f64>) -> (f64, Vector3<f64>, f64) {
+    pub(super) fn cylindrical(&self, p: &Point3<f64>) -> (f64, Vector3<f64>, f64) {
         let from_base = p - self.base;
         let height = from_base.dot(&self.axis);
         let away = from_base - self.axis.into_inner() * height;
