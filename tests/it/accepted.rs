@@ -55,10 +55,10 @@ pub(crate) fn request(main: &Path) -> Request {
     let mut request = Request::new(name, std::fs::read(main).unwrap(), machine);
     request.limits = Limits { blocks: BLOCKS };
     // Programs that probe find the part of their job there.
-    if let Some(Ok(ProbedPart { surface, radius: Some(radius), .. })) =
-        read("job.toml").map(|text| ProbedPart::parse(&text))
+    if let Some(Ok(ProbedPart { solid, radius: Some(radius), .. })) =
+        read("job.toml").map(|text| ProbedPart::parse(&text, None))
     {
-        request.part = Some(surface);
+        request.part = Some(solid);
         request.machine.probe.get_or_insert(Probe::new(radius));
         request.variables = candidates();
     }

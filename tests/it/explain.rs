@@ -103,7 +103,7 @@ fn on_a_machine(page: &Page, program: &str) -> Outcome {
         page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
     let machine = Machine::parse(machines[0]).unwrap();
     let mut request = Request::new("example.nc", program.as_bytes(), machine);
-    request.part = jobs.first().map(|job| ProbedPart::parse(job).unwrap().surface);
+    request.part = jobs.first().map(|job| ProbedPart::parse(job, None).unwrap().solid);
     simulate(&request, &mut NoLibrary, None).unwrap().run.outcome
 }
 

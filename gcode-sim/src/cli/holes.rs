@@ -52,8 +52,8 @@ fn print_result(
 ) -> Result<ExitStatus, UsageError> {
     let mut list = simulation.hole_list();
     let origin = match &request.part {
-        Some(surface) => {
-            list.enter_at(surface);
+        Some(part) => {
+            list.enter_at(&part.body());
             Origin::Surface
         }
         None => Origin::FeedStart,

@@ -117,8 +117,10 @@ fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result
             "--part: --control SKIP=… or --skip already sets the skip signal: omit one of them",
         ));
     }
-    refuse_other_kind("--part", "a job file", path)?;
-    let part = ProbedPart::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))?;
+    refuse_program("--part", "a job file or a list of holes", path)?;
+    let stock = request.machine.stock.as_ref();
+    let part = ProbedPart::parse(&input::table(path)?, stock);
+    let part = part.map_err(|error| UsageError::in_toml(path, &error))?;
     match (&request.machine.probe, part.radius) {
         (None, Some(radius)) => request.machine.probe = Some(Probe::new(radius)),
         (None, None) => {
@@ -138,7 +140,7 @@ fn apply_part(request: &mut Request, path: &Path, file: Option<&Path>) -> Result
         let machine = file.map_or("the default machine".to_owned(), |file| file.display().to_string());
         same_rotary(rotary, &request.machine, &machine).map_err(|why| refused(&why))?;
     }
-    request.part = Some(part.surface);
+    request.part = Some(part.solid);
     Ok(())
 }
 
@@ -172,13 +174,20 @@ pub(super) fn read_machine(path: &Path) -> Result<Machine, UsageError> {
 /// Refuses a list of holes or a program where a TOML file is required.
 fn refuse_other_kind(flag: &str, required: &str, path: &Path) -> Result<(), UsageError> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    let is_list = matches!(ending.as_deref(), Some("csv" | "json"));
-    let is_program = ending.as_deref() != Some("toml") && !is_list && input::program(path).is_ok();
-    let found = match (is_list, is_program) {
-        (true, _) => "a list of holes: it goes behind --reference",
-        (_, true) => "a program: it is given alone",
-        _ => return Ok(()),
-    };
+    if !matches!(ending.as_deref(), Some("csv" | "json")) {
+        return refuse_program(flag, required, path);
+    }
+    let found = "a list of holes: it goes behind --reference";
+    Err(UsageError::new(format!("{flag} {}: {required} is required, and this is {found}", path.display())))
+}
+
+/// Refuses a program where another file is required.
+fn refuse_program(flag: &str, required: &str, path: &Path) -> Result<(), UsageError> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    if matches!(ending.as_deref(), Some("toml" | "csv" | "json")) || input::program(path).is_err() {
+        return Ok(());
+    }
+    let found = "a program: it is given alone";
     Err(UsageError::new(format!("{flag} {}: {required} is required, and this is {found}", path.display())))
 }
 

@@ -37,10 +37,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (request, mut folders) =
         options::checked_request(&program, None, arguments.picture.as_ref().map(PictureFile::path), None)?;
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
-    let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
-        return Err(UsageError::new("readings need a part: give it with --part JOB.toml"));
+    let (Some(part), Some(probe)) = (request.probed(), &request.machine.probe) else {
+        return Err(UsageError::new(
+            "readings need a part: give it with --part, or [probe] and [stock] in the machine file",
+        ));
     };
-    let following = gcode_session::read_stylus(&request, &mut folders, surface, probe.radius)?;
+    let following = gcode_session::read_stylus(&request, &mut folders, part, probe.radius)?;
     let report = ReadingsReport::new(&render::name(&request), &following, probe.radius, tolerance);
     match arguments.format {
         ListFormat::Text => output::print(&report.text())?,

@@ -43,19 +43,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         options::checked_request(&program, None, arguments.output.as_deref(), None)?;
     let shown = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let (mut stops, mut moves) = (StopRecorder::default(), arguments.moves.then(MoveRecorder::default));
-    let (run, rapids) = progress::of_run(&mut request, |request| {
-        // The tool is followed only if a part for probing is given.
-        let follow = |part| HoleExtractor::new(&request.machine).with_surface(Some(part));
-        let mut probe = request.part.map(follow);
-        let ball = request.part.zip(request.machine.probe.as_ref());
+    let (run, rapids, touches) = progress::of_run(&mut request, |request| {
+        // The tool is followed only if there is a part for probing.
+        let part = request.probed();
+        let follow = |part| HoleExtractor::new(&request.machine).with_probed(Some(part));
+        let mut probe = part.clone().map(follow);
+        // A tool that no file states to be a probe may have drilled and milled the stock before.
+        let is_ball_known = request.part.is_some() || request.machine.has_probe_tool();
+        let ball = part.filter(|_| is_ball_known).zip(request.machine.probe.as_ref());
         let mut rapids = ball.map(|(part, probe)| RapidChecker::new(&request.machine, part, probe.radius));
         let run = gcode_session::run(
             request,
             &mut folders,
             &mut (&mut (&mut stops, &mut moves), &mut (&mut probe, &mut rapids)),
         )?;
-        Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, RapidChecker::finish)))
+        let touches = probe.map_or(0, |probe| probe.probe_count());
+        Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, RapidChecker::finish), touches))
     })?;
+    if request.part.is_none() && 0 < touches {
+        output::print_message(
+            "note: the probe touches the [stock] of the machine file as it is before the run, with what the program cuts\n",
+        );
+    }
     let mut system = Vec::new();
     for number in shown {
         let value = run.control.variable(number);

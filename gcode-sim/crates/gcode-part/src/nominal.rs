@@ -3,8 +3,7 @@ use super::csv_list;
 use super::flutes::Flutes;
 use super::read;
 use super::reference::Reference;
-use super::surface::Surface;
-use crate::job::{Job, Rotary};
+use crate::job::Job;
 use crate::reader::FileError;
 
 /// Nominal part, the reference of `verify`.
@@ -24,25 +23,37 @@ impl NominalPart {
     /// # Errors
     /// Text that is none of these, an invalid list or job, and a job of the family `alignment`.
     pub fn parse(text: &str) -> Result<Self, FileError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if let Some(job) = Self::job(text)? {
+            return Self::from_job(&job);
+        }
+        let text = without_mark(text);
+        if text.trim_start().starts_with('{') {
+            return Reference::of_list(read::json(text)?).map(Self::Holes);
+        }
+        Reference::of_csv(csv_list::csv(text)?).map(Self::Holes)
+    }
+
+    /// Returns the job if the text is a job file; `None` for a list of holes.
+    pub(super) fn job(text: &str) -> Result<Option<Job>, FileError> {
+        let text = without_mark(text);
         if text.trim().is_empty() {
             let message = "the file is empty: give a hole list (JSON or CSV) or a job file".to_owned();
             return Err(FileError { line: None, message });
         }
         if text.trim_start().starts_with('{') {
-            return Reference::of_list(read::json(text)?).map(Self::Holes);
+            return Ok(None);
         }
         if let Some((line, message)) = csv_list::wrong_header(text) {
             return Err(FileError { line: Some(line), message });
         }
         if csv_list::is_csv(text) {
-            return Reference::of_csv(csv_list::csv(text)?).map(Self::Holes);
+            return Ok(None);
         }
         if !text.contains("family") {
             let message = "neither a hole list (JSON or CSV) nor a job file with its key 'family'".to_owned();
             return Err(FileError { line: None, message });
         }
-        Self::from_job(&Job::parse(text)?)
+        Job::parse(text).map(Some)
     }
 
     /// Returns the nominal part computed from the geometry of a job.
@@ -74,31 +85,7 @@ impl NominalPart {
     }
 }
 
-/// A surface for touch probes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProbedPart {
-    /// Surface of the part.
-    pub surface: Surface,
-    /// Radius of the stylus ball, mm; `None` if the job has none.
-    pub radius: Option<f64>,
-    /// Rotary axis of programs that measure while it rotates; `None` for other families.
-    pub rotary: Option<Rotary>,
-}
-
-impl ProbedPart {
-    /// Parses the text of a job file.
-    ///
-    /// # Errors
-    /// An invalid job, and a family whose part has no surface.
-    pub fn parse(text: &str) -> Result<Self, FileError> {
-        let job = Job::parse(text)?;
-        if let Job::Alignment(job) = job {
-            let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
-            return Ok(Self { surface, radius: Some(job.probe.radius), rotary: Some(job.machine.rotary) });
-        }
-        let surface = NominalPart::from_job(&job)?.into_holes().and_then(|reference| reference.surface);
-        let message = "this family's part has no surface to probe".to_owned();
-        let surface = surface.ok_or(FileError { line: None, message })?;
-        Ok(Self { surface, radius: None, rotary: None })
-    }
+/// Returns a text without its byte order mark.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
 }

@@ -5,6 +5,7 @@ use schemars::{JsonSchema, Schema, json_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::part_solid::PartSolid;
 use super::solid::Rod;
 use super::surface::Surface;
 use crate::reader::bounds::{Length, MachinePoint};
@@ -162,6 +163,11 @@ impl Stock {
             }
             Self::Surface { .. } => own,
         }
+    }
+
+    /// Returns the body with its voids, as a stylus touches it; `None` without a body, and for an ellipsoid with voids.
+    pub fn solid(&self, own: Option<Surface>) -> Option<PartSolid> {
+        PartSolid::new(self.body(own)?, self.voids())
     }
 
     /// Returns the bodies that feeds may remove.

@@ -64,7 +64,7 @@ use gcode_lang::program::Library;
 use gcode_lang::program::modes::Unit;
 use gcode_lang::source::{Bytes, Span};
 use gcode_lang::syntax::ast::ProgramPath;
-use gcode_part::{HoleList, Metal, ProcessLimits, Reference, Surface};
+use gcode_part::{HoleList, Metal, PartSolid, ProcessLimits, Reference};
 
 /// A program and the conditions of its run.
 #[derive(Clone, Debug)]
@@ -83,8 +83,8 @@ pub struct Request {
     pub limits: Limits,
     /// Numbers and values of variables set before the start.
     pub variables: Vec<(u32, f64)>,
-    /// The surface of a part for probing.
-    pub part: Option<Surface>,
+    /// The part for probing that is named for the run.
+    pub part: Option<PartSolid>,
     /// Limits of the process that the reference specifies.
     pub process_limits: ProcessLimits,
     /// Each assumption of a verdict on the run is an error.
@@ -94,6 +94,15 @@ pub struct Request {
 }
 
 impl Request {
+    /// Returns the part that a touch probe touches: the one that is named for the run, or else the stock of a machine with a
+    /// probe, unless a setting says where the signal comes.
+    pub fn probed(&self) -> Option<PartSolid> {
+        self.part.clone().or_else(|| {
+            let stock = self.machine.stock.as_ref().filter(|_| self.machine.probe.is_some())?;
+            stock.solid(None).filter(|_| self.settings.skip_signal.is_none())
+        })
+    }
+
     /// Builds a request with the machine's control and the limits of [`Limits::default`].
     pub fn new(name: impl Into<String>, bytes: impl Into<Bytes>, machine: Machine) -> Self {
         let mut settings = Settings {
@@ -179,12 +188,13 @@ pub struct StylusRun {
 pub fn read_stylus(
     request: &Request,
     library: &mut impl Library,
-    surface: Surface,
+    part: impl Into<PartSolid>,
     radius: f64,
 ) -> Result<StylusRun, SessionError> {
-    let mut stylus = Stylus::new(&request.machine, surface, radius);
-    let mut rapids = RapidChecker::new(&request.machine, surface, radius);
-    let mut extractor = HoleExtractor::new(&request.machine).with_surface(Some(surface));
+    let part = part.into();
+    let mut stylus = Stylus::new(&request.machine, part.clone(), radius);
+    let mut rapids = RapidChecker::new(&request.machine, part.clone(), radius);
+    let mut extractor = HoleExtractor::new(&request.machine).with_probed(Some(part));
     let run = run(request, library, &mut (&mut (&mut stylus, &mut rapids), &mut extractor))?;
     let mut readings = stylus.finish();
     readings.findings.extend(rapids.finish().into_iter().chain(run.findings()));
@@ -243,8 +253,10 @@ pub fn simulate_observed<S: EventSink>(
 
 /// Returns the extractor of a run's holes, to which the events of a run can be given.
 pub fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
+    let part = request.part.as_ref().map(PartSolid::body);
     HoleExtractor::new(&request.machine)
-        .with_metal(Metal { body: metal.body.or(request.part), ..metal })
+        .with_metal(Metal { body: metal.body.or(part), ..metal })
+        .with_probed(request.part.clone())
         .with_straight_rapids(request.settings.rapids_are_straight)
         .with_dialect(request.settings.codes)
         .with_process_limits(&request.process_limits)

@@ -15,7 +15,7 @@ use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT, MAIN_PROGRAM};
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Diagnostic;
-use gcode_part::{FeatureKind, Hole, HoleList, MM_PER_INCH, Metal, Reference, Stock, Surface};
+use gcode_part::{FeatureKind, Hole, HoleList, MM_PER_INCH, Metal, PartSolid, Reference, Stock, Surface};
 use gcode_session::{Criteria, Request, Simulation};
 
 /// Largest difference between levels that are one, mm.
@@ -264,7 +264,7 @@ fn list(simulation: &Simulation, request: &Request, clearance: Option<f64>) -> R
 
 /// Returns the part's surface, or the stock of the machine file.
 fn body(request: &Request) -> Option<Surface> {
-    request.part.or_else(|| request.machine.stock.as_ref()?.body(None))
+    request.part.as_ref().map(PartSolid::body).or_else(|| request.machine.stock.as_ref()?.body(None))
 }
 
 /// Returns a length as the program gives it.

@@ -110,7 +110,7 @@ use gcode_lang::motion::{
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
-use gcode_part::{Metal, ProcessLimits, Surface};
+use gcode_part::{Metal, PartSolid, ProcessLimits, Surface};
 
 /// Largest number of passes that are kept: an endless loop must not fill the memory.
 const MAX_PASSES: usize = 200_000;
@@ -120,6 +120,8 @@ const MAX_PASSES: usize = 200_000;
 pub struct HoleExtractor<'m> {
     machine: &'m Machine,
     surface: Option<Surface>,
+    /// What a touch probe touches; `None` if that is unknown.
+    probed: Option<PartSolid>,
     metal: KnownMetal,
     rapid_path: RapidPath,
     axis_position: Position,
@@ -220,6 +222,7 @@ impl<'m> HoleExtractor<'m> {
         Self {
             machine,
             surface: None,
+            probed: None,
             metal: KnownMetal::new(Metal::default()),
             rapid_path: machine.rapid,
             axis_position,
@@ -278,6 +281,7 @@ impl<'m> HoleExtractor<'m> {
     #[must_use]
     pub fn with_surface(mut self, surface: Option<Surface>) -> Self {
         self.surface = surface;
+        self.probed = surface.map(PartSolid::from);
         self.metal = KnownMetal::new(Metal::from(surface));
         self
     }
@@ -286,7 +290,15 @@ impl<'m> HoleExtractor<'m> {
     #[must_use]
     pub fn with_metal(mut self, metal: Metal) -> Self {
         self.surface = metal.body;
+        self.probed = metal.body.and_then(|body| PartSolid::new(body, metal.voids.clone()));
         self.metal = KnownMetal::new(metal);
+        self
+    }
+
+    /// Sets the part that a touch probe touches, if it is not the metal.
+    #[must_use]
+    pub fn with_probed(mut self, part: Option<PartSolid>) -> Self {
+        self.probed = part.or(self.probed);
         self
     }
 

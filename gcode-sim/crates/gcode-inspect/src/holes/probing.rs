@@ -11,10 +11,15 @@ use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, EventKind, SkipMove, SkipSignal};
 
 impl HoleExtractor<'_> {
+    /// Returns the number of probing moves of a probe with a part that it could touch.
+    pub fn probe_count(&self) -> u64 {
+        self.probe_count
+    }
+
     /// Returns the probe's signal; `None` without a probe, or without a part that it could touch.
     pub(super) fn signal_of_probe(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
-        let (probe, surface) = (self.machine.probe.as_ref()?, self.surface.as_ref()?);
-        let signal = self.machine.probe(probe, feed, &self.setup, surface, self.probe_count);
+        let (probe, part) = (self.machine.probe.as_ref()?, self.probed.as_ref()?);
+        let signal = self.machine.probe(probe, feed, &self.setup, part, self.probe_count);
         self.probe_count += 1;
         Some(signal)
     }

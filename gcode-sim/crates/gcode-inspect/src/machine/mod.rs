@@ -292,6 +292,11 @@ impl Machine {
         tool.and_then(|number| self.find_tool(number)).map_or(PointShape::Unknown, Tool::point)
     }
 
+    /// Returns true if the tool table has a touch probe.
+    pub fn has_probe_tool(&self) -> bool {
+        self.tools.iter().any(|tool| tool.kind == Some(ToolKind::Probe))
+    }
+
     /// Returns the kind of the tool in the spindle; `None` if the tool or its kind is unknown.
     pub(crate) fn kind_of(&self, tool: Option<u32>) -> Option<ToolKind> {
         self.find_tool(tool?)?.kind

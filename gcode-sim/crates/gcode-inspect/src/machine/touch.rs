@@ -1,11 +1,9 @@
 //! Contact of a touch probe: where its ball touches the part, and when the control latches the position.
-use nalgebra::Point3;
-
 use super::path::AxisMotion;
 use super::random::RandomStream;
 use super::{Machine, Probe, Setup};
 use gcode_lang::motion::{SkipMove, SkipSignal};
-use gcode_part::{Surface, bisect};
+use gcode_part::PartSolid;
 
 /// Largest deviation of the ball's path from its chords, mm.
 pub(crate) const BALL_CHORD_TOLERANCE: f64 = 1e-5;
@@ -18,11 +16,11 @@ impl Machine {
         probe: &Probe,
         feed: &SkipMove<'_>,
         setup: &Setup,
-        surface: &Surface,
+        part: &PartSolid,
         touches: u64,
     ) -> SkipSignal {
         let travel = AxisMotion { from: feed.from, to: feed.to, arc: None };
-        let Some(contact) = self.touch(&travel, setup, surface, probe.radius) else {
+        let Some(contact) = self.touch(&travel, setup, part, probe.radius) else {
             return SkipSignal::Missed;
         };
         let (seconds, length) = (feed.seconds.0, feed.rate.0 / 60.0 * feed.seconds.0);
@@ -33,7 +31,7 @@ impl Machine {
         let stopped = (latched + over).min(1.0);
         let tip = self.forward(&travel.position(stopped), setup).tip;
         let (deflection, overtravel_limit) =
-            (probe.radius - surface.nearest(&tip).distance, probe.overtravel_limit);
+            (probe.radius - part.nearest(&tip).distance, probe.overtravel_limit);
         match () {
             () if deflection > overtravel_limit => {
                 SkipSignal::StylusBroken { stopped, deflection, overtravel_limit }
@@ -44,29 +42,28 @@ impl Machine {
         }
     }
 
-    /// Returns the fraction of a motion, 0 to 1, at which a ball round the tool's tip touches the surface.
+    /// Returns the fraction of a motion, 0 to 1, at which a ball round the tool's tip touches the part.
     ///
     /// 0 if the ball is inside at the start, `None` if it does not touch. The path is cut into chords short
-    /// enough to replace the curve. Along each, the distance from a convex body is a convex function, so its
-    /// minimum can be found, and the contact before it: no contact is missed, however shallow.
+    /// enough to replace the curve.
     pub fn touch(
         &self,
         travel: &AxisMotion<'_>,
         setup: &Setup,
-        surface: &Surface,
+        part: &PartSolid,
         radius: f64,
     ) -> Option<f64> {
         let tip = |part: f64| self.forward(&travel.position(part), setup).tip;
         let mut from = tip(0.0);
         // A position is rounded to the increment: a ball that just touched may be inside by that much, and
         // leaves freely.
-        if surface.nearest(&from).distance - radius < -self.increment.size() {
+        if part.nearest(&from).distance - radius < -self.increment.size() {
             return Some(0.0);
         }
         let steps = self.chord_count(travel, setup, BALL_CHORD_TOLERANCE);
         for step in 0..steps {
             let to = tip(f64::from(step + 1) / f64::from(steps));
-            if let Some(along) = contact_on_chord(surface, radius, &from, &to) {
+            if let Some(along) = part.contact_between(&from, &to, radius) {
                 return Some((f64::from(step) + along) / f64::from(steps));
             }
             from = to;
@@ -75,32 +72,17 @@ impl Machine {
     }
 }
 
-/// Returns the fraction of a straight travel, 0 to 1, at which the ball touches; `None` if it does not.
-fn contact_on_chord(surface: &Surface, radius: f64, from: &Point3<f64>, to: &Point3<f64>) -> Option<f64> {
-    let along = to - from;
-    let nearest = |t: f64| surface.nearest(&(from + along * t));
-    let open = |t: f64| nearest(t).distance > radius;
-    // The gap closes by at most the travel.
-    let leaves = nearest(0.0).normal.dot(&along) >= 0.0;
-    if leaves || nearest(0.0).distance + nearest(1.0).distance > 2.0 * radius + along.norm() {
-        return None;
-    }
-    let innermost = surface.nearest_between(from, to);
-    match (open(0.0), open(innermost)) {
-        (false, _) => Some(0.0),
-        (true, true) => None,
-        (true, false) => Some(bisect(0.0, innermost, |t| !open(t))),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+
+    use nalgebra::Point3;
 
     use super::*;
     use crate::machine::Distribution;
     use gcode_lang::motion::Position;
     use gcode_lang::units::{Deg, MmPerMin, Seconds};
+    use gcode_part::Surface;
 
     const BODY: Surface = Surface::Ellipsoid { a: 500.0, b: 400.0 };
 
@@ -110,7 +92,7 @@ mod tests {
 
     fn touch(machine: &Machine, from: Position, to: Position, radius: f64) -> Option<f64> {
         let travel = AxisMotion { from: &from, to: &to, arc: None };
-        machine.touch(&travel, &Setup::default(), &BODY, radius)
+        machine.touch(&travel, &Setup::default(), &BODY.into(), radius)
     }
 
     fn near(found: Option<f64>, expected: f64) {
@@ -145,7 +127,7 @@ mod tests {
     /// the ball at (0, 0, −130) when 40² + 130² − 2·40·130·sin B = 105².
     #[test]
     fn a_rotating_table_brings_the_part_to_the_ball() {
-        let sphere = Surface::Ellipsoid { a: 100.0, b: 100.0 };
+        let sphere = PartSolid::from(Surface::Ellipsoid { a: 100.0, b: 100.0 });
         let mut machine = Machine::default();
         machine.part.shift.x = 40.0;
         let (from, to) = (at(0.0, 0.0, -130.0, 0.0), at(0.0, 0.0, -130.0, 90.0));
@@ -185,7 +167,7 @@ mod tests {
     fn probed(probe: &Probe, touches: u64) -> SkipSignal {
         let (from, to) = (at(0.0, 450.0, 0.0, 0.0), at(0.0, 350.0, 0.0, 0.0));
         let feed = SkipMove { from: &from, to: &to, rate: MmPerMin(600.0), seconds: Seconds(10.0) };
-        Machine::default().probe(probe, &feed, &Setup::default(), &BODY, touches)
+        Machine::default().probe(probe, &feed, &Setup::default(), &BODY.into(), touches)
     }
 
     #[test]

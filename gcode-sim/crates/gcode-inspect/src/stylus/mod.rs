@@ -20,7 +20,7 @@ use crate::machine::{AxisMotion, BALL_CHORD_TOLERANCE, Machine, Placement};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, UnknownAxes};
-use gcode_part::Surface;
+use gcode_part::PartSolid;
 
 pub use self::rapids::RapidChecker;
 pub use self::unread::Gap;
@@ -106,7 +106,7 @@ pub struct Stylus<'m> {
     machine: &'m Machine,
     /// The same machine with the part at its nominal position.
     nominal_machine: Machine,
-    surface: Surface,
+    part: PartSolid,
     /// Radius of the ball, mm.
     radius: f64,
     ball: Ball,
@@ -122,12 +122,12 @@ pub struct Stylus<'m> {
 
 impl<'m> Stylus<'m> {
     /// Starts with every axis at machine zero.
-    pub fn new(machine: &'m Machine, surface: Surface, radius: f64) -> Self {
-        let part = Placement { origin: machine.part.origin, ..Placement::default() };
+    pub fn new(machine: &'m Machine, part: impl Into<PartSolid>, radius: f64) -> Self {
+        let nominal = Placement { origin: machine.part.origin, ..Placement::default() };
         Self {
             machine,
-            nominal_machine: Machine { part, ..machine.clone() },
-            surface,
+            nominal_machine: Machine { part: nominal, ..machine.clone() },
+            part: part.into(),
             radius,
             ball: Ball::default(),
             positions: PositionTracker::default(),
@@ -215,7 +215,7 @@ impl<'m> Stylus<'m> {
 
     /// Returns the distance of the ball from the surface; negative if it is deflected.
     fn distance(&self, tip: &Point3<f64>) -> f64 {
-        self.surface.nearest(tip).distance - self.radius
+        self.part.nearest(tip).distance - self.radius
     }
 
     /// Returns the course of a feed from its start, middle and end.
@@ -225,7 +225,7 @@ impl<'m> Stylus<'m> {
         let samples = [0.0, 0.5, 1.0].map(|t| {
             let (step, here) = (1e-3, tip(t));
             let direction = if t < 1.0 { tip(t + step) - here } else { here - tip(t - step) };
-            let nearest = self.surface.nearest(&here);
+            let nearest = self.part.nearest(&here);
             let rise = Unit::try_new(direction, 1e-12).map(|direction| direction.dot(&nearest.normal));
             ((nearest.distance - self.radius).abs() <= MAX_READING_DISTANCE, rise)
         });
@@ -261,7 +261,7 @@ impl<'m> Stylus<'m> {
         };
         for chord in self.ball.chords(self.machine, travel, COARSE_CHORD_TOLERANCE) {
             let here = self.tip(travel, chord(1.0));
-            let nearest = last + (here - last) * self.surface.nearest_between(&last, &here);
+            let nearest = last + (here - last) * self.part.nearest_between(&last, &here);
             let distance = self.distance(&here);
             feed.length += (here - last).norm();
             feed.min_distance = feed.min_distance.min(self.distance(&nearest)).min(distance);
@@ -277,7 +277,7 @@ impl<'m> Stylus<'m> {
         let mut stations = Vec::new();
         for chord in self.ball.chords(self.machine, travel, BALL_CHORD_TOLERANCE) {
             let [start, end] = [0.0, 1.0].map(|t| self.tip(travel, chord(t)));
-            let nearest = self.surface.nearest_between(&start, &end);
+            let nearest = self.part.nearest_between(&start, &end);
             let even = (1..=READINGS_PER_CHORD).map(|n| f64::from(n) / f64::from(READINGS_PER_CHORD));
             let mut inside: Vec<f64> =
                 even.chain((0.0 < nearest && nearest < 1.0).then_some(nearest)).collect();

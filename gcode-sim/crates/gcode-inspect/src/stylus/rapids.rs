@@ -4,10 +4,10 @@ use super::unknown::UnknownPositions;
 use crate::findings::RAPID_INTO_PART;
 use crate::holes::per_block::PerBlock;
 use crate::holes::unknown_axes::PositionTracker;
-use crate::machine::{AxisMotion, Machine};
+use crate::machine::{AxisMotion, Machine, ToolKind};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, EventKind, EventSink, Position};
-use gcode_part::Surface;
+use gcode_part::PartSolid;
 
 /// Largest deviation of a path from its chords, and largest depth that is not reported, mm.
 const CHORD_TOLERANCE: f64 = 0.001;
@@ -16,7 +16,7 @@ const CHORD_TOLERANCE: f64 = 0.001;
 #[derive(Debug)]
 pub struct RapidChecker<'m> {
     machine: &'m Machine,
-    surface: Surface,
+    part: PartSolid,
     /// Radius of the ball, mm.
     radius: f64,
     ball: Ball,
@@ -29,10 +29,10 @@ pub struct RapidChecker<'m> {
 
 impl<'m> RapidChecker<'m> {
     /// Starts with every axis at machine zero.
-    pub fn new(machine: &'m Machine, surface: Surface, radius: f64) -> Self {
+    pub fn new(machine: &'m Machine, part: impl Into<PartSolid>, radius: f64) -> Self {
         Self {
             machine,
-            surface,
+            part: part.into(),
             radius,
             ball: Ball::default(),
             has_been_outside: false,
@@ -51,15 +51,26 @@ impl<'m> RapidChecker<'m> {
 
     /// Returns the depth of the ball in the part.
     fn depth(&self, at: &Position) -> f64 {
-        self.radius - self.surface.nearest(&self.machine.forward(at, &self.ball.setup).tip).distance
+        self.radius - self.part.nearest(&self.machine.forward(at, &self.ball.setup).tip).distance
+    }
+
+    /// Returns true unless the tool is known to be no probe: by its kind, or because another tool is one.
+    fn may_be_probe(&self) -> bool {
+        match self.machine.kind_of(self.ball.setup.tool) {
+            Some(kind) => kind == ToolKind::Probe,
+            None => !self.machine.has_probe_tool(),
+        }
     }
 
     fn check_rapid(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>) {
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let chords = self.ball.chords(self.machine, travel, CHORD_TOLERANCE);
         let depths = chords.map(|chord| {
-            let nearest = self.surface.nearest_between(&tip(chord(0.0)), &tip(chord(1.0)));
-            self.depth(&travel.position(chord(nearest)))
+            let (from, to) = (tip(chord(0.0)), tip(chord(1.0)));
+            // From the contact on the steps are shorter.
+            let contact = self.part.contact_between(&from, &to, self.radius).unwrap_or(0.0);
+            let nearest = self.part.nearest_between(&(from + (to - from) * contact), &to);
+            self.depth(&travel.position(chord(contact + (1.0 - contact) * nearest)))
         });
         let deepest = depths.fold(f64::NEG_INFINITY, f64::max);
         // A retract starts where a feed has deflected the stylus.
@@ -95,6 +106,7 @@ impl EventSink for RapidChecker<'_> {
         };
         let (was, is) = self.positions.advance(self.machine);
         match kind {
+            BallMove::Rapid if !self.may_be_probe() => {}
             // Only the end of a rapid from an unknown position can be checked.
             BallMove::Rapid if !is.is_none() => {}
             BallMove::Rapid if !was.is_none() => self.report_rapid(event, self.depth(to), 0.0),

@@ -5,6 +5,7 @@ use crate::holes::event_script::EventScript;
 use crate::machine::{Head, HeadKind};
 use gcode_lang::motion::Position;
 use gcode_lang::units::{Deg, MmPerMin};
+use gcode_part::Surface;
 
 const SPHERE: Surface = Surface::Ellipsoid { a: 100.0, b: 100.0 };
 
