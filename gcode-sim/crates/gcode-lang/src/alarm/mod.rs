@@ -12,7 +12,7 @@ use crate::source::{Span, Spanned};
 pub use code::{AlarmCode, AlarmRow};
 pub use digit_limit::DigitLimit;
 pub use lacking_code::{OtherControl, lacking_code_help};
-pub use typos::{missing_macro_help, remedy, repeats_in_p_help};
+pub use typos::{missing_macro_help, missing_macros_help, remedy, repeats_in_p_help};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
