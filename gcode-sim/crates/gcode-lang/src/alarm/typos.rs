@@ -77,9 +77,11 @@ fn prose_for_value(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> 
         "SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "SQRT", "ABS", "BIN", "BCD", "ROUND", "FIX", "FUP",
         "LN", "EXP", "POW", "MOD", "AND", "OR", "XOR",
     ];
-    let words = alarm_line.text.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| 1 < word.len());
+    let comment = alarm_line.text.split(')').next()?;
+    let words = comment.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| 1 < word.len());
     let mut words = words.filter(|word| !IN_EXPRESSIONS.contains(&word.to_ascii_uppercase().as_str()));
-    (*alarm == Alarm::RoundBracketsForValue && words.next().is_some())
+    let has_value = matches!(alarm, Alarm::RoundBracketsForValue | Alarm::RoundBrackets { .. });
+    (has_value && words.next().is_some())
         .then(|| "write a number before the comment, or remove the letter".to_owned())
 }
 

@@ -82,8 +82,8 @@ pub(crate) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Di
 fn of_all_macros(each: Vec<(String, Diagnostic)>) -> Option<Diagnostic> {
     let count = each.len();
     let names: Vec<_> = each.iter().map(|(name, _)| name.clone()).collect();
-    let mut all = each.into_iter().map(|(_, finding)| finding);
-    let first = all.next()?;
+    let mut all = each.into_iter();
+    let (_, first) = all.next()?;
     if count == 1 {
         return Some(first);
     }
@@ -92,10 +92,9 @@ fn of_all_macros(each: Vec<(String, Diagnostic)>) -> Option<Diagnostic> {
     let shown = names[..count - count.saturating_sub(NAMED)].join(", ");
     let message = format!("{PS0076}: {count} macros are not found: {shown}{more}");
     let help = missing_macros_help(&names[0], &names[count - 1]);
-    let calls = all.filter_map(|finding| Some((finding.span?, finding.message)));
-    Some(calls.fold(Diagnostic { message, help: Some(help), ..first }, |finding, (span, message)| {
-        finding.label(span, message)
-    }))
+    let calls = all.filter_map(|(name, finding)| Some((finding.span?, name)));
+    let all = Diagnostic { message, help: Some(help), ..first };
+    Some(calls.fold(all, |finding, (span, name)| finding.label(span, name)))
 }
 
 /// Returns true if a program is among those read.
