@@ -149,7 +149,7 @@ fn what_is_typed_for_a_number_is_named() {
     let prose = "write a number before the comment, or remove the letter";
     assert_eq!(help(in_brackets(), "G01 Z (Move to Z depth) F5.", "(Move to Z depth)"), prose);
     assert_eq!(help(in_brackets(), "G01 Z(SIN(30)*#1)", "(SIN(30)*#1)"), "write '[' and ']'");
-    let no_number = || Alarm::RoundBrackets { letter: 'F' };
+    let no_number = || Alarm::RoundBrackets { letter: Some('F') };
     assert_eq!(help(no_number(), "G01 Z-1. F (feed) M8", "(feed) M8"), prose);
     assert_eq!(help(no_number(), "G01 Z-1. F(#1*2) M08 AA", "(#1*2) M08 AA"), "write '[' and ']'");
     let feed = "set #513 above 0 before this block: vacant or 0 it is no feed";
