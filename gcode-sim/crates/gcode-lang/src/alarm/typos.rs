@@ -137,11 +137,11 @@ pub fn missing_macro_help(number: u32) -> Option<String> {
     })
 }
 
-/// Returns what to do about several such macros, of which the first and the last are named.
-pub fn missing_macros_help(first: &str, last: &str) -> String {
+/// Returns what to do about several such macros, of which one is named.
+pub fn missing_macros_help(first: &str) -> String {
     format!(
         "macros of the control or the probe: save them and the macros that they call from the control to a folder, and give that with --lib or \
-         as libraries in gcode.toml; for a run without them, put a stub there for each ({first} and M99, to {last} and M99)"
+         as libraries in gcode.toml; for a run without them, put a stub there for each, as {first} and M99"
     )
 }
 

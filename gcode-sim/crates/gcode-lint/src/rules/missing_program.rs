@@ -91,7 +91,7 @@ fn of_all_macros(each: Vec<(String, Diagnostic)>) -> Option<Diagnostic> {
     let more = if more == 0 { String::new() } else { format!(" and {more} more") };
     let shown = names[..count - count.saturating_sub(NAMED)].join(", ");
     let message = format!("{PS0076}: {count} macros are not found: {shown}{more}");
-    let help = missing_macros_help(&names[0], &names[count - 1]);
+    let help = missing_macros_help(&names[0]);
     let calls = all.filter_map(|(name, finding)| Some((finding.span?, name)));
     let all = Diagnostic { message, help: Some(help), ..first };
     Some(calls.fold(all, |finding, (span, name)| finding.label(span, name)))
