@@ -125,6 +125,14 @@ impl Host for EditorHost {
         read.is_ok() && (is_wide || !beginning.contains(&0))
     }
 
+    #[cfg(unix)]
+    fn is_alive(&self, process: u32) -> bool {
+        use rustix::process::{Pid, test_kill_process};
+        let id = i32::try_from(process).ok().and_then(Pid::from_raw);
+        // A process of another user refuses the signal.
+        id.is_none_or(|id| test_kill_process(id) != Err(rustix::io::Errno::SRCH))
+    }
+
     fn folders(&self, path: &Path) -> Vec<PathBuf> {
         let mut entries = input::folder(path).unwrap_or_default();
         entries.retain(|entry| entry.is_dir() && !entry.is_symlink());

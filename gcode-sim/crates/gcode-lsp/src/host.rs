@@ -24,6 +24,11 @@ pub trait Host: FileAccess + Send + Sync {
         None
     }
 
+    /// Returns false if no process of this computer has an id; true where that cannot be known.
+    fn is_alive(&self, _process: u32) -> bool {
+        true
+    }
+
     /// Returns the folders in a folder, sorted by name.
     fn folders(&self, path: &Path) -> Vec<PathBuf>;
 
