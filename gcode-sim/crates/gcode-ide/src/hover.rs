@@ -38,9 +38,14 @@ impl Project {
         let lexemes = self.line_lexemes(file, line);
         let at = lexemes.iter().position(|lexeme| lexeme.range.start <= offset && offset < lexeme.range.end);
         let at = at.or_else(|| lexemes.iter().position(|lexeme| lexeme.range.touches(offset)));
-        if at.is_some_and(|at| lexemes[at].kind == LexemeKind::Comment) {
-            let (range, kind) = finding_at(index.text(), line, offset)?;
-            return Some(Hover { range, markdown: finding_text(kind), symbol: None });
+        if let Some(comment) = at.map(|at| lexemes[at]).filter(|at| at.kind == LexemeKind::Comment) {
+            let of_code = || {
+                let (range, kind) = finding_at(index.text(), line, offset)?;
+                Some((range, finding_text(kind)))
+            };
+            let of_stop = || Some((comment.range, self.stop_text(file, offset)?));
+            let (range, markdown) = of_code().or_else(of_stop)?;
+            return Some(Hover { range, markdown, symbol: None });
         }
         if let Some((symbol, range)) = self.symbol_at(file, offset)
             && let Some(markdown) = self.symbol_text(&symbol, file, offset, range)
@@ -48,8 +53,8 @@ impl Project {
             // A code that calls is explained as a code, with its program.
             return Some(Hover { range, markdown, symbol: Some(symbol) });
         }
-        let explained = self.lexeme_text(file, &lexemes, at?);
-        let (range, markdown) = explained.or_else(|| self.stop_number_text(file, offset))?;
+        let of_stop = || Some((self.stop_number(file, offset)?, self.stop_text(file, offset)?));
+        let (range, markdown) = self.lexeme_text(file, &lexemes, at?).or_else(of_stop)?;
         Some(Hover { range, markdown, symbol: None })
     }
 
@@ -100,7 +105,7 @@ impl Project {
                 "**#{number}**{name} {meaning}\n\nsystem variable, {}",
                 access_text(number, settings)
             );
-            if let Some(alarm) = self.alarm_text(number, file, offset) {
+            if let Some(alarm) = self.stop_text(file, offset).filter(|_| matches!(number, ALARM | MESSAGE)) {
                 text.push_str(&format!("\n\n{alarm}"));
             }
             return text;
@@ -128,10 +133,10 @@ impl Project {
         text
     }
 
-    /// Returns the alarm or message that an assignment in the line raises.
-    fn alarm_text(&self, number: u32, file: FileId, offset: u32) -> Option<String> {
+    /// Returns the alarm or message of an assignment to #3000 or #3006 in the line.
+    fn stop_text(&self, file: FileId, offset: u32) -> Option<String> {
         let block = self.block(file, offset)?;
-        let stop = block.items.iter().find_map(stop_by_variable).filter(|stop| stop.variable == number)?;
+        let stop = block.items.iter().find_map(stop_by_variable)?;
         let comment = block.comments.first().map(|comment| lossy(&comment.text)).unwrap_or_default();
         let text = if comment.is_empty() { String::new() } else { format!(": {comment}") };
         if stop.variable == MESSAGE {
@@ -147,13 +152,10 @@ impl Project {
         Some(format!("raises alarm **MC{:04}**{text}", f64::from(settings.macro_alarm_base) + number))
     }
 
-    /// Returns the explanation of the number n in `#3000=n` and `#3006=n`.
-    fn stop_number_text(&self, file: FileId, offset: u32) -> Option<(TextRange, String)> {
-        let block = self.block(file, offset)?;
-        let stop = block.items.iter().find_map(stop_by_variable)?;
-        let range = stop.range;
-        let text = self.alarm_text(stop.variable, file, offset).filter(|_| range.touches(offset))?;
-        Some((range, text))
+    /// Returns the range of n in `#3000=n` or `#3006=n` if it has an offset.
+    fn stop_number(&self, file: FileId, offset: u32) -> Option<TextRange> {
+        let stop = self.block(file, offset)?.items.iter().find_map(stop_by_variable)?;
+        stop.range.touches(offset).then_some(stop.range)
     }
 
     fn number_text(&self, number: u32, programs: &[ProgramKey]) -> String {
@@ -389,6 +391,8 @@ mod tests {
         assert_eq!(hovered("O1\nIF[#1 EQ 9]THEN #3000=$07\n"), "raises alarm **MC3007**");
         assert_eq!(hovered("O1\nIF[#1 EQ $09]THEN #3000=7(A)\n"), "", "the number of the condition");
         assert_eq!(hovered("O1\n#3006=$01(TURN)\n"), "stops with the message **TURN**");
+        assert_eq!(hovered("O1\n#3000=7(TOO $0BIG)\n"), "raises alarm **MC3007**: TOO BIG");
+        assert!(hovered("O1\nIF[#1 GT 9]THEN #3000=#$01(A)\n").starts_with("**#1**"));
         assert_eq!(hovered("O1\n#500=$07(TOO BIG)\n"), "");
         // A number above 200 is displayed too, unless the control is told to refuse it.
         assert_eq!(hovered("O1\n#3000=$0201(A)\n"), "raises alarm **MC3201**: A");
