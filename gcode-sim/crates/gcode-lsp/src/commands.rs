@@ -1,4 +1,4 @@
-//! Commands of the lenses above a program: run, verify, prove, show, debug; and renumber.
+//! Commands of the lenses above a program: run, verify, prove, show, debug; renumber, and the edits of code actions.
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,6 +22,7 @@ use crate::code_actions::NUMBERING;
 use crate::document_uri;
 use crate::edits::{renumber_edits, workspace_edit};
 use crate::failure::Failure;
+use crate::offered_edit;
 use crate::program_setup::ProgramSetup;
 use crate::snapshot::Snapshot;
 
@@ -38,11 +39,12 @@ const SHOW: &str = "gcode-sim.show";
 const PAGE: &str = "gcode-sim.page";
 const DEBUG: &str = "gcode-sim.debug";
 const RENUMBER: &str = "gcode-sim.renumber";
+pub(crate) const APPLY: &str = "gcode-sim.apply";
 
 /// All commands, as the server announces them.
-pub(crate) const ALL: [&str; 7] = [RUN, VERIFY, PROVE, SHOW, PAGE, DEBUG, RENUMBER];
+pub(crate) const ALL: [&str; 8] = [RUN, VERIFY, PROVE, SHOW, PAGE, DEBUG, RENUMBER, APPLY];
 
-/// Argument of each command: a program of a document.
+/// Argument of each command but [`APPLY`]: a program of a document.
 #[derive(Debug, Serialize, Deserialize)]
 struct Target {
     uri: Uri,
@@ -77,7 +79,7 @@ pub(crate) struct CommandResult {
 }
 
 impl CommandResult {
-    fn new(value: Value) -> Self {
+    pub(crate) fn new(value: Value) -> Self {
         Self { value, message: None, shown: None, applied: None }
     }
 }
@@ -114,6 +116,9 @@ pub(crate) fn execute(
     let name = params.command.as_str();
     if !ALL.contains(&name) {
         return Err(Failure::params(format!("unknown command {name}; there are {}", ALL.join(", "))));
+    }
+    if name == APPLY {
+        return offered_edit::apply(snapshot, &params);
     }
     let target = target(&params)?;
     let file = snapshot.file(&TextDocumentIdentifier { uri: target.uri.clone() })?;

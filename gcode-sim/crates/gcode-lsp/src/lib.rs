@@ -95,6 +95,7 @@ mod hints;
 mod host;
 mod navigation;
 mod notifications;
+mod offered_edit;
 mod overlay;
 mod program_setup;
 mod proof;
