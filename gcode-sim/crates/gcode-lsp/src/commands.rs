@@ -204,17 +204,18 @@ fn plain(value: &Value) -> String {
 }
 
 fn verify(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<CommandResult, Failure> {
-    let Some(reference) = &setup.paths.reference else {
-        let text = "no reference: name the program in [references] of gcode.toml, or put job.toml beside it";
+    let mut library = setup.library(&snapshot.files);
+    let reference = setup.paths.reference.as_deref();
+    let report = snapshot.files.host().verdict_report(request, &mut library, reference);
+    let Some(report) = report.map_err(Failure::refused)? else {
+        let text = "no reference: name the program in [references] of gcode.toml, or put job.toml or reference.csv beside it; \
+                    for a program without holes state [stock] in the machine file";
         let value = json!({ "verdict": null, "message": text });
         return Ok(CommandResult {
             message: Some((MessageType::WARNING, text.to_owned())),
             ..CommandResult::new(value)
         });
     };
-    let mut library = setup.library(&snapshot.files);
-    let report = snapshot.files.host().verdict_report(request, &mut library, reference);
-    let report = report.map_err(Failure::refused)?;
     let part = |key: &str| report.get(key).map(plain).unwrap_or_default();
     let is_pass = part("verdict") == "pass";
     let kind = if is_pass { MessageType::INFO } else { MessageType::ERROR };
