@@ -2,7 +2,7 @@
 use std::sync::Arc;
 
 use gcode_control::Progress;
-use gcode_ide::{FileEdit, FileId, ProgramKey};
+use gcode_ide::{FileEdit, FileId, FormatOptions, ProgramKey};
 use lsp_types::{
     CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams,
     CodeActionResponse, Diagnostic, NumberOrString, Range,
@@ -55,7 +55,7 @@ pub(crate) fn code_actions(
         actions.extend(source_action(snapshot, title, RENUMBER, edits)?);
     }
     if is_wanted(&FORMAT) {
-        let edits = format_edits(snapshot, file, None, progress);
+        let edits = format_edits(snapshot, file, (None, FormatOptions::default()), progress);
         actions.extend(source_action(snapshot, "Format the file".to_owned(), FORMAT, edits)?);
     }
     let as_offered = |action| match snapshot.client.has_action_literals {
