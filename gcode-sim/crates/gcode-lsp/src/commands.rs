@@ -22,7 +22,7 @@ use crate::code_actions::NUMBERING;
 use crate::document_uri;
 use crate::edits::{renumber_edits, workspace_edit};
 use crate::failure::Failure;
-use crate::offered_edit;
+use crate::offered_edit::{self, APPLY};
 use crate::program_setup::ProgramSetup;
 use crate::snapshot::Snapshot;
 
@@ -39,7 +39,6 @@ const SHOW: &str = "gcode-sim.show";
 const PAGE: &str = "gcode-sim.page";
 const DEBUG: &str = "gcode-sim.debug";
 const RENUMBER: &str = "gcode-sim.renumber";
-pub(crate) const APPLY: &str = "gcode-sim.apply";
 
 /// All commands, as the server announces them.
 pub(crate) const ALL: [&str; 8] = [RUN, VERIFY, PROVE, SHOW, PAGE, DEBUG, RENUMBER, APPLY];
@@ -79,7 +78,7 @@ pub(crate) struct CommandResult {
 }
 
 impl CommandResult {
-    pub(crate) fn new(value: Value) -> Self {
+    fn new(value: Value) -> Self {
         Self { value, message: None, shown: None, applied: None }
     }
 }
@@ -118,7 +117,8 @@ pub(crate) fn execute(
         return Err(Failure::params(format!("unknown command {name}; there are {}", ALL.join(", "))));
     }
     if name == APPLY {
-        return offered_edit::apply(snapshot, &params);
+        let applied = Some(offered_edit::of_command(snapshot, &params)?);
+        return Ok(CommandResult { applied, ..CommandResult::new(Value::Null) });
     }
     let target = target(&params)?;
     let file = snapshot.file(&TextDocumentIdentifier { uri: target.uri.clone() })?;

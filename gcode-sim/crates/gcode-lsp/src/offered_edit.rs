@@ -5,11 +5,13 @@ use lsp_types::{
     CodeAction, Command, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams, Uri, WorkspaceEdit,
 };
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 
-use crate::commands::{APPLY, CommandResult};
 use crate::failure::Failure;
 use crate::snapshot::Snapshot;
+
+/// Name of the command.
+pub(crate) const APPLY: &str = "gcode-sim.apply";
 
 /// Argument of the command.
 #[derive(Debug, Serialize, Deserialize)]
@@ -32,8 +34,11 @@ pub(crate) fn command(snapshot: &Snapshot, action: CodeAction) -> Option<Command
     Some(Command { title: action.title, command: APPLY.to_owned(), arguments: Some(vec![json!(offered)]) })
 }
 
-/// Has the client apply an offered edit to the texts that it is made for.
-pub(crate) fn apply(snapshot: &Snapshot, params: &ExecuteCommandParams) -> Result<CommandResult, Failure> {
+/// Returns the title and the edit that the command has the client apply, if the texts are still those that it is made for.
+pub(crate) fn of_command(
+    snapshot: &Snapshot,
+    params: &ExecuteCommandParams,
+) -> Result<(String, WorkspaceEdit), Failure> {
     let argument = params.arguments.first().cloned().unwrap_or_default();
     let offered = OfferedEdit::deserialize(argument)
         .map_err(|error| Failure::params(format!("{APPLY}: give the argument of a code action: {error}")))?;
@@ -44,8 +49,7 @@ pub(crate) fn apply(snapshot: &Snapshot, params: &ExecuteCommandParams) -> Resul
     if !snapshot.client.has_apply_edit {
         return Err(Failure::refused(format!("{APPLY}: the client has no workspace/applyEdit")));
     }
-    let applied = Some((offered.title, offered.edit));
-    Ok(CommandResult { applied, ..CommandResult::new(Value::Null) })
+    Ok((offered.title, offered.edit))
 }
 
 /// Returns the version of an open document.
