@@ -93,6 +93,33 @@ fn shutdown_and_exit_end_the_server_with_0_exit_alone_with_1() {
     assert_eq!(child.wait().unwrap().code(), Some(1));
 }
 
+/// An editor that dies without closing its end of the server's input. The other servers are given the id of a process that
+/// goes on, and one that none has had.
+#[cfg(unix)]
+#[test]
+fn the_server_ends_when_the_process_of_its_editor_is_gone() {
+    let mut editor = Client::start();
+    let started_by = |process: u32| {
+        let mut client = Client::start();
+        let params = json!({ "processId": process, "rootUri": null, "capabilities": {} });
+        assert_eq!(client.ask(0, "initialize", params)["error"], Value::Null);
+        client
+    };
+    let of_editor = started_by(editor.child.id());
+    // Greater than the largest id of Linux and of macOS.
+    let others = [started_by(std::process::id()), started_by(2_000_000_000)];
+    editor.child.kill().unwrap();
+    editor.child.wait().unwrap();
+    let Client { mut child, input, .. } = of_editor;
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    drop(input);
+    for mut client in others {
+        assert_eq!(client.ask(1, "shutdown", Value::Null)["result"], Value::Null);
+        client.send(json!({ "method": "exit" }));
+        assert_eq!(client.end(), Some(0));
+    }
+}
+
 #[test]
 fn requests_at_the_wrong_time_are_refused_and_the_server_goes_on() {
     let mut client = Client::start();

@@ -124,6 +124,16 @@ fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
             "launch: 'program' is the path of a file; standard input is the protocol's",
         ));
     }
+    let LaunchArguments { machine, main_program, reference, .. } = arguments;
+    let texts = [("program", Some(&arguments.program)), ("mainProgram", main_program.as_ref())]
+        .into_iter()
+        .chain([("machine", machine.as_ref()), ("reference", reference.as_ref())])
+        .chain(arguments.library.iter().map(|folder| ("library", Some(folder))));
+    if let Some((key, _)) =
+        texts.into_iter().find(|(_, text)| text.is_some_and(|text| text.trim().is_empty()))
+    {
+        return Err(UsageError::new(format!("launch: '{key}' is empty: give it a value or leave it out")));
+    }
     if let Some(missing) = arguments.library.iter().find(|folder| !Path::new(folder).is_dir()) {
         return Err(UsageError::new(format!("launch: 'library', {missing}: no such folder")));
     }

@@ -22,7 +22,7 @@ use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_inspect::verify::{Conclusion, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Flutes;
-use gcode_part::{NominalPart, Reference};
+use gcode_part::NominalPart;
 use gcode_session::{Criteria, Request, Run, Simulation};
 
 #[derive(Clone, Debug, Args)]
@@ -92,17 +92,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) =
         options::checked_request(&arguments.program, path.as_deref(), results.0, results.1)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
-    let nominal = match path {
-        Some(path) => options::read_nominal(path, &request, &mut folders)?,
-        None if request.can_judge_motion() => NominalPart::Holes(Reference::without_holes()),
-        None => {
-            return Err(UsageError::new(
-                "no reference: give --reference REF, name the program in [references] of gcode.toml, or put \
-                 reference.csv beside it; for a program without holes state [stock] in the machine file, and what it \
-                 mills as [[stock.pocket]]: its motion is judged",
-            ));
-        }
-    };
+    let nominal = options::nominal_to_verify(path.as_deref(), &request, &mut folders)?.ok_or_else(|| {
+        UsageError::new(
+            "no reference: give --reference REF, name the program in [references] of gcode.toml, or put \
+             reference.csv beside it; for a program without holes state [stock] in the machine file, and what it \
+             mills as [[stock.pocket]]: its motion is judged",
+        )
+    })?;
     match nominal {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);

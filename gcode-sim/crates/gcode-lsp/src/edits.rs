@@ -3,9 +3,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use gcode_control::Progress;
-use gcode_ide::{FileEdit, FileId, ProgramKey, Symbol, TextRange};
+use gcode_ide::{FileEdit, FileId, FormatOptions, ProgramKey, Symbol, TextRange};
 use lsp_types::{
-    DocumentChanges, DocumentFormattingParams, DocumentRangeFormattingParams, OneOf,
+    DocumentChanges, DocumentFormattingParams, DocumentRangeFormattingParams, FormattingOptions, OneOf,
     OptionalVersionedTextDocumentIdentifier, PrepareRenameResponse, RenameParams, TextDocumentEdit,
     TextDocumentPositionParams, TextEdit, WorkspaceEdit,
 };
@@ -94,7 +94,7 @@ pub(crate) fn format(
     progress: &Arc<Progress>,
 ) -> Result<Option<Vec<TextEdit>>, Failure> {
     let file = snapshot.file(&params.text_document)?;
-    formatted(snapshot, file, None, progress).map(Some)
+    formatted(snapshot, file, (None, options(&params.options)), progress).map(Some)
 }
 
 pub(crate) fn format_range(
@@ -104,16 +104,26 @@ pub(crate) fn format_range(
 ) -> Result<Option<Vec<TextEdit>>, Failure> {
     let file = snapshot.file(&params.text_document)?;
     let (start, end) = snapshot.text_of(file)?.offsets(params.range);
-    formatted(snapshot, file, Some(TextRange::new(start, end)), progress).map(Some)
+    let range = Some(TextRange::new(start, end));
+    formatted(snapshot, file, (range, options(&params.options)), progress).map(Some)
+}
+
+/// Returns those of the client's options that mean something in a program.
+fn options(given: &FormattingOptions) -> FormatOptions {
+    FormatOptions {
+        trims_trailing_spaces: given.trim_trailing_whitespace.unwrap_or_default(),
+        inserts_final_newline: given.insert_final_newline.unwrap_or_default(),
+        trims_final_newlines: given.trim_final_newlines.unwrap_or_default(),
+    }
 }
 
 fn formatted(
     snapshot: &Snapshot,
     file: FileId,
-    range: Option<TextRange>,
+    what: (Option<TextRange>, FormatOptions),
     progress: &Arc<Progress>,
 ) -> Result<Vec<TextEdit>, Failure> {
-    let edits = format_edits(snapshot, file, range, progress).map_err(Failure::refused)?;
+    let edits = format_edits(snapshot, file, what, progress).map_err(Failure::refused)?;
     let text = snapshot.text_of(file)?;
     let edit = |edit: FileEdit| {
         let range = text.range(edit.edit.range.start, edit.edit.range.end);
@@ -129,10 +139,10 @@ fn formatted(
 pub(crate) fn format_edits(
     snapshot: &Snapshot,
     file: FileId,
-    range: Option<TextRange>,
+    (range, options): (Option<TextRange>, FormatOptions),
     progress: &Arc<Progress>,
 ) -> Result<Vec<FileEdit>, String> {
-    let edits = snapshot.project.format(file, range).into_iter().map(|edit| FileEdit { file, edit });
+    let edits = snapshot.project.format(file, range, options).into_iter().map(|edit| FileEdit { file, edit });
     let edits: Vec<_> = edits.collect();
     let proved = prove(snapshot, &edits, &BTreeSet::new(), progress);
     proved.map_err(|why| format!("not formatted: {why}"))?;
