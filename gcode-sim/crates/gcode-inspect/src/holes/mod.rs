@@ -23,6 +23,7 @@ mod finish;
 mod gouge_report;
 mod group;
 mod hole_circles;
+mod left_stock;
 mod length_mismatch;
 mod line;
 mod line_findings;
