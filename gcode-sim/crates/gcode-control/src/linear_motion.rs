@@ -236,7 +236,7 @@ impl ControlData {
         if !f_in_block && state.modal_words.mode_of_f != state.modal.feed_mode && f != 0.0 {
             let [commanded, active] =
                 [state.modal_words.mode_of_f, state.modal.feed_mode].map(FeedMode::code);
-            return Err(Alarm::FeedOfOtherMode { commanded, active });
+            return Err(Alarm::FeedOfOtherMode(commanded, active));
         }
         let per_minute = match state.modal.feed_mode {
             FeedMode::PerRevolution => f * state.modal_words.s,

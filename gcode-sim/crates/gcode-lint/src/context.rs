@@ -263,7 +263,7 @@ impl<'a> CheckContext<'a> {
             Alarm::NotSimulated { .. }
             | Alarm::WordNotSimulated(_)
             | Alarm::CodeInMode(..)
-            | Alarm::FeedOfOtherMode { .. } => Severity::Note,
+            | Alarm::FeedOfOtherMode(..) => Severity::Note,
             _ => finding.severity,
         };
         Diagnostic { help, severity, ..finding.with_span(alarm.span) }
