@@ -59,7 +59,7 @@ pub use checked_blocks::CheckedBlocks;
 pub use context::CONTROL_ASSUMED;
 pub use expressions::{UsedExpressions, ValueUse, block_expressions};
 pub use literal::{constant, variable};
-pub use main_programs::{main_programs, programs_called_by_others};
+pub use main_programs::{main_programs, programs_called_by_others, reachable_programs};
 
 use context::CheckContext;
 use gcode_lang::control::Settings;

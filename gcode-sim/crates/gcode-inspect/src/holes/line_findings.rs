@@ -2,6 +2,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::cutting::{CuttingState, PeckExtent, RecordedCut};
+use super::extraction::BackBored;
 use super::line::{CuttingLine, ToolExit};
 use super::near_metal::FeedPart;
 use super::rapids::format_point;
@@ -337,6 +338,8 @@ impl HoleExtractor<'_> {
     pub(super) fn report_back_boring(&mut self, line: &CuttingLine) {
         let length = line.cut_depth();
         self.report_shift_into_wall(line);
+        let (end, out, backtrace) = (line.bottom(), line.out.into_inner(), line.backtrace().clone());
+        self.back_bored.push(BackBored { end, out, backtrace });
         self.findings.add(&BACK_BORED, line.backtrace(), 0, |kind| {
             let message =
                 format!("the tool bores {length:.3} mm backwards, out of the part: not counted as a hole");

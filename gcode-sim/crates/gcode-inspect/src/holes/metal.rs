@@ -4,6 +4,7 @@ use std::sync::Arc;
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
+use super::left_stock::LeftStock;
 use super::open_regions::OpenRegions;
 use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
@@ -41,6 +42,8 @@ pub(super) struct KnownMetal {
     /// Pockets as they are stated.
     pub stated_pockets: Vec<Surface>,
     pub removed: RemovedMetal,
+    /// Body without its voids.
+    left: LeftStock,
 }
 
 /// A point in metal.
@@ -71,12 +74,14 @@ impl KnownMetal {
         let stated_pockets = metal.pockets.clone();
         let OpenRegions { pockets, voids } =
             OpenRegions::new(metal.body.as_ref(), metal.pockets, metal.voids);
+        let left = metal.body.map(|body| LeftStock::new(&body, &voids)).unwrap_or_default();
         Self {
             body: metal.body,
             holes: metal.entries,
             pockets,
             stated_pockets,
             removed: RemovedMetal::new(bounds, voids),
+            left,
         }
     }
 
@@ -98,6 +103,30 @@ impl KnownMetal {
             }
             is_small
         })
+    }
+
+    /// Returns the body without its voids, cut or not, as convex bodies.
+    pub(super) fn left_stock(&self) -> Box<Bodies<'_>> {
+        Box::new(|p, reach, each: &mut dyn FnMut(NearestPoint)| {
+            self.left.for_each(p, reach, &self.removed, each);
+            true
+        })
+    }
+
+    /// Returns the largest depth of a travel in the body without its voids, cut or not, mm; `None` outside.
+    pub(super) fn depth_in_stock(&self, travel: &Line) -> Option<f64> {
+        let body = self.body?;
+        let line = Strip::line(*travel);
+        let mut shares = Shares::default();
+        shares.extend(body.piece(&travel[0], &travel[1], 0.0));
+        self.removed.take_voids(&line, &mut shares);
+        Some(self.deepest(travel, &shares)?.depth)
+    }
+
+    /// Returns true if a point is in a void that is open to a side and to the spindle, seen along a tool.
+    pub(super) fn is_in_open_void(&self, p: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> bool {
+        let out = p + axis.into_inner() * self.removed.height_of_metal(p, axis);
+        self.removed.is_open_beside(p, axis) && self.depth_in_stock(&[*p, out]).is_none()
     }
 
     /// Returns true if a cylinder about the tool's axis may touch metal while its lower end moves between two points.

@@ -23,6 +23,7 @@ mod finish;
 mod gouge_report;
 mod group;
 mod hole_circles;
+mod left_stock;
 mod length_mismatch;
 mod line;
 mod line_findings;
@@ -67,6 +68,7 @@ pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUN
 pub(crate) use cutting::CutConditions;
 pub(crate) use drill_pass::PITCH_TOLERANCE;
 pub use drill_pass::{Helix, MilledCut, PassCut, TapRetract};
+pub(crate) use extraction::BackBored;
 pub use extraction::HoleExtraction;
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
@@ -138,6 +140,7 @@ pub struct HoleExtractor<'m> {
     gouge_count: u32,
     /// Ends of the first feeds along the tool that go beside the part.
     feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
+    back_bored: Vec<BackBored>,
     /// Cycles that cut nothing.
     cycles_in_air: Findings,
     /// Strokes of these cycles.
@@ -231,6 +234,7 @@ impl<'m> HoleExtractor<'m> {
             hole_strokes: BTreeMap::new(),
             gouge_count: 0,
             feeds_in_air: Vec::new(),
+            back_bored: Vec::new(),
             cycles_in_air: Findings::default(),
             strokes_in_air: 0,
             unsized_mills: Vec::new(),

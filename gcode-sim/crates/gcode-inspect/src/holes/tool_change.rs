@@ -84,7 +84,10 @@ impl HoleExtractor<'_> {
     /// Reports a tool change where the part has been, as in a pocket that is milled.
     fn report_change_below_top(&mut self, event: &Event<'_>, axis: &Unit<Vector3<f64>>) {
         let tip = self.pose.tip;
-        let Some(body) = self.surface.filter(|body| body.is_deeper(&tip, TOUCH_DEPTH)) else { return };
+        let is_free = self.metal.is_in_open_void(&tip, axis);
+        let Some(body) = self.surface.filter(|body| !is_free && body.is_deeper(&tip, TOUCH_DEPTH)) else {
+            return;
+        };
         let Some(top) = body.exit(&tip, axis) else { return };
         let depth = (top - tip).norm();
         self.findings.add(&TOOL_LEFT_IN_HOLE, &event.backtrace(), 1, |kind| {

@@ -476,6 +476,8 @@ pub enum Alarm {
     WordNotSimulated(char),
     /// A code, the mode that rules it out, and the code that ends the mode.
     CodeInMode(String, &'static str, &'static str),
+    /// A feed with the F of another mode: the code × 10 of the mode in which F was commanded, and that of the feed.
+    FeedOfOtherMode(u32, u32),
 }
 
 /// Alarm with its span. Boxed, because almost every step of a run returns a result without an alarm.
