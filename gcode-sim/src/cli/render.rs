@@ -319,17 +319,15 @@ fn hole_picture(
     // A part of a family is drawn with its own outline, and its stops are those of the set-up sheet.
     let shows_more = !is_part_known && (has_stock || tool_path::has_curves_or_stops(&path))
         || tool_path::shows_more(&path, simulation);
+    if !is_part_known {
+        holes.side = tool_path::top_side(&path, &simulation.hole_list().holes, machine, holes.side);
+    }
     if is_empty || !is_asked && !shows_more {
         return Ok(gcode_draw::top_view(&holes));
     }
-    let top = match is_part_known {
-        true => holes.side,
-        false => tool_path::top_side(&path, &simulation.hole_list().holes, machine, holes.side),
-    };
-    holes.side = top;
     let standard: Vec<StandardView> = views.iter().filter_map(|view| view.standard()).collect();
     let arrangement = Arrangement {
-        top,
+        top: holes.side,
         views: if standard.is_empty() { vec![StandardView::Top] } else { standard },
         projection: match style.projection {
             Some(ProjectionAngle::First) => Projection::First,

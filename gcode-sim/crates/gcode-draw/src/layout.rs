@@ -189,16 +189,11 @@ fn scale_numbers_width(scene: &Scene, font: &Font, text: f64) -> f64 {
     scene.strokes.iter().map(width).fold(0.0, f64::max)
 }
 
-/// Returns the extent of the drawing, mm: all holes, all lines except unchanged tool paths, and the origin if
-/// axes are drawn.
+/// Returns the extent of the drawing, mm: all holes, all lines, and the origin if axes are drawn.
 fn extent(scene: &Scene) -> (Point, Point) {
     let mut seen: Vec<(Point, f64)> = Vec::new();
-    let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| s.pen.is_path());
     for stroke in &scene.strokes {
-        let counts = path_alone || !stroke.pen.is_path() || matches!(stroke.pen, Pen::New | Pen::Old);
-        if counts || !matches!(stroke.shape, Shape::Line(_)) {
-            seen.extend(stroke.shape.points().into_iter().map(|point| (point, 0.0)));
-        }
+        seen.extend(stroke.shape.points().into_iter().map(|point| (point, 0.0)));
     }
     for mark in &scene.marks {
         let positions = [Some(mark.position), mark.actual].into_iter().flatten();
