@@ -126,9 +126,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         let (machine, reference) = (&new_request.machine, reference.as_ref());
         let paths =
             [old_path, new_path].map(|path| path.map_or_else(ToolPath::default, PathRecorder::finish));
-        let side = changed_view::side_of_changes([&old, &new], &paths, machine, reference);
-        let view =
-            changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), (reference, side));
+        let drawn = (reference, &paths);
+        let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), drawn);
         let picture = gcode_draw::top_view(&view);
         file.draw(&picture, gcode_draw::Size::default())?;
         output::written("picture", file.path(), arguments.format == FindingFormat::Text)?;

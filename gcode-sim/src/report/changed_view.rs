@@ -23,7 +23,7 @@ const MAX_CIRCLE_MOVE: f64 = 5.0;
 
 /// Returns the side from which two revisions are drawn: that of the picture of the new one, or of the old one if the new one
 /// makes no move. A part with an outline is seen along the spindle.
-pub fn side_of_changes(
+fn drawn_side(
     sides: [&Revision; 2],
     paths: &[ToolPath; 2],
     machine: &Machine,
@@ -38,13 +38,13 @@ pub fn side_of_changes(
 }
 
 /// Builds the view of two revisions from the pairs in `compared`. With a reference, the part's outline is
-/// drawn.
+/// drawn. `paths` decide from which side.
 pub fn of_changes(
     name: &str,
     (old, new): (&Revision, &Revision),
     machine: &Machine,
     (compared, tolerance): (&RevisionDiff, f64),
-    (reference, side): (Option<&Reference>, Side),
+    (reference, paths): (Option<&Reference>, &[ToolPath; 2]),
 ) -> TopView {
     let rotary = Rotary::of(machine);
     let lists = [old, new].map(|side| side.simulation.hole_list().holes);
@@ -96,7 +96,7 @@ pub fn of_changes(
     let lines = farthest.into_iter().chain(other_change_lines(&others)).chain(more).collect();
     TopView {
         name: name.to_owned(),
-        side,
+        side: drawn_side(sides, paths, machine, reference),
         outline: reference.and_then(|reference| reference.surface).and_then(outline),
         cylinder: reference.and_then(super::top::cylinder),
         // Without a visible movement the circle has no scale.

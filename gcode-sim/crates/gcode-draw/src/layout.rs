@@ -346,6 +346,17 @@ mod tests {
         assert!(sheet.notes.contains(&note), "{note} {:?}", sheet.notes);
     }
 
+    /// A cut that two revisions share, farther out than the holes and the part.
+    #[test]
+    fn an_unchanged_cut_is_on_the_sheet() {
+        let far = Shape::Line(vec![[-900.0, -700.0], [900.0, -700.0], [900.0, 700.0]]);
+        let mut picture = picture(vec![mark(0, [10.0, 10.0])]);
+        picture.scene.strokes.push(Stroke::new(Pen::Unchanged, far));
+        for (width, height) in SIZES {
+            holds(&picture, Size::new(width, height).unwrap()).unwrap();
+        }
+    }
+
     #[test]
     fn a_coordinate_that_is_not_a_number_is_refused() {
         for at in [[f64::NAN, 0.0], [0.0, f64::INFINITY], [2e6, 0.0]] {
