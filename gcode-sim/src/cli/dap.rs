@@ -141,11 +141,11 @@ fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
         ..RunConditions::default()
     };
     let program = ProgramArguments { program: PathBuf::from(&arguments.program), conditions };
-    let (program, project) = program.completed()?;
+    let given = arguments.reference.as_deref().map(Path::new);
+    let (program, path) = program.with_reference(given)?;
     let (mut request, mut folders) = options::request(&program)?;
-    let given = arguments.reference.as_ref().map(PathBuf::from);
     let is_given = given.is_some();
-    let nominal = match given.or_else(|| project.reference()) {
+    let nominal = match path {
         Some(path) => Some(options::read_nominal(&path, &request, &mut folders)?),
         None => None,
     };

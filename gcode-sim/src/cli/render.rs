@@ -25,7 +25,8 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "OUT.png", display_order = 0, value_parser = PictureFile::parser())]
     output: PictureFile,
 
-    /// The reference: draws the outline, each hole's verdict and its deviation
+    /// The reference: draws the outline, each hole's verdict and its deviation [default: that of the program in gcode.toml, or
+    /// reference.csv beside it]
     #[arg(long, value_name = "REF")]
     reference: Option<PathBuf>,
 
@@ -119,14 +120,16 @@ enum ColorMeaning {
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let views = views(&arguments.view)?;
-    let (program, _) = arguments.program.completed()?;
-    let (mut request, mut folders) = options::checked_request(
-        &program,
-        arguments.reference.as_deref(),
-        Some(arguments.output.path()),
-        None,
-    )?;
-    let nominal = options::nominal_or_motion(arguments.reference.as_deref(), &request, &mut folders)?;
+    let (program, reference) = arguments.program.with_reference(arguments.reference.as_deref())?;
+    let (mut request, mut folders) =
+        options::checked_request(&program, reference.as_deref(), Some(arguments.output.path()), None)?;
+    // A burr beside the program is drawn as such; its path by a flag of paths.
+    let has_path_flag = arguments.color_by.is_some() || arguments.projection.is_some();
+    let is_path = has_path_flag || views.iter().any(|view| view.standard().is_some());
+    let nominal =
+        options::nominal_or_motion(reference.as_deref(), &request, &mut folders)?.filter(|nominal| {
+            arguments.reference.is_some() || !is_path || matches!(nominal, NominalPart::Holes(_))
+        });
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
     let drawn = match nominal {
@@ -266,9 +269,12 @@ pub(super) fn path_picture(
     findings: &[Diagnostic],
     reference: Option<&Reference>,
 ) -> Result<Picture, UsageError> {
-    let findings = if reference.is_some() { findings } else { &simulation.extracted.findings };
-    let errors = tool_path::finding_line(findings, Severity::Error, "error");
-    let warnings = tool_path::finding_line(findings, Severity::Warning, "warning");
+    let findings: Vec<&Diagnostic> = match reference {
+        Some(_) => findings.iter().collect(),
+        None => simulation.findings_without_reference().collect(),
+    };
+    let errors = tool_path::finding_line(findings.iter().copied(), Severity::Error, "error");
+    let warnings = tool_path::finding_line(findings.iter().copied(), Severity::Warning, "warning");
     let is_inch = simulation.run.control.is_inch();
     let unit = is_inch.then(|| "mm; the program is in inches".to_owned());
     holes.lines.extend(errors.into_iter().chain(warnings).chain(unit));
