@@ -29,6 +29,7 @@ mod project;
 mod prove;
 mod readings;
 mod reference;
+mod reference_file;
 mod render;
 mod rerun;
 mod run;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::conditions::ProgramArguments;
-use super::{ExitStatus, UsageError, options, output, page};
+use super::{ExitStatus, UsageError, options, output, page, reference_file};
 use gcode_part::NominalPart;
 use gcode_session::Criteria;
 
@@ -24,7 +24,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (program, reference) = arguments.program.with_reference(arguments.reference.as_deref())?;
+    let (program, reference) = reference_file::completed(&arguments.program, arguments.reference.as_deref())?;
     let (mut request, mut folders) =
         options::checked_request(&program, reference.as_deref(), None, Some(&arguments.output))?;
     let nominal = options::nominal_or_motion(reference.as_deref(), &request, &mut folders)?;

@@ -3,7 +3,6 @@ use std::path::{Path, PathBuf};
 
 use super::conditions::{ProgramArguments, RunConditions};
 use super::disk_files::DiskFiles;
-use super::test::reference_beside;
 use super::{UsageError, input, output};
 use gcode_part::job::project::PROJECT_FILE;
 use gcode_session::files::{self, ProjectError};
@@ -104,19 +103,6 @@ impl ProgramArguments {
         let (conditions, said) = project.complete(&self.program, &self.conditions);
         say(&said);
         Ok((Self { program: self.program.clone(), conditions }, project))
-    }
-
-    /// Completes the conditions, and returns with them the reference: the one that is named, else that of the project's file,
-    /// else the one in the folder of the program.
-    pub(super) fn with_reference(&self, named: Option<&Path>) -> Result<(Self, Option<PathBuf>), UsageError> {
-        let (program, project) = self.completed()?;
-        let beside = || {
-            let path = reference_beside(&program.program, program.conditions.main_program.as_deref())?;
-            say(&[format!("reference: {}", path.display())]);
-            Some(path)
-        };
-        let reference = named.map(Path::to_owned).or_else(|| project.reference()).or_else(beside);
-        Ok((program, reference))
     }
 }
 

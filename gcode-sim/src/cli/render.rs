@@ -7,7 +7,7 @@ use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
-use super::{ExitStatus, UsageError, common, options, output, progress};
+use super::{ExitStatus, UsageError, common, options, output, progress, reference_file};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, tool_path, top};
 use gcode_draw::{Arrangement, ColorBy, FluteView, Picture, Projection, StandardView, TopView};
@@ -120,7 +120,7 @@ enum ColorMeaning {
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let views = views(&arguments.view)?;
-    let (program, reference) = arguments.program.with_reference(arguments.reference.as_deref())?;
+    let (program, reference) = reference_file::completed(&arguments.program, arguments.reference.as_deref())?;
     let (mut request, mut folders) =
         options::checked_request(&program, reference.as_deref(), Some(arguments.output.path()), None)?;
     // A burr beside the program is drawn as such; its path by a flag of paths.

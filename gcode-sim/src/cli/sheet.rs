@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::render::{self, Style};
-use super::{ExitStatus, UsageError, options, output, page, progress};
+use super::{ExitStatus, UsageError, options, output, page, progress, reference_file};
 use crate::report::sheet::ProgramSheet;
 use crate::report::sheet::recorder::{OffsetObserver, UseRecorder};
 use crate::report::top;
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (program, path) = arguments.program.with_reference(arguments.reference.as_deref())?;
+    let (program, path) = reference_file::completed(&arguments.program, arguments.reference.as_deref())?;
     let (mut request, mut folders) =
         options::checked_request(&program, path.as_deref(), None, Some(&arguments.output))?;
     let refusal = "this sheet shows holes, and the reference is a burr: `gcode-gen sheet JOB.toml` writes that of a burr";

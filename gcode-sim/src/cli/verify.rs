@@ -10,7 +10,9 @@ use super::format::FindingFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
 use super::render::Style;
-use super::{ExitStatus, UsageError, common, options, output, page, progress, render, unused_machine};
+use super::{
+    ExitStatus, UsageError, common, options, output, page, progress, reference_file, render, unused_machine,
+};
 use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view, top};
@@ -69,7 +71,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Completes the arguments by the project of the program; returns them with the reference, if one is named.
     fn completed(&self) -> Result<(Self, Option<PathBuf>), UsageError> {
-        let (program, reference) = self.program.with_reference(self.reference.as_deref())?;
+        let (program, reference) = reference_file::completed(&self.program, self.reference.as_deref())?;
         Ok((Self { program, ..self.clone() }, reference))
     }
 }

@@ -84,7 +84,11 @@ mod tests {
             (assumption("#510", None, 2), 3, "#510 = vacant (O0100 line 12) decides holes 1, 2"),
             (assumption("#510", Some(2.5), 1), 3, "#510 = 2.5 (O0100 line 12) decides hole 1"),
             (assumption("#510", Some(0.0), 0), 0, "#510 = 0 (O0100 line 12) decides what is cut"),
-            (assumption("D1", Some(0.0), 0), 2, "D1 = 0 (O0100 line 12) decides what is cut besides the holes"),
+            (
+                assumption("D1", Some(0.0), 0),
+                2,
+                "D1 = 0 (O0100 line 12) decides what is cut besides the holes",
+            ),
             (assumption("M21", None, 3), 3, "M21 (O0100 line 12) decides all 3 holes"),
             (
                 assumption("/", Some(0.0), 10),
