@@ -96,7 +96,7 @@ impl Plan {
     fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
         let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text_size), frame.text_size);
         let mut sheet = Sheet::empty(drawing);
-        // The symbols of places lie above those of holes.
+        // The symbols of places lie above those of good holes, and below those of others, which nothing covers.
         let (places, strokes): (Vec<&Stroke>, Vec<&Stroke>) =
             scene.strokes.iter().partition(|stroke| matches!(stroke.shape, Shape::Sign { .. }));
         let draw = |stroke: &Stroke| shape_commands(stroke, &frame.scale, frame.text_size);
@@ -123,12 +123,12 @@ impl Plan {
         sheet.commands.extend(ticks);
         let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
-        // Bad holes are drawn last, on top.
-        for good in [true, false] {
-            let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.status.is_good() == good);
-            sheet.commands.extend(holes.flat_map(|(_, hole)| hole.commands.iter().cloned()));
-        }
-        sheet.commands.extend(places.into_iter().flat_map(draw));
+        let holes = |is_good: bool| {
+            let holes =
+                scene.marks.iter().zip(&drawn).filter(move |(mark, _)| mark.status.is_good() == is_good);
+            holes.flat_map(|(_, hole)| hole.commands.iter().cloned())
+        };
+        sheet.commands.extend(holes(true).chain(places.into_iter().flat_map(draw)).chain(holes(false)));
         let mut lettering = LabelLayout::of(scene, &drawn, frame, &field);
         lettering.write(scene, frame, &mut sheet);
         let is_other = |stroke: &Stroke| !is_line(stroke);

@@ -1,7 +1,7 @@
 //! Result of following a run: its holes, the findings about its motion, and what was not compared.
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use super::clearance::CloseMotion;
 use super::{CutConditions, DrilledHole, LengthMismatch, Search, UnknownRapids, UnsearchedMotions};
@@ -9,6 +9,21 @@ use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
 use gcode_part::{HoleList, ProcessLimits, Unit};
+
+/// A stroke of a drilling cycle that cuts nothing of the known part.
+#[derive(Clone, Debug)]
+pub struct AirStroke {
+    /// Where its feed begins.
+    pub start: Point3<f64>,
+    /// Its deepest point.
+    pub bottom: Point3<f64>,
+    /// Direction back to the start.
+    pub out: Vector3<f64>,
+    /// The tool.
+    pub tool: Option<u32>,
+    /// Its block.
+    pub block: Span,
+}
 
 /// Holes that a program drills, and findings about the motion of the tool.
 #[derive(Clone, Debug, Default)]
@@ -66,6 +81,8 @@ pub struct HoleExtraction {
     pub(crate) cycles_in_air: Vec<Diagnostic>,
     /// Number of their strokes.
     pub(crate) strokes_in_air: u64,
+    /// Those of them whose places are known, the first ones.
+    pub air_strokes: Vec<AirStroke>,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }

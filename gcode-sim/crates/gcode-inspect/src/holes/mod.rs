@@ -67,7 +67,7 @@ pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUN
 pub(crate) use cutting::CutConditions;
 pub(crate) use drill_pass::PITCH_TOLERANCE;
 pub use drill_pass::{Helix, MilledCut, PassCut, TapRetract};
-pub use extraction::HoleExtraction;
+pub use extraction::{AirStroke, HoleExtraction};
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
@@ -142,6 +142,7 @@ pub struct HoleExtractor<'m> {
     cycles_in_air: Findings,
     /// Strokes of these cycles.
     strokes_in_air: u64,
+    air_strokes: Vec<AirStroke>,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -231,6 +232,7 @@ impl<'m> HoleExtractor<'m> {
             feeds_in_air: Vec::new(),
             cycles_in_air: Findings::default(),
             strokes_in_air: 0,
+            air_strokes: Vec::new(),
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
