@@ -239,7 +239,7 @@ impl Host for EditorHost {
         let nominal = nominal.and_then(NominalPart::into_holes);
         let mut trace = Trace::default();
         let criteria = nominal.as_ref().map(Criteria::of);
-        let revision = sentence(Revision::observed(request, &mut library, criteria, &mut trace))?;
+        let revision = sentence(Revision::observed(request, &mut library, criteria, &mut (), &mut trace))?;
         let judged = nominal.as_ref().map(|nominal| (reference, nominal));
         let program = Path::new(&request.name);
         let given = RunConditions {

@@ -10,9 +10,8 @@ use super::format::FindingFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
 use super::render::Style;
-use super::test::reference_beside;
 use super::{
-    ExitStatus, UsageError, common, options, output, page, progress, project, render, unused_machine,
+    ExitStatus, UsageError, common, options, output, page, progress, reference_file, render, unused_machine,
 };
 use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
@@ -72,14 +71,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Completes the arguments by the project of the program; returns them with the reference, if one is named.
     fn completed(&self) -> Result<(Self, Option<PathBuf>), UsageError> {
-        let (program, project) = self.program.completed()?;
-        let stated = self.reference.clone().or_else(|| project.reference());
-        let beside = || {
-            let path = reference_beside(&program.program, program.conditions.main_program.as_deref())?;
-            project::say(&[format!("reference: {}", path.display())]);
-            Some(path)
-        };
-        let reference = stated.or_else(beside);
+        let (program, reference) = reference_file::completed(&self.program, self.reference.as_deref())?;
         Ok((Self { program, ..self.clone() }, reference))
     }
 }

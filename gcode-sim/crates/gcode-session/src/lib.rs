@@ -51,6 +51,7 @@ pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
 use self::set_up::{load, set_up_control};
 use gcode_control::{Control, Limits, Observer, Outcome, Progress};
+use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
 use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
@@ -58,7 +59,7 @@ use gcode_inspect::verify::{Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::remedy;
 use gcode_lang::control::Settings;
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, EventSink};
 use gcode_lang::program::Library;
 use gcode_lang::program::modes::Unit;
@@ -251,6 +252,16 @@ pub fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
 }
 
 impl Simulation {
+    /// Iterates over the findings of a run that no reference judges. A contour or a slot is no hole that failed: the warnings
+    /// that a feed is not counted as a hole belong to the list of the holes.
+    pub fn findings_without_reference(&self) -> impl Iterator<Item = &Diagnostic> {
+        let is_uncounted = |finding: &Diagnostic| {
+            finding.severity == Severity::Warning
+                && [&FEED_NO_HOLE, &FEED_WITHOUT_RETRACT].contains(&finding.kind)
+        };
+        self.extracted.findings.iter().filter(move |finding| !is_uncounted(finding))
+    }
+
     /// Verifies the holes against a reference, and completes the verdict by the request of the run.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, request: &Request) -> Verdict {
         let (machine, locate) = (&request.machine, |span| self.run.locate(span));

@@ -20,6 +20,21 @@ pub(crate) struct BackBored {
     pub backtrace: Backtrace,
 }
 
+/// A stroke of a drilling cycle that cuts nothing of the known part.
+#[derive(Clone, Debug)]
+pub struct AirStroke {
+    /// Where its feed begins.
+    pub start: Point3<f64>,
+    /// Its deepest point.
+    pub bottom: Point3<f64>,
+    /// Direction back to the start.
+    pub out: Vector3<f64>,
+    /// The tool.
+    pub tool: Option<u32>,
+    /// Its block.
+    pub block: Span,
+}
+
 /// Holes that a program drills, and findings about the motion of the tool.
 #[derive(Clone, Debug, Default)]
 pub struct HoleExtraction {
@@ -77,6 +92,8 @@ pub struct HoleExtraction {
     pub(crate) cycles_in_air: Vec<Diagnostic>,
     /// Number of their strokes.
     pub(crate) strokes_in_air: u64,
+    /// Those of them whose places are known, the first ones.
+    pub air_strokes: Vec<AirStroke>,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }

@@ -66,6 +66,7 @@ impl HoleExtractor<'_> {
             back_bored: self.back_bored,
             cycles_in_air: self.cycles_in_air.finish(),
             strokes_in_air: self.strokes_in_air,
+            air_strokes: self.air_strokes,
             is_removal_cut_short: self.metal.removed.is_full,
         }
     }

@@ -69,7 +69,7 @@ pub(crate) use cutting::CutConditions;
 pub(crate) use drill_pass::PITCH_TOLERANCE;
 pub use drill_pass::{Helix, MilledCut, PassCut, TapRetract};
 pub(crate) use extraction::BackBored;
-pub use extraction::HoleExtraction;
+pub use extraction::{AirStroke, HoleExtraction};
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
@@ -145,6 +145,7 @@ pub struct HoleExtractor<'m> {
     cycles_in_air: Findings,
     /// Strokes of these cycles.
     strokes_in_air: u64,
+    air_strokes: Vec<AirStroke>,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -237,6 +238,7 @@ impl<'m> HoleExtractor<'m> {
             back_bored: Vec::new(),
             cycles_in_air: Findings::default(),
             strokes_in_air: 0,
+            air_strokes: Vec::new(),
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
@@ -449,15 +451,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
             EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
-            EventKind::ToolChange { number } => {
-                self.report_low_rapid();
-                self.check_tool_known(event, *number);
-                self.begin_change(event);
-                self.milled_blocks.end_tool();
-                self.update_setup(|setup| setup.tool = Some(*number));
-                self.leave_offset();
-                self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
-            }
+            EventKind::ToolChange { number } => self.change_tool(event, *number),
             EventKind::ToolLength { offset, wear, compensation } => {
                 self.update_setup(|setup| (setup.offset, setup.wear) = (*offset, *wear));
                 self.apply_compensation(event, *compensation);

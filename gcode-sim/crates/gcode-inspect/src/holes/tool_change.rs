@@ -129,6 +129,17 @@ impl HoleExtractor<'_> {
         }
     }
 
+    /// Puts a tool into the spindle.
+    pub(super) fn change_tool(&mut self, event: &Event<'_>, number: u32) {
+        self.report_low_rapid();
+        self.check_tool_known(event, number);
+        self.begin_change(event);
+        self.milled_blocks.end_tool();
+        self.update_setup(|setup| setup.tool = Some(number));
+        self.leave_offset();
+        self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
+    }
+
     /// Adds the finding on a rapid that cuts; behind a tool change the rapid is counted.
     pub(super) fn add_rapid_into_part(
         &mut self,
