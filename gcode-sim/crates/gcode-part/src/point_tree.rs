@@ -50,14 +50,31 @@ impl PointTree {
 
     /// Calls `each` with the index of every point in the box from `low` to `high`, bounds included.
     pub fn in_box(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
-        visit(&self.nodes, 0, low, high, each);
+        self.nodes_in_box(low, high, &mut |node| {
+            each(node.index as usize);
+            true
+        });
+    }
+
+    /// Calls `each` with the nodes in the box from `low` to `high`, bounds included, while it returns true. Returns false if it has
+    /// returned false. The order of two nodes is the same in every box.
+    pub(crate) fn nodes_in_box(
+        &self,
+        low: &Point3<f64>,
+        high: &Point3<f64>,
+        each: &mut impl FnMut(&Node) -> bool,
+    ) -> bool {
+        visit(&self.nodes, 0, low, high, each)
     }
 
     /// Calls `each` once with the indices of every two points whose coordinates differ by at most `reach`.
     pub fn pairs(&self, reach: f64, each: &mut impl FnMut(usize, usize)) {
         let margin = Vector3::repeat(reach);
         for (place, node) in self.nodes.iter().enumerate() {
-            let mut other = |other| each(node.index as usize, other);
+            let mut other = |other: &Node| {
+                each(node.index as usize, other.index as usize);
+                true
+            };
             visit(&self.nodes, place + 1, &(node.point - margin), &(node.point + margin), &mut other);
         }
     }
@@ -104,37 +121,36 @@ fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
     halve(&mut behind[1..], start, high);
 }
 
-/// Calls `each` for the points in a box, without the first `skipped` nodes. It follows one half in a loop: most boxes are
-/// small and meet no other.
+/// Calls `each` for the nodes in a box while it returns true, without the first `skipped` nodes; returns false if it has returned
+/// false. It follows one half in a loop: most boxes are small and meet no other.
 fn visit(
     mut nodes: &[Node],
     mut skipped: usize,
     low: &Point3<f64>,
     high: &Point3<f64>,
-    each: &mut impl FnMut(usize),
-) {
+    each: &mut impl FnMut(&Node) -> bool,
+) -> bool {
     while LEAF_SIZE < nodes.len() {
         let middle = nodes.len() / 2;
         let (before, behind) = (&nodes[..middle], &nodes[middle + 1..]);
         let node = &nodes[middle];
-        if skipped <= middle && node.is_in(low, high) {
-            each(node.index as usize);
+        if skipped <= middle && node.is_in(low, high) && !each(node) {
+            return false;
         }
         let (axis, place) = node.halves();
         let is_before = skipped < middle && low[axis] <= place;
         if place <= high[axis] {
-            if is_before {
-                visit(before, skipped, low, high, each);
+            if is_before && !visit(before, skipped, low, high, each) {
+                return false;
             }
             (nodes, skipped) = (behind, skipped.saturating_sub(middle + 1));
         } else if is_before {
             nodes = before;
         } else {
-            return;
+            return true;
         }
     }
-    let inside = nodes.iter().skip(skipped).filter(|node| node.is_in(low, high));
-    inside.for_each(|node| each(node.index as usize));
+    nodes.iter().skip(skipped).filter(|node| node.is_in(low, high)).all(each)
 }
 
 fn closest(

@@ -10,8 +10,8 @@ use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
 use crate::machine::{COS_30, Machine, ToolKind, ToolPart};
 use gcode_part::{
-    EntryPlanes, FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper,
-    exceeds,
+    EntrySearch, FeatureKind, Hole, LocalSearch, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree,
+    Surface, Taper, exceeds,
 };
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
@@ -68,7 +68,7 @@ pub struct Comparison<'a> {
     /// Entries of the nominal holes, for the first query.
     pub(super) entries: OnceCell<PointTree>,
     /// Metal round the nominal holes, for the first query.
-    pub(super) collars: OnceCell<EntryPlanes>,
+    pub(super) collars: OnceCell<EntrySearch>,
     /// Largest diameter of a drilled hole whose list has none, mm, for the first query.
     pub(super) widest_open: OnceCell<f64>,
 }
@@ -91,7 +91,8 @@ impl<'a> Comparison<'a> {
         let depths = nominal.iter().map(|hole| hole.depth).filter(|_| !through.is_empty());
         let inside = depths.fold(0.0, f64::max);
         let tree = PointTree::new(nominal.iter().map(|hole| Point3::from(hole.entry)).chain(far_ends));
-        let candidates_within = |index: usize, distance: f64, candidates: &mut Vec<HolePair>| {
+        let mut search = LocalSearch::default();
+        let mut candidates_within = |index: usize, distance: f64, candidates: &mut Vec<HolePair>| {
             let hole = &actual[index];
             let deepest = hole.bottom();
             // The finishing tool may begin inside the cut of another one, and a mill in a void whose wall it cuts above its end.
@@ -103,7 +104,7 @@ impl<'a> Comparison<'a> {
             let margin = along + Vector3::repeat(distance);
             let (low, high) = (low - margin, high + margin);
             let before = candidates.len();
-            tree.in_box(&low, &high, &mut |point| {
+            search.in_box(&tree, &low, &high, &mut |point| {
                 let other = point.checked_sub(nominal.len()).map_or(point, |far_end| through[far_end]);
                 let cosine = hole.axis.dot(&Vector3::from(nominal[other].axis));
                 // The nearer end of a through hole is the one from which it is drilled.
