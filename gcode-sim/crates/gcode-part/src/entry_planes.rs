@@ -158,6 +158,11 @@ impl EntryPlanes {
         all.unwrap_or([Point3::origin(); 2])
     }
 
+    /// Calls `each` with the holes whose metal, or the space above it, may reach into the box from `low` to `high`.
+    pub fn around(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
+        self.middles.in_box(&(low - self.extent), &(high + self.extent), each);
+    }
+
     /// Returns a lower bound of the distance from the metal round any hole, mm.
     pub fn nearest_metal(&self, p: &Point3<f64>) -> f64 {
         self.middles.nearest(p).map_or(f64::INFINITY, |(_, distance)| distance - self.reach)

@@ -37,7 +37,7 @@ impl EntrySearch {
         }
     }
 
-    /// Calls `each` with the holes whose metal, or the space above it, may reach into the box from `low` to `high`.
+    /// Calls `each` with the same holes, in the same order, as [`EntryPlanes::around`] does.
     pub fn around(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
         // A callback may search too: it has points of its own.
         let mut recent = self.recent.take();

@@ -1,4 +1,5 @@
 //! A k-d tree of points for box, pair and nearest-neighbour queries on hundreds of thousands of holes.
+use gcode_lang::shares::{share_length, work_on};
 use nalgebra::{Point3, Vector3};
 
 /// Size below which a range of nodes is searched linearly; further halving is slower.
@@ -43,7 +44,12 @@ impl PointTree {
         if let Some(first) = nodes.first().map(|node| node.point) {
             let (low, high) =
                 nodes.iter().fold((first, first), |(low, high), n| (low.inf(&n.point), high.sup(&n.point)));
-            halve(&mut nodes, low, high);
+            let is_shared = share_length(nodes.len()) < nodes.len();
+            let all = (nodes.as_mut_slice(), low, high);
+            match is_shared {
+                true => work_on(split(all).into_iter().flatten(), sort),
+                false => sort(all),
+            }
         }
         Self { nodes }
     }
@@ -100,12 +106,21 @@ impl PointTree {
     }
 }
 
-/// Sorts the points between `low` and `high` into k-d order, split along the longest side of the box.
+/// Nodes, and corners of a box that holds them.
+type Part<'n> = (&'n mut [Node], Point3<f64>, Point3<f64>);
+
+/// Sorts the points between `low` and `high` into k-d order.
+fn sort((nodes, low, high): Part<'_>) {
+    split((nodes, low, high)).into_iter().flatten().for_each(sort);
+}
+
+/// Moves the middle point of a part to its middle, and the others before it and behind it, along the longest side of the box. Returns
+/// both halves; `None` of a part that is a leaf.
 ///
 /// Holes often lie on a plane; a split across that plane would separate none of them.
-fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
+fn split<'n>((nodes, low, high): Part<'n>) -> Option<[Part<'n>; 2]> {
     if nodes.len() <= LEAF_SIZE {
-        return;
+        return None;
     }
     let axis = (high - low).imax();
     let middle = nodes.len() / 2;
@@ -117,8 +132,7 @@ fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
     end[axis] = nodes[middle].point[axis];
     start[axis] = end[axis];
     let (before, behind) = nodes.split_at_mut(middle);
-    halve(before, low, end);
-    halve(&mut behind[1..], start, high);
+    Some([(before, low, end), (&mut behind[1..], start, high)])
 }
 
 /// Calls `each` for the nodes in a box while it returns true, without the first `skipped` nodes; returns false if it has returned

@@ -1,13 +1,11 @@
 //! Holes that end in the wall of a bore across them, such as oil holes.
-use std::sync::Arc;
-
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::bottom;
 use super::matching::Comparison;
 use crate::holes::ring;
 use crate::machine::COS_30;
-use gcode_part::{EntryPlanes, EntrySearch, Hole, Rod, Taper};
+use gcode_part::{EntryPlanes, Hole, Rod, Taper};
 
 /// Number of points on the wall of a hole.
 const RIM_POINTS: u32 = 16;
@@ -40,9 +38,7 @@ impl Comparison<'_> {
     pub(super) fn bore_at_end(&self, own: usize) -> Option<Bore> {
         let hole = &self.nominal[own];
         let margin = Vector3::repeat(self.widest_open() / 2.0);
-        let collars = self.collars.get_or_init(|| {
-            EntrySearch::from(Arc::new(EntryPlanes::of(self.nominal, self.tolerances.depth)))
-        });
+        let collars = self.collars.get_or_init(|| EntryPlanes::of(self.nominal, self.tolerances.depth));
         let (out, end) = (Vector3::from(hole.axis), bottom(hole));
         let mut found = None;
         collars.around(&(end - margin), &(end + margin), &mut |index| {
