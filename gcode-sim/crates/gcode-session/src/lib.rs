@@ -26,6 +26,7 @@ mod assumptions;
 mod causes;
 mod completion;
 mod error;
+mod event_thread;
 pub mod file_uri;
 pub mod files;
 mod grinding;
@@ -49,6 +50,7 @@ pub use open_depths::complete_depths;
 pub use set_up::set_up;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
+use self::event_thread::with_event_thread;
 use self::set_up::{load, set_up_control};
 use gcode_control::{Control, Limits, Observer, Outcome, Progress};
 use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
@@ -231,7 +233,9 @@ pub fn simulate_observed<S: EventSink>(
     let metal = metal.into();
     let mut extractor = extractor(request, metal.clone());
     let mut feeds = second_start::FeedTrace::default();
-    let run = run_observed(request, library, &mut (&mut extractor, (&mut feeds, sink)), observer)?;
+    let run = with_event_thread(&mut extractor, |events| {
+        run_observed(request, library, &mut (events, (&mut feeds, sink)), observer)
+    })?;
     let mut extracted = extractor.finish();
     let lengths = run.control.tool_lengths().map(|(h, _)| h);
     extracted.program_lengths = lengths.filter(|h| !request.states_length(*h)).collect();
