@@ -23,6 +23,7 @@ mod block_marks;
 mod calls;
 mod checked_blocks;
 mod components;
+mod computed_jumps;
 mod context;
 mod control_flow;
 mod expressions;
@@ -167,7 +168,7 @@ fn check_known(
     limit: FindingLimit<'_>,
     library: &mut impl Library,
 ) -> CheckResult {
-    let rules = PieceRules { knowledge, sizes: PieceSizes::USUAL, limit, enters_numbers: true };
+    let rules = PieceRules { knowledge, sizes: PieceSizes::USUAL, limit };
     let mut result = check_sized(texts, settings, library, rules);
     text_behind_end::leave_out(&mut result);
     result
