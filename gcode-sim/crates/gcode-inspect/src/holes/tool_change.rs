@@ -9,7 +9,7 @@ use super::swept_tool::ring;
 use crate::findings::{RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
 use crate::machine::{Setup, TOUCH_DEPTH};
 use gcode_lang::diag::{Diagnostic, FindingKind};
-use gcode_lang::motion::{Event, Position};
+use gcode_lang::motion::{Event, Position, SpindleDirection};
 
 /// Least radius at which metal round a tool is looked for, mm, and its distance from the tool.
 const MIN_RADIUS: f64 = 0.5;
