@@ -419,7 +419,7 @@ mod tests {
         assert_eq!(hovered("O1\n($0ps0112)\n"), division);
         assert_eq!(hovered("O1\n(PS0112$0)\n"), division);
         assert!(hovered("O1\n(MC30$012 NO R)\n").starts_with("**MC3000** the program raises a macro alarm"));
-        assert!(hovered("O1\nG0(CHECK-OFF missin$0g-n)\n").starts_with("**missing-n** "));
+        assert!(hovered("O1\nG0(CHECK-OFF mi$0ssing-n)\n").starts_with("**missing-n** "));
         for text in ["O1\n(PS01$0123)\n", "O1\n(A$0)\n", "O1\n(MC30$0)\n", "O1\n(\u{d8}$0)\n"] {
             assert_eq!(hovered(text), "", "{text}");
         }
