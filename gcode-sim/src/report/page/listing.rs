@@ -346,9 +346,11 @@ mod tests {
                 .map(|(part, line)| (part, Some(line)))
         );
         let old = Text { parts: new.parts.clone(), ..text(&["%", "O1", "M02", "O2", "M98 P3", "O3"]) };
+        // An edited line is listed in any case.
         assert_eq!(
-            rows(&vec![Some(&old), Some(&new)])[3..],
-            [(called, None), (called, Some(2)), (unreached, Some(0)), (unreached, Some(1))]
+            rows(&vec![Some(&old), Some(&new)]),
+            [(main, 3), (main, 4), (called, 2), (called, 5), (unreached, 0), (unreached, 1)]
+                .map(|(part, line)| (part, Some(line)))
         );
     }
 
