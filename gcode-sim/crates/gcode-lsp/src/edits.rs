@@ -13,6 +13,7 @@ use lsp_types::{
 use crate::failure::Failure;
 use crate::proof::{RenamedVariables, prove};
 use crate::snapshot::Snapshot;
+use crate::text_document::TextDocument;
 
 /// Returns edits of files as the client takes them: with the versions of its documents, if it can.
 #[expect(clippy::mutable_key_type, reason = "the protocol's type has URIs as keys")]
@@ -22,7 +23,7 @@ pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Resul
     for FileEdit { file, edit } in edits {
         let text = match &last {
             Some((known, text)) if *known == file => Arc::clone(text),
-            _ => snapshot.text_of(file)?,
+            _ => editable_text(snapshot, file)?,
         };
         let range = text.range(edit.range.start, edit.range.end);
         by_file.entry(file).or_default().push(TextEdit { range, new_text: edit.text });
@@ -47,6 +48,19 @@ pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Resul
     });
     let document_changes = Some(DocumentChanges::Edits(changes.collect()));
     Ok(WorkspaceEdit { document_changes, ..WorkspaceEdit::default() })
+}
+
+/// Returns a text whose columns are those that an editor counts: the text that it has open, or a file in UTF-8.
+fn editable_text(snapshot: &Snapshot, file: FileId) -> Result<Arc<TextDocument>, Failure> {
+    let text = snapshot.text_of(file)?;
+    if snapshot.documents.contains_key(&file) || text.bytes().file_content() == &**text.bytes() {
+        return Ok(text);
+    }
+    let name = snapshot.path(file);
+    Err(Failure::refused(format!(
+        "{} is not in UTF-8, so an editor may count its columns otherwise: open it first",
+        name.display()
+    )))
 }
 
 pub(crate) fn prepare_rename(
