@@ -111,6 +111,43 @@ fn verify(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
     bencher.counter(ItemsCount::new(case.reference.holes.len())).bench_local(|| case.passes(&simulation));
 }
 
+/// Through holes, in rows of 125.
+const THROUGH: [usize; 3] = [4_000, 8_000, 16_000];
+
+const DRILL: &str = r#"
+table = []
+[head]
+kind = "fixed"
+direction = [0.0, 0.0, 1.0]
+[[tool]]
+number = 1
+length = 100.0
+diameter = 5.0
+kind = "drill"
+"#;
+
+/// Drills through holes of a list without diameters, and judges them from both sides.
+#[divan::bench(args = THROUGH, sample_count = 5, sample_size = 1)]
+fn through_holes(bencher: divan::Bencher<'_, '_>, count: usize) {
+    let mut program = "O1\nG21 G17 G40 G49 G54 G80 G90 G94\nT1 M06\nS1500 M03\nG43 H1 Z50.\n\
+                       G99 G81 X0. Y0. Z-15. R2. F100. K0\n"
+        .to_owned();
+    let mut list = "x,y,depth,through\n".to_owned();
+    for (x, y) in (0..count).map(|hole| (hole % 125 * 10, hole / 125 * 10)) {
+        writeln!(program, "X{x}. Y{y}.").expect("a string can be written to");
+        writeln!(list, "{x},{y},10,true").expect("a string can be written to");
+    }
+    program.push_str("G80\nM30\n");
+    let nominal = NominalPart::parse(&list).expect("a valid list");
+    let reference = nominal.into_holes().expect("the part has holes");
+    let machine = Machine::parse(DRILL).expect("the machine file is valid");
+    let mut request = Request::new("O1.nc", program.into_bytes(), machine);
+    request.process_limits = reference.process_limits.clone();
+    let case = Case { request, reference };
+    assert!(case.passes(&case.simulate()), "the program drills the nominal holes");
+    bencher.counter(ItemsCount::new(count)).bench_local(|| case.passes(&case.simulate()));
+}
+
 /// Trochoidal loops in one pocket.
 const LOOPS: [u32; 3] = [500, 1000, 2000];
 

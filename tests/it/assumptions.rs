@@ -212,7 +212,7 @@ fn a_value_that_keeps_the_run_from_a_hole_is_listed() {
         json!([{"what": "#510", "value": null, "place": {"program": "O0001", "line": 6}, "decides": []}]);
     assert_eq!((&holes["holes"], &holes["assumptions"]), (&json!([]), &expected));
     let (text, _) = run("gcode-sim holes O1.nc", place.path());
-    assert!(text.contains("decides whether more holes are cut"), "{text}");
+    assert!(text.contains("decides what is cut"), "{text}");
 }
 
 /// `test` states what `verify` does: hole b depends on #510, which is denied.

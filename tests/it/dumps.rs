@@ -184,3 +184,41 @@ fn a_check_of_a_dump_resolves_calls_by_folder() {
     let (code, text, _) = run("check ALL-PROG.TXT", place.path());
     assert_eq!(code, 0, "{text}");
 }
+
+/// O0100 calls O8000 alone; what the other programs of its dump lack is none of its findings.
+#[test]
+fn a_verdict_and_a_page_are_of_the_programs_that_the_run_can_reach() {
+    let dump = |sub: &str| {
+        format!(
+            "%\nO0001\nG00 X5.\nM30\nO0100\nT1 M06\nS1500 M03\nG54 G90 G00 X10. Y10.\nG43 H1 Z50.\nG98 G81 Z-5. R2. F100.\n\
+             {sub}\nG80\nM30\nO0101\nG00 X50 Y20.\nX60.\nX[1.\nGOTO 50\nM30\nO8000\nX40.\nM99\n%\n"
+        )
+    };
+    let list = "id,x,y,z,depth,diameter\n1,10,10,0,5,\n2,40,10,0,5,\n";
+    let verdict = |sub: &str, list: &str| {
+        let place = folder(&[("d.txt", dump(sub).as_bytes()), ("l.csv", list.as_bytes())]);
+        let (code, text, findings) = run("verify d.txt --program O100 --reference l.csv", place.path());
+        (code, text + &findings)
+    };
+    let (code, text) = verdict("M98 P8000", list);
+    assert!(code == 0 && !text.contains("O0101"), "{text}");
+    // 40 counts 0.04 mm here.
+    let (code, text) = verdict("X40", &list.replace("2,40,", "2,0.04,"));
+    assert!(code == 0 && text.contains("warnings: missing-point") && !text.contains("O0101"), "{text}");
+    let (code, text) = verdict("M98 P8000", &list.replace("2,40,", "2,41,"));
+    assert!(code == 1 && text.contains("hole-position") && !text.contains("O0101"), "{text}");
+    // A computed number may be any.
+    let (code, text) = verdict("#1=8000\nM98 P#1", &list.replace("2,40,", "2,41,"));
+    assert!(code == 1 && text.contains("error[unreadable]") && text.contains("O0101"), "{text}");
+
+    let place = folder(&[("d.txt", dump("M98 P8000").as_bytes())]);
+    let (code, _, message) = run("page d.txt --program O100 -o p.html", place.path());
+    assert_eq!(code, 0, "{message}");
+    let page = std::fs::read_to_string(place.path().join("p.html")).unwrap();
+    let programs = page.split("class=\"program\">").nth(1).unwrap();
+    assert!(programs.starts_with("O0100, O8000<"), "{}", &programs[..80]);
+    let (chosen, called) = (programs.find("<code>O0100").unwrap(), programs.find("<code>O8000").unwrap());
+    assert!(chosen < called && !programs.contains("<code>O0101"));
+    // The first four lines with O0001, and six of O0101.
+    assert!(programs.contains("10 lines of programs that the run cannot reach are omitted"));
+}

@@ -93,6 +93,65 @@ fn shutdown_and_exit_end_the_server_with_0_exit_alone_with_1() {
     assert_eq!(child.wait().unwrap().code(), Some(1));
 }
 
+/// An editor that dies without closing its end of the server's input. The other servers are given the id of a process that
+/// goes on, and one that none has had.
+#[cfg(unix)]
+#[test]
+fn the_server_ends_when_the_process_of_its_editor_is_gone() {
+    let mut editor = Client::start();
+    let started_by = |process: u32| {
+        let mut client = Client::start();
+        let params = json!({ "processId": process, "rootUri": null, "capabilities": {} });
+        assert_eq!(client.ask(0, "initialize", params)["error"], Value::Null);
+        client
+    };
+    let of_editor = started_by(editor.child.id());
+    // Greater than the largest id of Linux and of macOS.
+    let others = [started_by(std::process::id()), started_by(2_000_000_000)];
+    editor.child.kill().unwrap();
+    editor.child.wait().unwrap();
+    let Client { mut child, input, .. } = of_editor;
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    drop(input);
+    for mut client in others {
+        assert_eq!(client.ask(1, "shutdown", Value::Null)["result"], Value::Null);
+        client.send(json!({ "method": "exit" }));
+        assert_eq!(client.end(), Some(0));
+    }
+}
+
+/// An editor reads the comment of the macro, two characters in GBK, as two columns, and the server as four bytes.
+#[test]
+fn a_rename_that_edits_a_closed_file_in_another_encoding_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let [main, called] = ["O0001.nc", "O9001.nc"].map(|name| folder.path().join(name));
+    let text = "O0001\n#500=5.\nG65 P9001 A1.\nM30\n";
+    std::fs::write(&main, text).unwrap();
+    let comment = b"O9001\n(\xbf\xd7\xc9\xee) #500=#500+1.\nM99\n";
+    let uri = format!("file://{}", main.display());
+    let rename = |bytes: &[u8]| {
+        std::fs::write(&called, bytes).unwrap();
+        let mut client = Client::start();
+        let root = format!("file://{}", folder.path().display());
+        client.ask(0, "initialize", json!({ "processId": null, "rootUri": root, "capabilities": {} }));
+        client.send(json!({ "method": "initialized", "params": {} }));
+        let document = json!({ "uri": uri, "languageId": "nc", "version": 1, "text": text });
+        client.send(json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } }));
+        let place = json!({ "line": 1, "character": 1 });
+        let params = json!({ "textDocument": { "uri": uri }, "position": place, "newName": "#510" });
+        let answer = client.ask(1, "textDocument/rename", params);
+        client.ask(2, "shutdown", Value::Null);
+        client.send(json!({ "method": "exit" }));
+        answer
+    };
+    let refused = rename(comment);
+    assert!(refused["error"]["message"].as_str().unwrap().contains("O9001.nc is not in UTF-8"), "{refused}");
+    let renamed = rename("O9001\n(孔深) #500=#500+1.\nM99\n".as_bytes());
+    let edits = renamed["result"]["changes"].as_object().unwrap();
+    let starts = edits.iter().find(|(uri, _)| uri.ends_with("O9001.nc")).unwrap().1.as_array().unwrap();
+    assert_eq!(starts[0]["range"]["start"], json!({ "line": 1, "character": 6 }), "{renamed}");
+}
+
 #[test]
 fn requests_at_the_wrong_time_are_refused_and_the_server_goes_on() {
     let mut client = Client::start();

@@ -26,6 +26,7 @@
 //! | `<- …` | an entry of the comparison the other way round |
 //! | `idle 5, -` | the lines of the next edited block that neither run executes; `idle none` if there is none |
 use gcode_inspect::machine::Machine;
+use gcode_lang::motion::EventSink;
 use gcode_lang::program::NoLibrary;
 use gcode_review::{BlockLocation, Change, Revision, changes, unexecuted};
 use gcode_session::Request;
@@ -41,8 +42,13 @@ pub fn revision(text: &str) -> Revision {
 }
 
 fn revision_on(machine: &Machine, text: &str) -> Revision {
+    revision_with(machine, text, &mut ())
+}
+
+/// Runs a program; `sink` records what else is shown.
+pub(crate) fn revision_with(machine: &Machine, text: &str, sink: &mut impl EventSink) -> Revision {
     let request = Request::new("O1.nc", text.as_bytes(), machine.clone());
-    Revision::of(&request, &mut NoLibrary, None).unwrap()
+    Revision::observed(&request, &mut NoLibrary, None, sink, &mut ()).unwrap()
 }
 
 /// Compares two programs on the default machine.

@@ -3,7 +3,7 @@
 //! The folder is copied, and the server reads that copy. Lines and characters count from 0, as in the protocol. Steps:
 //!
 //! - `client {…}`: parts of the parameters of initialize; without it the client has no capabilities. It comes first.
-//! - `folder`: the copy is the folder of the workspace.
+//! - `folder`: the copy is the folder of the workspace; `folder by path` states it as an old client does.
 //! - `open O1.nc [VERSION]`: opens a file with its text on the disk, or with the lines behind `|` that follow.
 //! - `change O1.nc VERSION`: then lines `2:0-2:4 "text"` or `all "text"`, each a change. `close O1.nc`.
 //! - `disk O1.nc`: writes the lines behind `|` to the disk and says so; `disk O1.nc silently` says nothing.
@@ -89,8 +89,10 @@ impl<'a> Session<'a> {
                     params[key] = value.clone();
                 }
             }
-            if *line == "folder" {
-                params["rootUri"] = session.uri("").into();
+            match *line {
+                "folder" => params["rootUri"] = session.uri("").into(),
+                "folder by path" => params["rootPath"] = folder.display().to_string().into(),
+                _ => {}
             }
         }
         session.ask("initialize", params);

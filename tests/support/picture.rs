@@ -9,13 +9,14 @@ use gcode_draw::{
     compare, development, lay_out, paint, png, top_view,
 };
 use gcode_inspect::machine::Machine;
+use gcode_inspect::tool_path::PathRecorder;
 use gcode_part::Hole;
 use gcode_review::RevisionDiff;
 use gcode_sim::report::changed_view;
 use serde::Deserialize;
 use tiny_skia::{IntRect, Pixmap};
 
-use crate::changes::revision;
+use crate::changes::revision_with;
 use crate::programs::run_line;
 use crate::{Case, burr_picture, root};
 
@@ -108,12 +109,16 @@ pub(crate) fn run(case: &Case) {
     if let Ok(form) = toml::from_str::<RenderedPicture>(&text) {
         return assert_picture(case, &cropped(&rendered(case, &form), form.crop));
     }
+    let mut title = None;
     let (picture, size, crop) = if let Some(job) = case.optional("job.toml") {
         let form: BurrPicture = toml::from_str(&text).unwrap();
         (burr_picture::picture(&job, case.optional("case.nc"), &form.view), form.size, form.crop)
     } else if let Some(old) = case.optional("old.nc") {
         let form: ChangedPicture = toml::from_str(&text).unwrap();
-        (top_view(&changed(&old, &case.text("new.nc"), form.tolerance)), form.size, form.crop)
+        let view = changed(&old, &case.text("new.nc"), form.tolerance);
+        let headline = view.headline().map(|(_, words)| words).unwrap_or_default();
+        title = Some(format!("title: seen from {}: {headline}\n", view.side.name()));
+        (top_view(&view), form.size, form.crop)
     } else {
         described(&text)
     };
@@ -121,7 +126,7 @@ pub(crate) fn run(case: &Case) {
     let sheet = lay_out(picture, size);
     let bytes = png(&paint(&sheet)).unwrap();
     let Some(other) = case.optional("other.toml") else {
-        case.snapshot("says", &words(&sheet));
+        case.snapshot("says", &(title.unwrap_or_default() + &words(&sheet)));
         return assert_picture(case, &cropped(&bytes, crop));
     };
     let (other, size, _) = described(&other);
@@ -148,9 +153,18 @@ fn rendered(case: &Case, form: &RenderedPicture) -> Vec<u8> {
 /// Returns the holes of a new revision over those of the old one, on the default machine.
 fn changed(old: &str, new: &str, tolerance: f64) -> TopView {
     let machine = Machine::default();
-    let (old, new) = (revision(old), revision(new));
+    let [(old, old_path), (new, new_path)] = [old, new].map(|text| {
+        let mut path = PathRecorder::new(&machine);
+        (revision_with(&machine, text, &mut path), path.finish())
+    });
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
-    changed_view::of_changes("O0100.nc", (&old, &new), &machine, (&compared, tolerance), None)
+    changed_view::of_changes(
+        "O0100.nc",
+        (&old, &new),
+        &machine,
+        (&compared, tolerance),
+        (None, &[old_path, new_path]),
+    )
 }
 
 /// Returns the picture that a `case.toml` describes, its size and its crop.

@@ -16,7 +16,7 @@ use serde_json::Value;
 
 use super::conditions::{ProgramArguments, RunConditions};
 use super::message_frames::{FrameError, read_body, write_body};
-use super::{ExitStatus, UsageError, input, options};
+use super::{ExitStatus, UsageError, input, options, reference_file};
 
 /// Blocks after which the search for bad holes ends.
 const MAX_BLOCKS: u64 = 10_000_000;
@@ -124,6 +124,16 @@ fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
             "launch: 'program' is the path of a file; standard input is the protocol's",
         ));
     }
+    let LaunchArguments { machine, main_program, reference, .. } = arguments;
+    let texts = [("program", Some(&arguments.program)), ("mainProgram", main_program.as_ref())]
+        .into_iter()
+        .chain([("machine", machine.as_ref()), ("reference", reference.as_ref())])
+        .chain(arguments.library.iter().map(|folder| ("library", Some(folder))));
+    if let Some((key, _)) =
+        texts.into_iter().find(|(_, text)| text.is_some_and(|text| text.trim().is_empty()))
+    {
+        return Err(UsageError::new(format!("launch: '{key}' is empty: give it a value or leave it out")));
+    }
     if let Some(missing) = arguments.library.iter().find(|folder| !Path::new(folder).is_dir()) {
         return Err(UsageError::new(format!("launch: 'library', {missing}: no such folder")));
     }
@@ -141,11 +151,11 @@ fn launch(arguments: &LaunchArguments) -> Result<LaunchedProgram, UsageError> {
         ..RunConditions::default()
     };
     let program = ProgramArguments { program: PathBuf::from(&arguments.program), conditions };
-    let (program, project) = program.completed()?;
+    let given = arguments.reference.as_deref().map(Path::new);
+    let (program, path) = reference_file::completed(&program, given)?;
     let (mut request, mut folders) = options::request(&program)?;
-    let given = arguments.reference.as_ref().map(PathBuf::from);
     let is_given = given.is_some();
-    let nominal = match given.or_else(|| project.reference()) {
+    let nominal = match path {
         Some(path) => Some(options::read_nominal(&path, &request, &mut folders)?),
         None => None,
     };

@@ -13,6 +13,7 @@ use crate::report::changed_view;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
 use crate::report::sarif::{FileLocation, Finding};
+use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_review::{Revision, RevisionDiff, unexecuted};
 use gcode_session::{Criteria, Trace};
 
@@ -85,10 +86,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let criteria = reference.as_ref().map(Criteria::of);
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
+    let machines = [&old_request, &new_request].map(|request| request.machine.clone());
+    let [mut old_path, mut new_path] =
+        machines.each_ref().map(|machine| arguments.picture.as_ref().map(|_| PathRecorder::new(machine)));
     let [old, new] = progress::of_two_runs(
         [&mut old_request, &mut new_request],
-        |request| Revision::observed(request, &mut old_folders, criteria, &mut old_trace),
-        |request| Revision::observed(request, &mut new_folders, criteria, &mut new_trace),
+        |request| Revision::observed(request, &mut old_folders, criteria, &mut old_path, &mut old_trace),
+        |request| Revision::observed(request, &mut new_folders, criteria, &mut new_path, &mut new_trace),
     );
     let (old, new) = (old?, new?);
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
@@ -120,7 +124,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         };
         let name = format!("{is} against {was}");
         let (machine, reference) = (&new_request.machine, reference.as_ref());
-        let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), reference);
+        let paths =
+            [old_path, new_path].map(|path| path.map_or_else(ToolPath::default, PathRecorder::finish));
+        let drawn = (reference, &paths);
+        let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), drawn);
         let picture = gcode_draw::top_view(&view);
         file.draw(&picture, gcode_draw::Size::default())?;
         output::written("picture", file.path(), arguments.format == FindingFormat::Text)?;

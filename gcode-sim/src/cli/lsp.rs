@@ -15,6 +15,7 @@ use super::conditions::RunConditions;
 use super::disk_files::DiskFiles;
 use super::project::Project;
 use super::rerun::Rerun;
+use super::test::reference_beside;
 use super::{ExitStatus, UsageError, framing, input, options, output, page};
 use crate::report::explain::ExplainReport;
 use crate::report::proof::ProofReport;
@@ -125,6 +126,14 @@ impl Host for EditorHost {
         read.is_ok() && (is_wide || !beginning.contains(&0))
     }
 
+    #[cfg(unix)]
+    fn is_alive(&self, process: u32) -> bool {
+        use rustix::process::{Pid, test_kill_process};
+        let id = i32::try_from(process).ok().and_then(Pid::from_raw);
+        // A process of another user refuses the signal.
+        id.is_none_or(|id| test_kill_process(id) != Err(rustix::io::Errno::SRCH))
+    }
+
     fn folders(&self, path: &Path) -> Vec<PathBuf> {
         let mut entries = input::folder(path).unwrap_or_default();
         entries.retain(|entry| entry.is_dir() && !entry.is_symlink());
@@ -153,9 +162,13 @@ impl Host for EditorHost {
         &self,
         request: &Request,
         mut library: &mut dyn Library,
-        reference: &Path,
-    ) -> Result<Value, String> {
-        match sentence(options::read_nominal(reference, request, &mut library))? {
+        reference: Option<&Path>,
+    ) -> Result<Option<Value>, String> {
+        let main = request.main.as_ref().map(|main| main.name.label());
+        let beside = || reference_beside(Path::new(&request.name), main.as_deref());
+        let reference = reference.map(Path::to_owned).or_else(beside);
+        let nominal = sentence(options::nominal_to_verify(reference.as_deref(), request, &mut library))?;
+        let report = |nominal| match nominal {
             NominalPart::Holes(nominal) => {
                 let criteria = Criteria::of(&nominal);
                 let judged = gcode_session::judge_holes(request, &mut library, criteria, &mut (), &mut ());
@@ -164,7 +177,8 @@ impl Host for EditorHost {
             NominalPart::Flutes(nominal) => {
                 json(&sentence(gcode_session::judge_flutes(request, &mut library, &nominal))?.1)
             }
-        }
+        };
+        nominal.map(report).transpose()
     }
 
     fn proof_report(
@@ -225,7 +239,7 @@ impl Host for EditorHost {
         let nominal = nominal.and_then(NominalPart::into_holes);
         let mut trace = Trace::default();
         let criteria = nominal.as_ref().map(Criteria::of);
-        let revision = sentence(Revision::observed(request, &mut library, criteria, &mut trace))?;
+        let revision = sentence(Revision::observed(request, &mut library, criteria, &mut (), &mut trace))?;
         let judged = nominal.as_ref().map(|nominal| (reference, nominal));
         let program = Path::new(&request.name);
         let given = RunConditions {

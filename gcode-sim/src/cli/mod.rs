@@ -29,6 +29,7 @@ mod project;
 mod prove;
 mod readings;
 mod reference;
+mod reference_file;
 mod render;
 mod rerun;
 mod run;
@@ -172,7 +173,7 @@ fn concluded(conclusion: Conclusion<'_>, all: &[Diagnostic], run: &Run) -> ExitS
 fn judged(simulation: &Simulation, verdict: Option<&Verdict>) -> ExitStatus {
     match verdict {
         Some(verdict) => concluded(verdict.conclusion(), &verdict.diagnostics, &simulation.run),
-        None => findings(&simulation.extracted.findings, &simulation.run),
+        None => findings(simulation.findings_without_reference(), &simulation.run),
     }
 }
 

@@ -208,6 +208,19 @@ pub(super) fn read_nominal(
     Ok(nominal)
 }
 
+/// Reads the reference of a verdict; where none is named, that without holes if the machine file states the stock in which the
+/// motion is judged.
+pub(super) fn nominal_to_verify(
+    path: Option<&Path>,
+    request: &Request,
+    library: &mut impl Library,
+) -> Result<Option<NominalPart>, UsageError> {
+    match path {
+        Some(path) => read_nominal(path, request, library).map(Some),
+        None => Ok(request.can_judge_motion().then(|| NominalPart::Holes(Reference::without_holes()))),
+    }
+}
+
 /// Reads the reference; where none is named, that without holes of a program whose motion alone can be judged.
 pub(super) fn nominal_or_motion(
     path: Option<&Path>,

@@ -16,8 +16,9 @@ pub(super) fn judge_traced(
     criteria: Option<Criteria<'_>>,
 ) -> Result<(Revision, Trace), UsageError> {
     let mut trace = Trace::default();
-    let revision =
-        progress::of_run(request, |request| Revision::observed(request, folders, criteria, &mut trace))?;
+    let revision = progress::of_run(request, |request| {
+        Revision::observed(request, folders, criteria, &mut (), &mut trace)
+    })?;
     // The page is then not complete, and the result is.
     super::findings(&revision.truncation, &revision.simulation.run);
     Ok((revision, trace))

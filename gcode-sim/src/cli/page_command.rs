@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::conditions::ProgramArguments;
-use super::{ExitStatus, UsageError, options, output, page};
+use super::{ExitStatus, UsageError, options, output, page, reference_file};
 use gcode_part::NominalPart;
 use gcode_session::Criteria;
 
@@ -15,7 +15,7 @@ pub(super) struct Arguments {
     output: PathBuf,
 
     /// The reference, whose holes the page compares: a hole list (JSON or CSV) or a job file (TOML) [default: that of the
-    /// program in gcode.toml]
+    /// program in gcode.toml, or reference.csv beside it]
     #[arg(long, value_name = "REF")]
     reference: Option<PathBuf>,
 
@@ -24,8 +24,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (program, project) = arguments.program.completed()?;
-    let reference = arguments.reference.clone().or_else(|| project.reference());
+    let (program, reference) = reference_file::completed(&arguments.program, arguments.reference.as_deref())?;
     let (mut request, mut folders) =
         options::checked_request(&program, reference.as_deref(), None, Some(&arguments.output))?;
     let nominal = options::nominal_or_motion(reference.as_deref(), &request, &mut folders)?;
@@ -35,7 +34,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
                 "a page shows holes, and the reference is a burr: omit the reference",
             ));
         }
-        let note = "the reference of the program in gcode.toml is a burr: the page has no verdict";
+        let note = "the reference of the program is a burr: the page has no verdict";
         output::print_message(&format!("note: {}: {note}\n", path.display()));
     }
     let nominal = nominal.and_then(NominalPart::into_holes);

@@ -7,7 +7,7 @@ use super::conditions::{DenyArguments, ProgramArguments};
 use super::format::TextFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
-use super::{ExitStatus, UsageError, common, options, output, progress};
+use super::{ExitStatus, UsageError, common, options, output, progress, reference_file};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, tool_path, top};
 use gcode_draw::{Arrangement, ColorBy, FluteView, Picture, Projection, StandardView, TopView};
@@ -25,7 +25,8 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "OUT.png", display_order = 0, value_parser = PictureFile::parser())]
     output: PictureFile,
 
-    /// The reference: draws the outline, each hole's verdict and its deviation
+    /// The reference: draws the outline, each hole's verdict and its deviation [default: that of the program in gcode.toml, or
+    /// reference.csv beside it]
     #[arg(long, value_name = "REF")]
     reference: Option<PathBuf>,
 
@@ -119,14 +120,16 @@ enum ColorMeaning {
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let views = views(&arguments.view)?;
-    let (program, _) = arguments.program.completed()?;
-    let (mut request, mut folders) = options::checked_request(
-        &program,
-        arguments.reference.as_deref(),
-        Some(arguments.output.path()),
-        None,
-    )?;
-    let nominal = options::nominal_or_motion(arguments.reference.as_deref(), &request, &mut folders)?;
+    let (program, reference) = reference_file::completed(&arguments.program, arguments.reference.as_deref())?;
+    let (mut request, mut folders) =
+        options::checked_request(&program, reference.as_deref(), Some(arguments.output.path()), None)?;
+    // A burr beside the program is drawn as such; its path by a flag of paths.
+    let has_path_flag = arguments.color_by.is_some() || arguments.projection.is_some();
+    let is_path = has_path_flag || views.iter().any(|view| view.standard().is_some());
+    let nominal =
+        options::nominal_or_motion(reference.as_deref(), &request, &mut folders)?.filter(|nominal| {
+            arguments.reference.is_some() || !is_path || matches!(nominal, NominalPart::Holes(_))
+        });
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
     let drawn = match nominal {
@@ -266,9 +269,12 @@ pub(super) fn path_picture(
     findings: &[Diagnostic],
     reference: Option<&Reference>,
 ) -> Result<Picture, UsageError> {
-    let findings = if reference.is_some() { findings } else { &simulation.extracted.findings };
-    let errors = tool_path::finding_line(findings, Severity::Error, "error");
-    let warnings = tool_path::finding_line(findings, Severity::Warning, "warning");
+    let findings: Vec<&Diagnostic> = match reference {
+        Some(_) => findings.iter().collect(),
+        None => simulation.findings_without_reference().collect(),
+    };
+    let errors = tool_path::finding_line(findings.iter().copied(), Severity::Error, "error");
+    let warnings = tool_path::finding_line(findings.iter().copied(), Severity::Warning, "warning");
     let is_inch = simulation.run.control.is_inch();
     let unit = is_inch.then(|| "mm; the program is in inches".to_owned());
     holes.lines.extend(errors.into_iter().chain(warnings).chain(unit));
@@ -319,17 +325,15 @@ fn hole_picture(
     // A part of a family is drawn with its own outline, and its stops are those of the set-up sheet.
     let shows_more = !is_part_known && (has_stock || tool_path::has_curves_or_stops(&path))
         || tool_path::shows_more(&path, simulation);
+    if !is_part_known {
+        holes.side = tool_path::top_side(&path, &simulation.hole_list().holes, machine, holes.side);
+    }
     if is_empty || !is_asked && !shows_more {
         return Ok(gcode_draw::top_view(&holes));
     }
-    let top = match is_part_known {
-        true => holes.side,
-        false => tool_path::top_side(&path, &simulation.hole_list().holes, machine, holes.side),
-    };
-    holes.side = top;
     let standard: Vec<StandardView> = views.iter().filter_map(|view| view.standard()).collect();
     let arrangement = Arrangement {
-        top,
+        top: holes.side,
         views: if standard.is_empty() { vec![StandardView::Top] } else { standard },
         projection: match style.projection {
             Some(ProjectionAngle::First) => Projection::First,

@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::render::{self, Style};
-use super::{ExitStatus, UsageError, options, output, page, progress};
+use super::{ExitStatus, UsageError, options, output, page, progress, reference_file};
 use crate::report::sheet::ProgramSheet;
 use crate::report::sheet::recorder::{OffsetObserver, UseRecorder};
 use crate::report::top;
@@ -25,7 +25,7 @@ pub(super) struct Arguments {
     output: PathBuf,
 
     /// The reference, whose verdict the sheet shows: a hole list (JSON or CSV) or a job file (TOML) [default: that of the
-    /// program in gcode.toml]
+    /// program in gcode.toml, or reference.csv beside it]
     #[arg(long, value_name = "REF")]
     reference: Option<PathBuf>,
 
@@ -34,8 +34,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
-    let (program, project) = arguments.program.completed()?;
-    let path = arguments.reference.clone().or_else(|| project.reference());
+    let (program, path) = reference_file::completed(&arguments.program, arguments.reference.as_deref())?;
     let (mut request, mut folders) =
         options::checked_request(&program, path.as_deref(), None, Some(&arguments.output))?;
     let refusal = "this sheet shows holes, and the reference is a burr: `gcode-gen sheet JOB.toml` writes that of a burr";
@@ -61,7 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
         _ => {
             let dependencies = simulation.dependencies(&request).numbered(&simulation.run);
             let alone: Vec<Assumption> = dependencies.into_iter().map(|(assumption, _)| assumption).collect();
-            let findings = simulation.extracted.findings.clone();
+            let findings = simulation.findings_without_reference().cloned().collect();
             (top::of_holes(&name, &simulation, &machine, &alone), findings, alone)
         }
     };

@@ -10,9 +10,8 @@ use super::format::FindingFormat;
 use super::library::Folders;
 use super::picture_file::PictureFile;
 use super::render::Style;
-use super::test::reference_beside;
 use super::{
-    ExitStatus, UsageError, common, options, output, page, progress, project, render, unused_machine,
+    ExitStatus, UsageError, common, options, output, page, progress, reference_file, render, unused_machine,
 };
 use crate::report::sarif::{Finding, Invocation};
 use crate::report::verdict_table::{Layout, table};
@@ -22,7 +21,7 @@ use gcode_inspect::tool_path::{PathRecorder, ToolPath};
 use gcode_inspect::verify::{Conclusion, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Flutes;
-use gcode_part::{NominalPart, Reference};
+use gcode_part::NominalPart;
 use gcode_session::{Criteria, Request, Run, Simulation};
 
 #[derive(Clone, Debug, Args)]
@@ -72,14 +71,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// Completes the arguments by the project of the program; returns them with the reference, if one is named.
     fn completed(&self) -> Result<(Self, Option<PathBuf>), UsageError> {
-        let (program, project) = self.program.completed()?;
-        let stated = self.reference.clone().or_else(|| project.reference());
-        let beside = || {
-            let path = reference_beside(&program.program, program.conditions.main_program.as_deref())?;
-            project::say(&[format!("reference: {}", path.display())]);
-            Some(path)
-        };
-        let reference = stated.or_else(beside);
+        let (program, reference) = reference_file::completed(&self.program, self.reference.as_deref())?;
         Ok((Self { program, ..self.clone() }, reference))
     }
 }
@@ -92,17 +84,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) =
         options::checked_request(&arguments.program, path.as_deref(), results.0, results.1)?;
     request.denies_assumptions = arguments.deny.denies_assumptions();
-    let nominal = match path {
-        Some(path) => options::read_nominal(path, &request, &mut folders)?,
-        None if request.can_judge_motion() => NominalPart::Holes(Reference::without_holes()),
-        None => {
-            return Err(UsageError::new(
-                "no reference: give --reference REF, name the program in [references] of gcode.toml, or put \
-                 reference.csv beside it; for a program without holes state [stock] in the machine file, and what it \
-                 mills as [[stock.pocket]]: its motion is judged",
-            ));
-        }
-    };
+    let nominal = options::nominal_to_verify(path.as_deref(), &request, &mut folders)?.ok_or_else(|| {
+        UsageError::new(
+            "no reference: give --reference REF, name the program in [references] of gcode.toml, or put \
+             reference.csv beside it; for a program without holes state [stock] in the machine file, and what it \
+             mills as [[stock.pocket]]: its motion is judged",
+        )
+    })?;
     match nominal {
         NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, tolerance);

@@ -3,9 +3,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{count, rounded};
 use super::hole_changes::remarks;
-use super::top::{Rotary, blank_hole, hide_constant_rotary, outline, round_up, side, side_along_holes};
-use gcode_draw::{DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Stroke, TopView};
+use super::tool_path::top_side;
+use super::top::{Rotary, blank_hole, hide_constant_rotary, outline, round_up, side};
+use gcode_draw::{DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Side, Stroke, TopView};
 use gcode_inspect::machine::Machine;
+use gcode_inspect::tool_path::ToolPath;
 use gcode_part::Reference;
 use gcode_review::{Change, Leg, Paired, Record, Revision, RevisionDiff};
 
@@ -19,14 +21,30 @@ const MAX_KINDS: usize = 7;
 /// Movement beyond which a hole is drawn at both positions instead of in an enlarged circle, mm.
 const MAX_CIRCLE_MOVE: f64 = 5.0;
 
+/// Returns the side from which two revisions are drawn: that of the picture of the new one, or of the old one if the new one
+/// makes no move. A part with an outline is seen along the spindle.
+fn drawn_side(
+    sides: [&Revision; 2],
+    paths: &[ToolPath; 2],
+    machine: &Machine,
+    reference: Option<&Reference>,
+) -> Side {
+    let spindle = side(machine);
+    if reference.is_some_and(|reference| reference.surface.is_some()) {
+        return spindle;
+    }
+    let shown = usize::from(!paths[1].moves.is_empty());
+    top_side(&paths[shown], &sides[shown].simulation.hole_list().holes, machine, spindle)
+}
+
 /// Builds the view of two revisions from the pairs in `compared`. With a reference, the part's outline is
-/// drawn.
+/// drawn. `paths` decide from which side.
 pub fn of_changes(
     name: &str,
     (old, new): (&Revision, &Revision),
     machine: &Machine,
     (compared, tolerance): (&RevisionDiff, f64),
-    reference: Option<&Reference>,
+    (reference, paths): (Option<&Reference>, &[ToolPath; 2]),
 ) -> TopView {
     let rotary = Rotary::of(machine);
     let lists = [old, new].map(|side| side.simulation.hole_list().holes);
@@ -67,16 +85,18 @@ pub fn of_changes(
         let hole = pair.old? + 1;
         Some(format!("largest movement: hole\u{a0}{hole}, {} mm", rounded(pair.moved, 4)))
     });
-    let effects = compared.changes.iter().flat_map(Change::effects);
-    let others: Vec<(&str, &str)> = effects.filter(|(code, _)| !is_of_one_hole(code)).collect();
+    let is_other = |(code, _): &(&str, &str)| !is_of_one_hole(code);
+    let others: Vec<(&str, &str)> =
+        compared.changes.iter().flat_map(Change::effects).filter(is_other).collect();
+    // As in the text: an edit is one change, whatever else it does.
+    let other_changes =
+        compared.changes.iter().filter(|change| change.effects().all(|effect| is_other(&effect))).count();
     let path = path([old, new], machine, compared);
     let more = path.has_other_rapids.then(|| "rapids are not drawn: see --page".to_owned());
     let lines = farthest.into_iter().chain(other_change_lines(&others)).chain(more).collect();
     TopView {
         name: name.to_owned(),
-        side: side_along_holes(&lists[0])
-            .or_else(|| side_along_holes(&lists[1]))
-            .unwrap_or_else(|| side(machine)),
+        side: drawn_side(sides, paths, machine, reference),
         outline: reference.and_then(|reference| reference.surface).and_then(outline),
         cylinder: reference.and_then(super::top::cylinder),
         // Without a visible movement the circle has no scale.
@@ -86,7 +106,7 @@ pub fn of_changes(
         holes,
         purpose: PicturePurpose::Change,
         verdict: None,
-        other_differences: others.len(),
+        other_differences: other_changes,
         ending: others.iter().find(|(code, _)| *code == "outcome").map(|_| {
             let stops = |record: &Record| record.outcome() != "end";
             match (stops(&old.record), stops(&new.record)) {

@@ -6,10 +6,11 @@ use nalgebra::{Point3, Vector3};
 use super::figures::{count, with_sign};
 use super::work_zeros::zeros;
 use gcode_draw::{Cylinder, DrawnHole, HoleStatus, Side, TopView};
-use gcode_inspect::holes::DrilledHole;
+use gcode_inspect::holes::{AirStroke, DrilledHole};
 use gcode_inspect::machine::{AxisLink, HeadKind, LinkMotion, Machine};
 use gcode_inspect::verify::{Answer, Conclusion, Neighbours, Verdict};
 use gcode_lang::motion::AxisIndex;
+use gcode_lang::source::Span;
 use gcode_part::Assumption;
 use gcode_part::Feature;
 use gcode_part::FeatureKind;
@@ -112,7 +113,8 @@ pub fn of_verdict(
         let id = from.map_or_else(String::new, |from| format!("{}:{}", from.program, from.line));
         DrawnHole { actual: Some(extra.hole.clone()), ..blank_hole(id, HoleStatus::Extra) }
     });
-    let mut holes: Vec<DrawnHole> = judged.chain(missing).chain(extra).collect();
+    let beside = holes_beside(simulation, reference, machine);
+    let mut holes: Vec<DrawnHole> = judged.chain(missing).chain(extra).chain(beside).collect();
     hide_constant_rotary(&mut holes);
     TopView {
         name: name.to_owned(),
@@ -163,6 +165,38 @@ pub(super) fn blank_hole(id: String, status: HoleStatus) -> DrawnHole {
         further_angles: Vec::new(),
         remarks: Vec::new(),
     }
+}
+
+/// Distance below which two strokes make one hole, and a stroke is one of a nominal hole, mm.
+const SAME_PLACE: f64 = 0.5;
+
+/// Returns the holes that drilling cycles make beside the stated part, as in other vises: nothing judges them.
+fn holes_beside(simulation: &Simulation, reference: &Reference, machine: &Machine) -> Vec<DrawnHole> {
+    let is_on = |stroke: &AirStroke, entry: [f64; 3]| {
+        (Point3::from(entry) - stroke.start).cross(&stroke.out).norm() < SAME_PLACE
+    };
+    let diameter =
+        |number: Option<u32>| machine.tools.iter().find(|tool| Some(tool.number) == number)?.diameter;
+    let mut made: Vec<(Hole, Span)> = Vec::new();
+    for stroke in &simulation.extracted.air_strokes {
+        if reference.holes.iter().any(|hole| is_on(stroke, hole.entry)) {
+            continue;
+        }
+        let (own, depth) = (diameter(stroke.tool), (stroke.start - stroke.bottom).norm());
+        if let Some((hole, _)) = made.iter_mut().find(|(hole, _)| is_on(stroke, hole.entry)) {
+            let below = (Point3::from(hole.entry) - stroke.bottom).dot(&stroke.out);
+            (hole.depth, hole.diameter) =
+                (hole.depth.max(below), hole.diameter.into_iter().chain(own).reduce(f64::max));
+            continue;
+        }
+        let (entry, axis) = (stroke.start.coords.into(), stroke.out.into());
+        made.push((Hole { entry, axis, depth, diameter: own, ..Hole::default() }, stroke.block));
+    }
+    let drawn = |(hole, block): (Hole, Span)| {
+        let (program, line) = simulation.run.locate(block);
+        DrawnHole { actual: Some(hole), ..blank_hole(format!("{program}:{line}"), HoleStatus::Unjudged) }
+    };
+    made.into_iter().map(drawn).collect()
 }
 
 /// Removes the angles of the rotary axes that are at 0 for every hole.

@@ -69,7 +69,7 @@ fn the_listing_follows_the_moves() {
     let head = "O1\n(A LONG PROGRAM)\nG10 L2 P1 X-300. Z-400.\nG10 L10 P1 R50.\nG21 G90 G54 G0 X0. Y0. A0.\nG43 H1 Z10.\n";
     std::fs::write(place.path().join("O1.nc"), format!("{head}{steps}M30\n")).unwrap();
     assert!(programs::run_line("gcode-sim page O1.nc -o page.html", place.path()).status.success());
-    for (width, height) in [(1400, 1000), (500, 844)] {
+    for (width, height) in [(1400, 1000), (1366, 768), (500, 844)] {
         let browser = Browser::start(width, height);
         browser.open(&place.path().join("page.html"));
         assert_eq!(browser.run("return document.title"), "Program O0001 (O1.nc)");

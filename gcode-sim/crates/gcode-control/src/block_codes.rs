@@ -223,7 +223,7 @@ impl Planner<'_> {
     /// 1. Applies F S T D H, and the radius of D.
     pub(super) fn plan_modal_words(&self, plan: &mut BlockPlan) -> ExecResult<()> {
         if let Some(f) = self.feed_word(&plan.state)? {
-            plan.state.modal_words.f = f;
+            (plan.state.modal_words.f, plan.state.modal_words.mode_of_f) = (f, plan.state.modal.feed_mode);
         }
         if let Some(s) = self.speed_word()? {
             plan.state.modal_words.s = f64::from(s);

@@ -57,6 +57,11 @@ impl Control {
         self.executor.flow.callers.len()
     }
 
+    /// Returns the number of passes of the called program at work that follow this one, by L of its call.
+    pub fn passes_left(&self) -> u32 {
+        self.executor.flow.frame.repeats
+    }
+
     /// Returns the program at work.
     pub fn program_at_work(&self) -> ProgramId {
         self.executor.flow.frame.program

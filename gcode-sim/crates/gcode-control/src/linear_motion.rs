@@ -232,6 +232,12 @@ impl ControlData {
             }
             return Ok((MmPerMin(length * f), 60.0 / f));
         }
+        // Manuals don't say what the number of another mode becomes; one control wants a new F.
+        if !f_in_block && state.modal_words.mode_of_f != state.modal.feed_mode && f != 0.0 {
+            let [commanded, active] =
+                [state.modal_words.mode_of_f, state.modal.feed_mode].map(FeedMode::code);
+            return Err(Alarm::FeedOfOtherMode(commanded, active));
+        }
         let per_minute = match state.modal.feed_mode {
             FeedMode::PerRevolution => f * state.modal_words.s,
             FeedMode::PerMinute | FeedMode::InverseTime => f,

@@ -194,7 +194,7 @@ impl Note {
     #[rustfmt::skip]
     pub fn describe(self) -> (&'static FindingKind, String, &'static str) {
         match self {
-            Self::MachineMoveIgnored => (&G53_IGNORED, "G53 in G91 is ignored: the axes of the block do not move".into(), "command G90 with G53"),
+            Self::MachineMoveIgnored => (&G53_IGNORED, "G53 in G91 is ignored: the axes of the block do not move".into(), "command G90 with G53, or give --control G53-IN-G91=1 for a control that moves by the increment"),
             Self::MCodeLost(code) => (&M_CODE_LOST, format!("M{code:02} is lost: of several M codes in a block only the last counts"), "write each M code in a block of its own, or give --control M3B=1 for a control that accepts three"),
             Self::NothingToCancel => (&CANCEL_OF_NOTHING, "G67 without G66 is ignored in a block that resets modes: a control with 6000#0 = 0 raises PS1100".into(), "remove G67, or give --control G67-ALARM=1 for a control that raises the alarm, G67-ALARM=0 for one that does not"),
             Self::SecondBlock => (&SECOND_BLOCK, "the text behind ; is a block of its own, and it is executed".into(), "write the block on a line of its own, a comment in round brackets"),

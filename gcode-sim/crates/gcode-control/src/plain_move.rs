@@ -115,7 +115,10 @@ impl Executor {
             (state.programmed_position[axis], state.machine_position[axis]) =
                 (endpoint.programmed[axis], endpoint.machine[axis]);
         }
-        (state.modal.motion, state.modal_words.f) = (resolved_move.motion, f);
+        state.modal.motion = resolved_move.motion;
+        if resolved_move.f.is_some() {
+            (state.modal_words.f, state.modal_words.mode_of_f) = (f, state.modal.feed_mode);
+        }
         state.modal_words.n = op.number.unwrap_or(state.modal_words.n);
         self.record_work_use(self.registers.state.modal.work, resolved_move.named.axes);
         let to = &self.registers.state.machine_position;

@@ -172,6 +172,7 @@ pub(super) struct PolarPoint {
 pub struct ModalWords {
     /// Feed, in the unit and mode in which it was commanded.
     pub f: f64,
+    pub(super) mode_of_f: FeedMode,
     /// Spindle speed.
     pub s: f64,
     /// B code.

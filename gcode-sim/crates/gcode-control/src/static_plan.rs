@@ -255,6 +255,7 @@ fn depends_on_words_alone(alarm: &Alarm, certain: CertainModes) -> bool {
             | Alarm::CornerWords
             | Alarm::ScaleRate { .. }
             | Alarm::G10Format { .. }
+            | Alarm::OffsetNumber { .. }
             | Alarm::TooManyArgumentSets
             | Alarm::LookAheadFormat
             | Alarm::TNotAllowed

@@ -96,7 +96,7 @@ impl Plan {
     fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
         let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text_size), frame.text_size);
         let mut sheet = Sheet::empty(drawing);
-        // The symbols of places lie above those of holes.
+        // The symbols of places lie above those of good holes, and below those of others, which nothing covers.
         let (places, strokes): (Vec<&Stroke>, Vec<&Stroke>) =
             scene.strokes.iter().partition(|stroke| matches!(stroke.shape, Shape::Sign { .. }));
         let draw = |stroke: &Stroke| shape_commands(stroke, &frame.scale, frame.text_size);
@@ -123,12 +123,12 @@ impl Plan {
         sheet.commands.extend(ticks);
         let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
-        // Bad holes are drawn last, on top.
-        for good in [true, false] {
-            let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.status.is_good() == good);
-            sheet.commands.extend(holes.flat_map(|(_, hole)| hole.commands.iter().cloned()));
-        }
-        sheet.commands.extend(places.into_iter().flat_map(draw));
+        let holes = |is_good: bool| {
+            let holes =
+                scene.marks.iter().zip(&drawn).filter(move |(mark, _)| mark.status.is_good() == is_good);
+            holes.flat_map(|(_, hole)| hole.commands.iter().cloned())
+        };
+        sheet.commands.extend(holes(true).chain(places.into_iter().flat_map(draw)).chain(holes(false)));
         let mut lettering = LabelLayout::of(scene, &drawn, frame, &field);
         lettering.write(scene, frame, &mut sheet);
         let is_other = |stroke: &Stroke| !is_line(stroke);
@@ -189,16 +189,11 @@ fn scale_numbers_width(scene: &Scene, font: &Font, text: f64) -> f64 {
     scene.strokes.iter().map(width).fold(0.0, f64::max)
 }
 
-/// Returns the extent of the drawing, mm: all holes, all lines except unchanged tool paths, and the origin if
-/// axes are drawn.
+/// Returns the extent of the drawing, mm: all holes, all lines, and the origin if axes are drawn.
 fn extent(scene: &Scene) -> (Point, Point) {
     let mut seen: Vec<(Point, f64)> = Vec::new();
-    let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| s.pen.is_path());
     for stroke in &scene.strokes {
-        let counts = path_alone || !stroke.pen.is_path() || matches!(stroke.pen, Pen::New | Pen::Old);
-        if counts || !matches!(stroke.shape, Shape::Line(_)) {
-            seen.extend(stroke.shape.points().into_iter().map(|point| (point, 0.0)));
-        }
+        seen.extend(stroke.shape.points().into_iter().map(|point| (point, 0.0)));
     }
     for mark in &scene.marks {
         let positions = [Some(mark.position), mark.actual].into_iter().flatten();
@@ -349,6 +344,17 @@ mod tests {
         let sheet = lay_out(&picture(marks.collect()), Size::new(480, 360).unwrap()).unwrap();
         let note = format!("{} of 900 holes without a number: no room.", 900 - numbered(&sheet));
         assert!(sheet.notes.contains(&note), "{note} {:?}", sheet.notes);
+    }
+
+    /// A cut that two revisions share, farther out than the holes and the part.
+    #[test]
+    fn an_unchanged_cut_is_on_the_sheet() {
+        let far = Shape::Line(vec![[-900.0, -700.0], [900.0, -700.0], [900.0, 700.0]]);
+        let mut picture = picture(vec![mark(0, [10.0, 10.0])]);
+        picture.scene.strokes.push(Stroke::new(Pen::Unchanged, far));
+        for (width, height) in SIZES {
+            holds(&picture, Size::new(width, height).unwrap()).unwrap();
+        }
     }
 
     #[test]

@@ -78,7 +78,7 @@ impl Side {
     }
 
     /// Returns the name of the direction to the reader: `+y`; `front, right and above` if it is no axis.
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         let towards = self.towards();
         let names = [("+x", "−x"), ("+y", "−y"), ("+z", "−z")];
         let axis = towards.iter().zip(names).find(|(part, _)| 0.99 < part.abs());

@@ -4,15 +4,17 @@ use gcode_lang::syntax::{block_at, print};
 
 use crate::project::Project;
 use crate::text::{FileId, SOURCE, TextEdit, TextRange, apply_edits, line_range};
+use crate::trimming::{FormatOptions, end_of_lines, tail_edit, without_spaces_at_end};
 
 impl Project {
-    /// Returns the edits that format the lines of a range, or of the whole file.
+    /// Returns the edits that format the lines of a range, or of the whole file with its end.
     ///
-    /// A line that would be read differently afterwards stays as it is, as does one that cannot be read.
-    pub fn format(&self, file: FileId, range: Option<TextRange>) -> Vec<TextEdit> {
+    /// A line that would be read differently afterwards stays as it is, as does one that cannot be read, but for spaces at its end.
+    pub fn format(&self, file: FileId, range: Option<TextRange>, options: FormatOptions) -> Vec<TextEdit> {
         let Some(index) = self.file(file) else { return Vec::new() };
         let text = index.text();
-        let range = range.unwrap_or(TextRange::new(0, text.len() as u32));
+        let tail = if range.is_none() { tail_edit(text, options) } else { None };
+        let range = range.unwrap_or(TextRange::new(0, end_of_lines(text)));
         let mut edits = Vec::new();
         let mut at = line_range(text, range.start).start;
         while at <= range.end && (at as usize) < text.len() {
@@ -26,8 +28,15 @@ impl Project {
                     edits.extend(line_edits(text, line));
                 }
             }
+            if options.trims_trailing_spaces {
+                let is_trimmed =
+                    |edits: &[TextEdit]| edits.last().is_some_and(|last| last.range.end == line.end);
+                let trimmed = without_spaces_at_end(text, line).filter(|_| !is_trimmed(&edits));
+                edits.extend(trimmed.filter(|edit| is_read_the_same(text, line, edit)));
+            }
             at = next_line(text, line.end);
         }
+        edits.extend(tail);
         edits
     }
 }
@@ -53,6 +62,12 @@ fn line_edits(text: &[u8], line: TextRange) -> Vec<TextEdit> {
     let read = block_at(SOURCE, &changed, 0);
     let is_same = read.is_some_and(|read| printed(read) == printed(block));
     if is_same { edits } else { Vec::new() }
+}
+
+/// Returns true if an edit at the end of a line leaves the block of that line as it is.
+fn is_read_the_same(text: &[u8], line: TextRange, edit: &TextEdit) -> bool {
+    let read = |end: u32| block_at(SOURCE, &text[..end as usize], line.start).map(printed);
+    read(line.end) == read(edit.range.start)
 }
 
 /// Returns an edit of a line whose text begins at 0.
@@ -165,14 +180,31 @@ mod tests {
     use gcode_lang::syntax::parse;
     use proptest::prelude::*;
 
-    fn formatted(text: &[u8]) -> Vec<u8> {
+    const ALL_OPTIONS: FormatOptions = FormatOptions {
+        trims_trailing_spaces: true,
+        inserts_final_newline: true,
+        trims_final_newlines: true,
+    };
+
+    fn formatted(text: &[u8], options: FormatOptions) -> Vec<u8> {
         let mut project = Project::new(Settings::default());
         project.set_file(FileId(0), "A", text);
-        apply_edits(text, &project.format(FileId(0), None))
+        apply_edits(text, &project.format(FileId(0), None, options))
     }
 
     fn shown(text: &str) -> String {
-        String::from_utf8(formatted(text.as_bytes())).unwrap()
+        String::from_utf8(formatted(text.as_bytes(), FormatOptions::default())).unwrap()
+    }
+
+    #[test]
+    fn spaces_at_ends_go_where_no_block_ends_too() {
+        let shown = |text: &str| String::from_utf8(formatted(text.as_bytes(), ALL_OPTIONS)).unwrap();
+        assert_eq!(shown("% \nO1 (A)  \nN5G0  \n\t\nX..5  \nM30"), "%\nO1 (A)\nN5 G0\n\nX..5\nM30\n");
+        assert_eq!(
+            shown("LEADER  \n%\nO1\nG43 ; H1  \n%\nBEHIND  \n\n"),
+            "LEADER\n%\nO1\nG43 ; H1\n%\nBEHIND\n"
+        );
+        assert_eq!(shown("O1\n#3000=1(OPEN  \nM30\n"), "O1\n#3000=1(OPEN\nM30\n");
     }
 
     #[test]
@@ -208,7 +240,7 @@ mod tests {
         let text = b"N1G0\nN2G0\nN3G0\n";
         let mut project = Project::new(Settings::default());
         project.set_file(FileId(0), "A", *text);
-        let edits = project.format(FileId(0), Some(TextRange::new(6, 7)));
+        let edits = project.format(FileId(0), Some(TextRange::new(6, 7)), FormatOptions::default());
         assert_eq!(apply_edits(text, &edits), b"N1G0\nN2 G0\nN3G0\n");
     }
 
@@ -224,9 +256,11 @@ mod tests {
             words in "([NGXYFPO/#]{0,1}[0-9. \\-]{0,4}|IF\\[#1 EQ 1\\]|GOTO ?5|\\(A  B\\)|\t|;| // |%|=|\n|\r\n|DPRNT\\[A #1\\[2\\]\\]){0,40}",
         ) {
             for text in [bytes, words.into_bytes()] {
-                let once = formatted(&text);
-                prop_assert_eq!(meaning(&once), meaning(&text));
-                prop_assert_eq!(formatted(&once), once);
+                for options in [FormatOptions::default(), ALL_OPTIONS] {
+                    let once = formatted(&text, options);
+                    prop_assert_eq!(meaning(&once), meaning(&text));
+                    prop_assert_eq!(formatted(&once, options), once);
+                }
             }
         }
     }

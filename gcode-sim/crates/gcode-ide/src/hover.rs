@@ -1,8 +1,11 @@
 //! Hover: what a word, a variable or a function means.
+use gcode_lang::alarm::kinds;
 use gcode_lang::control::DeclaredEffect;
+use gcode_lang::diag::FindingKind;
 use gcode_lang::program::g_codes::{self, Effect};
 use gcode_lang::program::modes::Motion;
 use gcode_lang::syntax::ast::{Item, ProgramName, Statement};
+use gcode_lint::rules;
 use gcode_lint::{constant, variable};
 
 use crate::code_text::{BlockKind, address_text, g_row, g_text, m_text};
@@ -35,8 +38,14 @@ impl Project {
         let lexemes = self.line_lexemes(file, line);
         let at = lexemes.iter().position(|lexeme| lexeme.range.start <= offset && offset < lexeme.range.end);
         let at = at.or_else(|| lexemes.iter().position(|lexeme| lexeme.range.touches(offset)));
-        if at.is_some_and(|at| lexemes[at].kind == LexemeKind::Comment) {
-            return None;
+        if let Some(comment) = at.map(|at| lexemes[at]).filter(|at| at.kind == LexemeKind::Comment) {
+            let of_code = || {
+                let (range, kind) = finding_at(index.text(), line, offset)?;
+                Some((range, finding_text(kind)))
+            };
+            let of_stop = || Some((comment.range, self.stop_text(file, offset)?));
+            let (range, markdown) = of_code().or_else(of_stop)?;
+            return Some(Hover { range, markdown, symbol: None });
         }
         if let Some((symbol, range)) = self.symbol_at(file, offset)
             && let Some(markdown) = self.symbol_text(&symbol, file, offset, range)
@@ -44,7 +53,8 @@ impl Project {
             // A code that calls is explained as a code, with its program.
             return Some(Hover { range, markdown, symbol: Some(symbol) });
         }
-        let (range, markdown) = self.lexeme_text(file, &lexemes, at?)?;
+        let of_stop = || Some((self.stop_number(file, offset)?, self.stop_text(file, offset)?));
+        let (range, markdown) = self.lexeme_text(file, &lexemes, at?).or_else(of_stop)?;
         Some(Hover { range, markdown, symbol: None })
     }
 
@@ -95,7 +105,7 @@ impl Project {
                 "**#{number}**{name} {meaning}\n\nsystem variable, {}",
                 access_text(number, settings)
             );
-            if let Some(alarm) = self.alarm_text(number, file, offset) {
+            if let Some(alarm) = self.stop_text(file, offset).filter(|_| matches!(number, ALARM | MESSAGE)) {
                 text.push_str(&format!("\n\n{alarm}"));
             }
             return text;
@@ -123,22 +133,29 @@ impl Project {
         text
     }
 
-    /// Returns the alarm or message that an assignment in the line raises.
-    fn alarm_text(&self, number: u32, file: FileId, offset: u32) -> Option<String> {
-        if !matches!(number, 3000 | 3006) {
-            return None;
-        }
+    /// Returns the alarm or message of an assignment to #3000 or #3006 in the line.
+    fn stop_text(&self, file: FileId, offset: u32) -> Option<String> {
         let block = self.block(file, offset)?;
-        let value = block.items.iter().find_map(assigned_constant)?;
+        let stop = block.items.iter().find_map(stop_by_variable)?;
         let comment = block.comments.first().map(|comment| lossy(&comment.text)).unwrap_or_default();
         let text = if comment.is_empty() { String::new() } else { format!(": {comment}") };
-        Some(match number {
-            3000 => {
-                let alarm = f64::from(self.settings().macro_alarm_base) + value;
-                format!("raises alarm **MC{alarm:04}**{text}")
-            }
-            _ => format!("stops with the message **{}**", comment.trim()),
-        })
+        if stop.variable == MESSAGE {
+            return Some(format!("stops with the message **{}**", comment.trim()));
+        }
+        let settings = self.settings();
+        let shows_large = settings.undocumented.shows_large_alarm_numbers;
+        let max = if shows_large { LARGEST_SHOWN } else { f64::from(settings.macro_alarm_max) };
+        let number = stop.value.round();
+        if !(0.0..=max).contains(&number) {
+            return Some(format!("raises alarm **PS0119**: n of #3000 is 0 to {max}"));
+        }
+        Some(format!("raises alarm **MC{:04}**{text}", f64::from(settings.macro_alarm_base) + number))
+    }
+
+    /// Returns the range of n in `#3000=n` or `#3006=n` if it has an offset.
+    fn stop_number(&self, file: FileId, offset: u32) -> Option<TextRange> {
+        let stop = self.block(file, offset)?.items.iter().find_map(stop_by_variable)?;
+        stop.range.touches(offset).then_some(stop.range)
     }
 
     fn number_text(&self, number: u32, programs: &[ProgramKey]) -> String {
@@ -270,11 +287,27 @@ fn code_of(word: &str) -> Option<(u8, u32)> {
     matches!(letter, b'G' | b'M').then_some((letter, (number * 10.0).round() as u32))
 }
 
-fn assigned_constant(item: &Item) -> Option<f64> {
-    fn of(statement: &Statement) -> Option<f64> {
+/// Number of the variable that raises an alarm, and of the one that stops with a message.
+const ALARM: u32 = 3000;
+const MESSAGE: u32 = 3006;
+
+/// Largest n of `#3000=n` on a control that shows numbers beyond those of its manual.
+const LARGEST_SHOWN: f64 = 4095.0;
+
+/// An assignment of a constant to #3000 or #3006.
+struct StopByVariable {
+    variable: u32,
+    value: f64,
+    /// The value as written.
+    range: TextRange,
+}
+
+fn stop_by_variable(item: &Item) -> Option<StopByVariable> {
+    fn of(statement: &Statement) -> Option<StopByVariable> {
         match statement {
-            Statement::Assign { target, value } if matches!(variable(target), Some(3000 | 3006)) => {
-                constant(value)
+            Statement::Assign { target, value } => {
+                let variable = variable(target).filter(|number| matches!(*number, ALARM | MESSAGE))?;
+                Some(StopByVariable { variable, value: constant(value)?, range: value.span.into() })
             }
             Statement::IfThen { then, .. } => of(then),
             _ => None,
@@ -284,6 +317,30 @@ fn assigned_constant(item: &Item) -> Option<f64> {
         Item::Statement(statement) => of(&statement.node),
         _ => None,
     }
+}
+
+/// Returns the code of an alarm or of a rule of `check` at an offset of a comment, with its kind.
+fn finding_at(text: &[u8], line: TextRange, offset: u32) -> Option<(TextRange, &'static FindingKind)> {
+    let is_of_code = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'-';
+    let (before, behind) =
+        text[line.start as usize..line.end as usize].split_at((offset - line.start) as usize);
+    let before = before.iter().rev().take_while(|byte| is_of_code(byte)).count() as u32;
+    let behind = behind.iter().take_while(|byte| is_of_code(byte)).count() as u32;
+    let range = TextRange::new(offset - before, offset + behind);
+    let code = range.of(text);
+    let is_raised = || {
+        code.len() == 6 && code[..2].eq_ignore_ascii_case(b"MC") && code[2..].iter().all(u8::is_ascii_digit)
+    };
+    let known = kinds::ALL.iter().copied().chain(rules::ALL.iter().map(|rule| &rule.kind));
+    let mut known = known.filter(|kind| kind.code.as_bytes().eq_ignore_ascii_case(code));
+    let kind = known.next().or_else(|| is_raised().then_some(&kinds::MC3000))?;
+    Some((range, kind))
+}
+
+/// Returns the title of a kind of finding and the first paragraph of its page.
+fn finding_text(kind: &FindingKind) -> String {
+    let paragraph = kind.page().split("\n\n").nth(1).unwrap_or_default();
+    format!("**{}** {}\n\n{}", kind.code, kind.title, paragraph.trim())
 }
 
 fn times(count: usize) -> String {
@@ -325,6 +382,47 @@ mod tests {
             hovered("O1\nG65 P2 R$05.\nO2\n(R #18 RADIUS)\nX#18\n"),
             "**R** sets #18 of O0002: RADIUS"
         );
+    }
+
+    #[test]
+    fn the_number_of_an_alarm_is_explained_as_the_control_shows_it() {
+        assert_eq!(hovered("O1\n#3000=$07(TOO BIG)\n"), "raises alarm **MC3007**: TOO BIG");
+        assert_eq!(hovered("O1\n#3000=1$02(TOO BIG)\n"), "raises alarm **MC3012**: TOO BIG");
+        assert_eq!(hovered("O1\nIF[#1 EQ 9]THEN #3000=$07\n"), "raises alarm **MC3007**");
+        assert_eq!(hovered("O1\nIF[#1 EQ $09]THEN #3000=7(A)\n"), "", "the number of the condition");
+        assert_eq!(hovered("O1\n#3006=$01(TURN)\n"), "stops with the message **TURN**");
+        assert_eq!(hovered("O1\n#3000=7(TOO $0BIG)\n"), "raises alarm **MC3007**: TOO BIG");
+        assert!(hovered("O1\nIF[#1 GT 9]THEN #3000=#$01(A)\n").starts_with("**#1**"));
+        assert_eq!(hovered("O1\n#500=$07(TOO BIG)\n"), "");
+        // A number above 200 is displayed too, unless the control is told to refuse it.
+        assert_eq!(hovered("O1\n#3000=$0201(A)\n"), "raises alarm **MC3201**: A");
+        assert_eq!(hovered("O1\n#3000=$04096\n"), "raises alarm **PS0119**: n of #3000 is 0 to 4095");
+        assert_eq!(hovered("O1\n#3000=-$01(A)\n"), "raises alarm **PS0119**: n of #3000 is 0 to 4095");
+        let on = |text: &str, settings: Settings| {
+            let fixture = fixture_on(text, settings);
+            fixture.project.hover(fixture.file, fixture.offset).map(|hover| hover.markdown)
+        };
+        let mut strict = Settings::default();
+        strict.undocumented.shows_large_alarm_numbers = false;
+        assert_eq!(on("O1\n#3000=$0200(A)\n", strict.clone()).unwrap(), "raises alarm **MC3200**: A");
+        let refused = on("O1\n#3000=$0201(A)\n", strict).unwrap();
+        assert_eq!(refused, "raises alarm **PS0119**: n of #3000 is 0 to 200");
+        let mut haas = Settings::default();
+        haas.apply_dialect(Dialect::HaasNgc);
+        assert_eq!(on("O1\n#3000=$07(A)\n", haas).unwrap(), "raises alarm **MC1007**: A");
+    }
+
+    #[test]
+    fn codes_of_alarms_and_rules_in_comments_are_explained() {
+        let division = hovered("O1\n(PS01$012 IS RAISED)\n");
+        assert!(division.starts_with("**PS0112** division by zero\n\nThe divisor is 0, or"), "{division}");
+        assert_eq!(hovered("O1\n($0ps0112)\n"), division);
+        assert_eq!(hovered("O1\n(PS0112$0)\n"), division);
+        assert!(hovered("O1\n(MC30$012 NO R)\n").starts_with("**MC3000** the program raises a macro alarm"));
+        assert!(hovered("O1\nG0(CHECK-OFF mi$0ssing-n)\n").starts_with("**missing-n** "));
+        for text in ["O1\n(PS01$0123)\n", "O1\n(A$0)\n", "O1\n(MC30$0)\n", "O1\n(\u{d8}$0)\n"] {
+            assert_eq!(hovered(text), "", "{text}");
+        }
     }
 
     #[test]

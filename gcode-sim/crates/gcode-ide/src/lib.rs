@@ -59,6 +59,7 @@ mod system_text;
 #[cfg(test)]
 mod testing;
 mod text;
+mod trimming;
 
 pub use call_hierarchy::{CallGroup, CallItem};
 pub use completion::{Completion, CompletionKind};
@@ -76,3 +77,4 @@ pub use signature::{SignatureHelp, SignatureParameter};
 pub use symbol::Symbol;
 pub use symbols::{DocumentSymbol, SymbolKind, WorkspaceSymbol};
 pub use text::{FileEdit, FileId, Location, Refusal, TextEdit, TextRange, apply_edits};
+pub use trimming::FormatOptions;

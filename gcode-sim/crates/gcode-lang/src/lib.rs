@@ -6,7 +6,7 @@
 //!
 //! The other modules hold the data shared with the crates that execute, check and report programs: [`control`] the
 //! settings of a control, [`motion`] the events of a machine, [`source`] texts and spans, [`units`] quantities and
-//! [`diag`] findings.
+//! [`diag`] findings, and [`shares`] long works among the cores.
 //!
 //! ```
 //! use gcode_lang::program::{Memory, OpKind};
@@ -28,7 +28,7 @@ pub mod diag;
 mod length_compensation;
 pub mod motion;
 pub mod program;
-mod shares;
+pub mod shares;
 mod similar;
 pub mod source;
 pub mod syntax;

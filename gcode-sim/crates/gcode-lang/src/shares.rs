@@ -1,11 +1,11 @@
-//! Work on the blocks of a long program, shared by the cores.
+//! Work on the blocks of a long program, or on the holes of a long list, shared by the cores.
 use std::thread;
 
-/// Number of blocks from which threads share a work: fewer are done sooner than a thread starts.
+/// Number of blocks or holes from which threads share a work: fewer are done sooner than a thread starts.
 const MIN_TO_SHARE: usize = 2000;
 
-/// Returns the number of blocks in the share of one thread; at least 1.
-pub(crate) fn share_length(blocks: usize) -> usize {
+/// Returns the number of blocks or holes in the share of one thread; at least 1.
+pub fn share_length(blocks: usize) -> usize {
     // The system is asked for long programs alone: the answer takes as long as the work on a short one.
     let cores = || thread::available_parallelism().map_or(1, usize::from);
     let threads = if blocks < MIN_TO_SHARE { 1 } else { cores() };
@@ -13,7 +13,7 @@ pub(crate) fn share_length(blocks: usize) -> usize {
 }
 
 /// Does the work of each share, all at the same time; this thread takes the first.
-pub(crate) fn work_on<T: Send>(shares: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
+pub fn work_on<T: Send>(shares: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
     let mut shares = shares.into_iter();
     let own = shares.next();
     let work = &work;
@@ -23,4 +23,33 @@ pub(crate) fn work_on<T: Send>(shares: impl IntoIterator<Item = T>, work: impl F
         }
         own.map(work)
     });
+}
+
+/// Returns the results of each item, in the order of the items.
+pub fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    map_shares(items, |share| share.iter().map(&work).collect())
+}
+
+/// Returns the results of each share of the items, one behind the other. The results must not depend on where a share begins.
+pub fn map_shares<T: Sync, R: Send>(items: &[T], work: impl Fn(&[T]) -> Vec<R> + Sync) -> Vec<R> {
+    let length = share_length(items.len());
+    if items.len() <= length {
+        return work(items);
+    }
+    let mut shares: Vec<(&[T], Vec<R>)> = items.chunks(length).map(|share| (share, Vec::new())).collect();
+    work_on(&mut shares, |(share, results)| *results = work(share));
+    shares.into_iter().flat_map(|(_, results)| results).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_results_are_in_the_order_of_the_items() {
+        for count in [0, 1, MIN_TO_SHARE - 1, MIN_TO_SHARE, 5 * MIN_TO_SHARE + 1] {
+            let items: Vec<usize> = (0..count).collect();
+            assert!(map(&items, |item| 2 * item).into_iter().eq((0..count).map(|item| 2 * item)), "{count}");
+        }
+    }
 }

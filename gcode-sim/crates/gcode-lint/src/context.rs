@@ -260,7 +260,10 @@ impl<'a> CheckContext<'a> {
         let finding = unit.finding(kind, block, format!("{}: {}", row.code, row.message));
         // A limit of the simulator is no fault of the program.
         let severity = match alarm.node {
-            Alarm::NotSimulated { .. } | Alarm::WordNotSimulated(_) | Alarm::CodeInMode(..) => Severity::Note,
+            Alarm::NotSimulated { .. }
+            | Alarm::WordNotSimulated(_)
+            | Alarm::CodeInMode(..)
+            | Alarm::FeedOfOtherMode(..) => Severity::Note,
             _ => finding.severity,
         };
         Diagnostic { help, severity, ..finding.with_span(alarm.span) }

@@ -27,6 +27,11 @@ impl Successors {
         Self { is_exit: true, ..Self::default() }
     }
 
+    /// Returns true if the block may end the program, or jump to a number that is not known.
+    pub(crate) fn may_leave(&self) -> bool {
+        self.is_exit || self.jumps_anywhere
+    }
+
     fn or_next(self) -> Self {
         Self { falls_through: true, ..self }
     }
@@ -185,13 +190,23 @@ impl ControlFlowGraph {
         self.block_successors.len() + 2 + self.far_nodes
     }
 
+    /// Returns the node for computed jumps.
+    pub(crate) fn computed_node(&self) -> OpIndex {
+        self.block_successors.len() + 1
+    }
+
+    /// Returns true if a block has a sequence number.
+    pub(crate) fn has_numbers(&self) -> bool {
+        !self.numbered.is_empty()
+    }
+
     /// Returns the nodes of the targets behind a piece.
     pub(crate) fn far_nodes(&self) -> Range<OpIndex> {
         self.block_successors.len() + 2..self.block_count()
     }
 
     pub(crate) fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
-        let anywhere = self.block_successors.len() + 1;
+        let anywhere = self.computed_node();
         let block = self.block_successors.get(place);
         let jumps = block.map_or(&[][..], |block| &block.jumps);
         let next = block.filter(|block| block.falls_through).map(|_| place + 1);

@@ -23,12 +23,8 @@ impl<'a> FirstReach<'a> {
     pub(super) fn new(unit: &'a ProgramUnit<'a>, states: &'a States) -> Self {
         let mut first =
             Self { unit, states, component: &[], entries: BTreeMap::new(), set_reads: BTreeSet::new() };
-        let is_unclear_read = |block: OpIndex| {
-            let reads = unit.reads(block).iter().map(|read| read.number);
-            reads.filter(|number| (1..=33).contains(number)).any(|local| is_unclear(first.bits(block, local)))
-        };
         // Mostly the states decide all reads.
-        if !(0..unit.blocks.len()).any(is_unclear_read) {
+        if !has_unclear_read(unit, states) {
             return first;
         }
         let component = unit.components();
@@ -102,8 +98,20 @@ impl<'a> FirstReach<'a> {
     }
 
     fn bits(&self, place: OpIndex, local: u32) -> u8 {
-        self.states[place].map_or(0, |state| state.bits_of(local))
+        bits(self.states, place, local)
     }
+}
+
+/// Returns true if a block reads a local that is unset on some paths to it only: the cycles about it decide.
+pub(super) fn has_unclear_read(unit: &ProgramUnit<'_>, states: &States) -> bool {
+    (0..unit.blocks.len()).any(|block| {
+        let reads = unit.reads(block).iter().map(|read| read.number);
+        reads.filter(|number| (1..=33).contains(number)).any(|local| is_unclear(bits(states, block, local)))
+    })
+}
+
+fn bits(states: &States, place: OpIndex, local: u32) -> u8 {
+    states[place].map_or(0, |state| state.bits_of(local))
 }
 
 fn is_unclear(bits: u8) -> bool {

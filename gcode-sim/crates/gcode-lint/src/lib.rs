@@ -23,6 +23,7 @@ mod block_marks;
 mod calls;
 mod checked_blocks;
 mod components;
+mod computed_jumps;
 mod context;
 mod control_flow;
 mod expressions;
@@ -59,7 +60,7 @@ pub use checked_blocks::CheckedBlocks;
 pub use context::CONTROL_ASSUMED;
 pub use expressions::{UsedExpressions, ValueUse, block_expressions};
 pub use literal::{constant, variable};
-pub use main_programs::{main_programs, programs_called_by_others};
+pub use main_programs::{main_programs, programs_called_by_others, reachable_programs};
 
 use context::CheckContext;
 use gcode_lang::control::Settings;
@@ -167,7 +168,7 @@ fn check_known(
     limit: FindingLimit<'_>,
     library: &mut impl Library,
 ) -> CheckResult {
-    let rules = PieceRules { knowledge, sizes: PieceSizes::USUAL, limit, enters_numbers: true };
+    let rules = PieceRules { knowledge, sizes: PieceSizes::USUAL, limit };
     let mut result = check_sized(texts, settings, library, rules);
     text_behind_end::leave_out(&mut result);
     result

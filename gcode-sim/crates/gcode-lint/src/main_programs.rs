@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use gcode_lang::control::Settings;
 use gcode_lang::program::{LoweredWord, Memory, Program, ProgramId};
 
-use super::calls::called_programs;
+use super::calls::{CalledProgramName, called_programs};
 use super::literal;
 
 /// Returns the programs that other programs in memory call.
@@ -23,6 +23,22 @@ pub fn programs_called_by_others(memory: &mut Memory, settings: &Settings) -> BT
 /// loaded.
 pub fn main_programs(memory: &Memory, called: &BTreeSet<ProgramId>) -> Vec<ProgramId> {
     memory.ids().filter(|id| !called.contains(id) && ends_run(memory.get(*id))).collect()
+}
+
+/// Returns the main program with those that its calls can reach: all programs if one of them computes the number of a program.
+pub fn reachable_programs(memory: &mut Memory, settings: &Settings) -> BTreeSet<ProgramId> {
+    let mut reached = BTreeSet::from([memory.main()]);
+    let mut pending = vec![memory.main()];
+    while let Some(id) = pending.pop() {
+        let called = called_programs(memory.lower_program(id), settings);
+        if called.contains(&CalledProgramName::Computed) {
+            return memory.ids().collect();
+        }
+        let folder = memory.get(id).folder.as_ref();
+        let targets = called.iter().filter_map(|name| name.find(memory, folder));
+        pending.extend(targets.filter(|target| reached.insert(*target)));
+    }
+    reached
 }
 
 /// Returns true if the program contains M02 or M30.
@@ -48,6 +64,22 @@ mod tests {
         assert_eq!(names("O1\nM98 P2\nM30\nO2\nM99\nO3\nM30\nO4\nM99\n"), ["O0001", "O0003"]);
         assert_eq!(names("O1\nM98 P2\nM30\nO2\nM98 P1\nM30\n"), Vec::<String>::new());
         assert_eq!(names("O1\nIF[#1EQ#0]GOTO1\nM98 P1\nN1 M02\n"), ["O0001"], "a program may call itself");
+    }
+
+    #[test]
+    fn calls_reach_programs() {
+        let reached = |text: &str| {
+            let mut memory = Memory::default();
+            memory.load("dump.txt", text.as_bytes());
+            let reached = reachable_programs(&mut memory, &Settings::default());
+            reached.iter().map(|id| memory.get(*id).path()).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            reached("O1\nM98 P3\nM30\nO2\nM98 P1\nM30\nO3\nG65 P4\nM99\nO4\nM99\n"),
+            ["O0001", "O0003", "O0004"]
+        );
+        assert_eq!(reached("O1\nM98 P3\nM30\nO2\nM30\nO3\nM98 P#1\nM99\n"), ["O0001", "O0002", "O0003"]);
+        assert_eq!(reached("O1\nM98 P3\nM30\nO2\nM98 P#1\nM99\nO3\nM99\n"), ["O0001", "O0003"]);
     }
 
     #[test]

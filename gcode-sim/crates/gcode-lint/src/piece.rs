@@ -8,31 +8,24 @@ use super::possible_modes::PossibleModes;
 use super::possible_units::PossibleUnits;
 use super::role::Role;
 
-/// How control enters the blocks of a program besides from the block before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Entries {
-    /// By jumps whose targets are known.
-    Known,
-    /// At each sequence number, in an unknown state.
-    EveryNumber,
-}
-
 /// Place of a piece in its program, and what the pieces before it leave.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     /// Role of the whole program.
     pub role: Role,
     pub start: PieceStart,
-    /// Blocks to which jumps of earlier pieces lead.
+    /// Blocks to which jumps of other pieces lead.
     pub entries: Vec<PieceEntry>,
     /// Blocks that jump behind the piece, each with the index of its target.
     pub far_jumps: Vec<(OpIndex, usize)>,
+    /// Blocks before this one can be left out: an earlier piece jumps over them.
+    pub left_out_until: OpIndex,
     pub is_first: bool,
     pub is_last: bool,
 }
 
-/// Block to which jumps of earlier pieces lead, with the states that they bring.
-#[derive(Clone, Copy, Debug)]
+/// Block, or node of the control flow, to which jumps of other pieces lead, with the states that they bring.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PieceEntry {
     pub block: OpIndex,
     pub modes: PossibleModes,
@@ -42,12 +35,6 @@ pub(crate) struct PieceEntry {
 }
 
 impl PieceEntry {
-    /// Returns the entry at a block by a jump from anywhere.
-    pub(super) fn of_unknown_state(block: OpIndex) -> Self {
-        let (modes, locals) = (PossibleModes::ANYTHING, Some(Locals::ANYTHING));
-        Self { block, modes, locals, pending_move: None }
-    }
-
     /// Adds the states of another jump to the same block.
     pub(super) fn join(&mut self, other: Self) {
         self.modes = self.modes.join(other.modes);
@@ -73,6 +60,8 @@ pub(crate) struct PieceStart {
     pub pending_move: Option<Span>,
     /// Units that the blocks before it command, and the unit in which they are judged.
     pub units: (PossibleUnits, Option<Unit>),
+    /// A block before it may end the program, or jump anywhere.
+    pub may_be_left_out: bool,
 }
 
 impl PieceStart {
@@ -82,6 +71,7 @@ impl PieceStart {
             Role::Main => (PossibleModes::POWER_ON, Locals::UNSET),
             Role::Called | Role::Resident => (PossibleModes::ANYTHING, Locals::ANYTHING),
         };
-        Self { modes, locals, pending_move: None, units: (PossibleUnits::default(), None) }
+        let units = (PossibleUnits::default(), None);
+        Self { modes, locals, pending_move: None, units, may_be_left_out: false }
     }
 }

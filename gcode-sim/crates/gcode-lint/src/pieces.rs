@@ -1,19 +1,20 @@
 //! Check of a long program in pieces: the trees and operations of one piece are in memory at a time.
 //!
 //! A piece ends where control passes in one way only, from its last block to the next one: no loop and no jump leads across.
-//! What the analyses know at its end is the start of the next piece. A jump whose target is unknown, as a computed GOTO or the
-//! return of a missing macro, may lead to every sequence number: each is entered in an unknown state then. Where this does
-//! not hold (a jump over many blocks, a modal macro), or a finding rests on the whole program, the program is checked as a whole.
+//! What the analyses know at its end is the start of the next piece; a computed jump brings its states to the numbers of all
+//! pieces (`computed_jumps`). Where this does not hold (a jump over many blocks, a modal macro), or a finding rests on the whole
+//! program, the program is checked as a whole.
 use std::collections::BTreeMap;
 
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::program::{Library, OpIndex, Program, ProgramId};
 use gcode_lang::syntax::KnownBlocks;
 
+use super::computed_jumps::ComputedJumps;
 use super::context::{CheckContext, LoadedProgram, ProgramUnit, Role};
 use super::loader::Loader;
 use super::modes::modes_before;
-use super::piece::{Entries, Piece, PieceEntry, PieceStart};
+use super::piece::{Piece, PieceEntry, PieceStart};
 use super::piece_ends::{PieceSizes, far_jumps, piece_end};
 use super::rules::{self, doubled_numbers, limits_lookahead, pending_moves};
 use super::vacancy::states_without_arguments;
@@ -23,15 +24,15 @@ use super::{ControlKnowledge, FindingLimit};
 /// Most blocks behind a piece to which its jumps lead: mostly they are the ends and the alarms of a program.
 const MAX_FAR_TARGETS: usize = 200;
 
+/// Most passes over a program until the states of its computed jumps are known.
+const MAX_PASSES: usize = 5;
+
 /// How long programs are checked, and what is kept of their findings.
 #[derive(Clone, Copy)]
 pub(super) struct PieceRules<'a> {
     pub knowledge: ControlKnowledge,
     pub sizes: PieceSizes,
     pub limit: FindingLimit<'a>,
-    /// Where a jump may lead to every sequence number, each is entered in an unknown state, which finds less than a check of the
-    /// whole program; otherwise such a program is checked as a whole.
-    pub enters_numbers: bool,
 }
 
 /// Returns the findings of all programs, and the number of those beyond the limit; `None` if a long one has to be checked as a whole.
@@ -112,33 +113,46 @@ fn findings_of_program<L: Library>(
     let part = whole.part(0..0);
     let whole = loader.memory.replace(id, part);
     let suggested = Role::of_uncalled(whole.number(), (false, false));
-    let mut entries = Entries::Known;
-    let mut result = findings_as(loader, (id, &whole, suggested), entries, rules);
-    if rules.enters_numbers && result.is_err() {
-        entries = Entries::EveryNumber;
-        result = findings_as(loader, (id, &whole, suggested), entries, rules);
-    }
+    let mut result = findings_as(loader, (id, &whole, suggested), rules);
     if let Ok(found) = &result {
         let role = Role::of_uncalled(whole.number(), (found.returns, found.ends));
         if role != suggested {
-            result = findings_as(loader, (id, &whole, role), entries, rules);
+            result = findings_as(loader, (id, &whole, role), rules);
         }
     }
     loader.memory.replace(id, whole);
     result
 }
 
-/// Checks a long program piece by piece, in a role.
+/// Checks a long program in a role, in as many passes as its computed jumps need.
 fn findings_as<L: Library>(
     loader: &mut Loader<'_, L>,
-    (id, whole, role): (ProgramId, &Program, Role),
-    entered: Entries,
+    program: (ProgramId, &Program, Role),
     rules: PieceRules<'_>,
 ) -> Result<WholeProgram, NotInPieces> {
-    let mut found = WholeProgram::default();
+    let mut computed_jumps = ComputedJumps::default();
+    for _ in 0..MAX_PASSES {
+        let found = findings_of_pass(loader, program, computed_jumps, rules)?;
+        if !found.computed_jumps.are_outdated() {
+            return Ok(found);
+        }
+        computed_jumps = found.computed_jumps.for_next_pass();
+    }
+    Err(NotInPieces)
+}
+
+/// Checks a long program piece by piece, in a role.
+fn findings_of_pass<L: Library>(
+    loader: &mut Loader<'_, L>,
+    (id, whole, role): (ProgramId, &Program, Role),
+    computed_jumps: ComputedJumps,
+    rules: PieceRules<'_>,
+) -> Result<WholeProgram, NotInPieces> {
+    let mut found = WholeProgram::new(computed_jumps);
     let mut start = PieceStart::of_program(role);
     let mut first = 0;
     let mut far: BTreeMap<OpIndex, PieceEntry> = BTreeMap::new();
+    let mut farthest: OpIndex = 0;
     while first < whole.block_count() {
         let end = piece_end(loader.memory, (id, whole), first, rules.sizes).ok_or(NotInPieces)?;
         let is_last = end == whole.block_count();
@@ -148,18 +162,16 @@ fn findings_as<L: Library>(
         let behind = far.split_off(&end);
         let entries = std::mem::replace(&mut far, behind).into_iter();
         let entries = entries.map(|(target, entry)| PieceEntry { block: target - first, ..entry });
-        let mut entries: Vec<_> = entries.collect();
-        if entered == Entries::EveryNumber {
-            let ops = loader.memory.get(id).ops().iter().enumerate();
-            let numbered = ops.filter(|(_, op)| op.number.is_some());
-            entries.extend(numbered.map(|(block, _)| PieceEntry::of_unknown_state(block)));
-        }
+        let entries = entries.chain(found.computed_jumps.entry(end - first)).collect();
         let (targets, far_jumps) = far_jumps(loader.memory.get(id), (whole, first..end));
         if MAX_FAR_TARGETS < targets.len() || targets.iter().any(|target| whole.is_in_loop(*target)) {
             return Err(NotInPieces);
         }
         program.other_units = start.units.0;
-        program.piece = Some(Piece { role, start, entries, far_jumps, is_first: first == 0, is_last });
+        let left_out_until = farthest.saturating_sub(first);
+        let is_first = first == 0;
+        program.piece = Some(Piece { role, start, entries, far_jumps, left_out_until, is_first, is_last });
+        farthest = targets.iter().copied().fold(farthest, OpIndex::max);
         loader.find_called(id, &program.calls);
         loader.load_found(&mut none, usize::MAX);
         // The piece is the last unit.
@@ -168,16 +180,14 @@ fn findings_as<L: Library>(
         let control = (loader.settings, rules.knowledge);
         let context = CheckContext::new(loader.memory, control, units, rules::codes());
         let result = match context.units.last() {
-            Some(unit) => {
-                found.add(&context, unit, (whole, first..end), (entered, &loader.long)).map(|(start, new)| {
-                    loader.repetitions.note_found(&new);
-                    found.keep(new, rules.limit);
-                    for (target, entry) in far_entries(&context, unit, &targets) {
-                        far.entry(target).and_modify(|known| known.join(entry)).or_insert(entry);
-                    }
-                    start
-                })
-            }
+            Some(unit) => found.add(&context, unit, (whole, first..end), &loader.long).map(|(start, new)| {
+                loader.repetitions.note_found(&new);
+                found.keep(new, rules.limit);
+                for (target, entry) in far_entries(&context, unit, &targets) {
+                    far.entry(target).and_modify(|known| known.join(entry)).or_insert(entry);
+                }
+                start
+            }),
             None => Err(NotInPieces),
         };
         loader.loaded = context.into_loaded();
@@ -231,12 +241,8 @@ mod tests {
     /// Pieces of two blocks and more.
     const SMALL: PieceSizes = PieceSizes { whole: 3, piece: 2, window: 4 };
 
-    const SMALL_RULES: PieceRules<'_> = PieceRules {
-        knowledge: ControlKnowledge::Stated,
-        sizes: SMALL,
-        limit: FindingLimit::NONE,
-        enters_numbers: false,
-    };
+    const SMALL_RULES: PieceRules<'_> =
+        PieceRules { knowledge: ControlKnowledge::Stated, sizes: SMALL, limit: FindingLimit::NONE };
 
     fn memory(text: &str) -> Memory {
         let mut memory = Memory::default();
@@ -246,15 +252,11 @@ mod tests {
 
     /// Returns the findings of a check in small pieces; `None` if a program has to be checked as a whole.
     fn in_pieces(text: &str) -> Option<Vec<Diagnostic>> {
-        in_pieces_by(text, SMALL_RULES)
-    }
-
-    fn in_pieces_by(text: &str, rules: PieceRules<'_>) -> Option<Vec<Diagnostic>> {
         let (mut memory, settings, mut library) = (memory(text), Settings::default(), NoLibrary);
         let mut loader = Loader::new(&mut memory, &settings, &mut library);
         loader.load_found(&mut KnownBlocks::default(), SMALL.whole);
         assert!(!loader.long.is_empty(), "{text}");
-        findings(&mut loader, rules).map(|(findings, _)| findings)
+        findings(&mut loader, SMALL_RULES).map(|(findings, _)| findings)
     }
 
     #[test]
@@ -300,6 +302,9 @@ mod tests {
             "O1\nX1000\n#101=2\nX5000\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nM30\n",
             "O1\nG65P3A1.\nM8\nG65P3A2.\nM8\nM98P4\nM8\nG65P3B1.\nM8\nG65P3A1.\nM8\nM98P4L2\nG65P3\nM8\nM8\nM30\n",
             "O9001\n#101=1\n#101=2\n#101=3\n#101=#1\n#101=2\n#101=2\nX1.\n#101=2\n#101=2\nM99\n",
+            "O1\nG1\n#101=1\n#101=2\n/M30\n#101=2\n#101=2\n#101=2\nU5.\n#101=2\n#101=2\n#101=2\nM30\n",
+            "O1\nU4.\n#101=1\nIF[#101EQ5.]GOTO90\n#101=2\n#101=2\nU5.\n#101=2\n#101=2\n#101=2\nN90U6.\n#101=2\nM30\n",
+            "O1\nX1..5\n#1=\nX1..5\nX1..5\n#101=\nX1..5\nL X+1\nX1..5\nX1..5\nX1..5\nM30\n",
         ] {
             let found = in_pieces(text);
             assert!(found.is_some(), "{text}");
@@ -311,34 +316,31 @@ mod tests {
     fn what_leads_far_is_checked_as_a_whole() {
         for text in [
             "O1\nN1#101=1\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nGOTO1\n",
-            "O1\nN1#101=1\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\nGOTO#1\n",
+            // Whether #1 is set where N1 is reached for the first time, and whether the loop is left, rests on all blocks up to the jump.
+            "O1\nN1#101=#1\n#101=2\n#101=3\n#101=2\n#101=2\n#1=2\n#101=2\n#101=2\n#101=2\nIF[#100EQ1]GOTO#100\nM30\n",
+            "O1\nN1#102=1\n#102=3\nIF[#103EQ5]GOTO1\n#101=2\n#101=2\n#101=2\n#101=2\nIF[#100EQ1]GOTO#100\nM30\n",
             "O1\nM30\n#101=2\n#101=3\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n#101=2\n",
         ] {
             assert!(in_pieces(text).is_none(), "{text}");
         }
     }
 
-    /// A missing macro may return to any number, an unreadable block and a computed jump may lead there. Behind `N7` nothing is
-    /// known of #1 any more, which the check of the whole program knows to be unset at the jump.
+    /// A missing macro may return to any number, an unreadable block and a computed GOTO may lead there, forward and back.
     #[test]
-    fn numbers_that_a_jump_from_anywhere_may_reach_are_entered_in_an_unknown_state() {
-        for jump in ["G65P2A1.", "IF[#100EQ1]GOTO#100", "X1..5"] {
+    fn computed_jumps_bring_their_states_to_the_numbers_of_all_pieces() {
+        for jump in ["G65P2A1.", "/GOTO#100", "X1..5", "N9X1..5"] {
+            // At N7, line 8, #1 is unset behind the block before and behind the jump; #3 is set at both.
             let text = format!(
-                "O1\n#34=1\n#101=1\n#101=2\n#101=3\n{jump}\n#101=4\n#101=2\n#34=2\n#101=2\nN7#102=#1\n#101=2\n#34=3\nM30\n"
+                "O1\nN1G1\n#3=1.\n#101=1\n#101=1\n{jump}\n#101=2\nN7#102=#1\n#101=3\n#101=3\n#101=3\nN8X#3\n#101=3\n\
+                 N4X9.\n#3=2\n#101=4\n{jump}\n#101=5\nM30\n"
             );
-            assert!(in_pieces(&text).is_none(), "{text}");
-            let rules = PieceRules { enters_numbers: true, ..SMALL_RULES };
-            let lines = |findings: &[Diagnostic], code: &str| {
-                let of_code = findings.iter().filter(|finding| finding.kind.code == code);
-                of_code.map(|finding| finding.backtrace.as_ref().unwrap().block.start).collect::<Vec<_>>()
+            let found = in_pieces(&text).unwrap_or_else(|| panic!("{text}"));
+            assert_eq!(shown(&found), of_whole(&text), "{text}");
+            let places = |code: &str| {
+                let of_code = found.iter().filter(|finding| finding.kind.code == code);
+                of_code.map(|f| text[..f.span.unwrap().start as usize].lines().count()).collect::<Vec<_>>()
             };
-            let found = in_pieces_by(&text, rules).unwrap_or_else(|| panic!("{text}"));
-            let whole = check("O1.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary).findings;
-            for code in ["no-such-variable", "unreadable", "missing-program"] {
-                assert_eq!(lines(&found, code), lines(&whole, code), "{text}");
-            }
-            assert_eq!(lines(&found, "no-such-variable").len(), 3);
-            assert_eq!([found, whole].map(|all| lines(&all, "unset-variable").len()), [0, 1], "{text}");
+            assert_eq!(places("unset-variable"), [8], "{text}");
         }
     }
 
@@ -347,7 +349,8 @@ mod tests {
         |IF\\[#1EQ#0\\]GOTO[1-4]0|M98P2|G65P2A1\\.|WHILE\\[#1LT2\\]DO1|END1|\\(A\\)|O2|IF\\[#1EQ2\\]THEN#3000=1\\(A\\)|G4X#7|/2X1\\.\
         |#34=#[1-4]|#100=#10[0-9]\\+1|#101=#450|#2=#[1-4]\\*3\\.14|#101=SQRT\\[-4\\]|#3=#5021|IF\\[#0EQ#0\\]GOTO20\
         |\\(CHECK-OFF ROUNDED-PI\\)|X#101|G10L52|G11|N[1-9]0|G80|G66P2|G67|#33=#0|X[1-9]0{0,3}\
-        |X1\\.\\.5|#1=|L X\\+1|END3|DO4|G1X\\[#1";
+        |X1\\.\\.5|#1=|L X\\+1|END3|DO4|G1X\\[#1|(N[1-9]0)?(G65P9A1\\.|M98P9)|(N[1-9]0)?X1\\.\\.1|GOTO#100|(N[1-9]0)?U[1-9]\\.|/M30\
+        |/?GOTO[5-9]0|IF\\[#2EQ#0\\]GOTO[5-9]0|M96P#1Q1|G0X#1";
 
     proptest! {
         #[test]
@@ -365,12 +368,6 @@ mod tests {
             let whole = check("O1.nc", text.as_bytes(), &settings, &mut NoLibrary);
             prop_assert_eq!(shown(&findings), shown(&whole.findings), "{}", text);
             prop_assert_eq!(programs, whole.programs);
-            // Entered at every number, the pieces may find less, and never another thing.
-            let texts = (memory(&text), KnownBlocks::default());
-            let rules = PieceRules { enters_numbers: true, ..SMALL_RULES };
-            let found = shown(&check_sized(texts, &settings, &mut NoLibrary, rules).findings);
-            let whole = shown(&whole.findings);
-            prop_assert!(found.iter().all(|one| whole.contains(one)), "{}\n{:#?}\n{:#?}", text, found, whole);
         }
     }
 }

@@ -7,12 +7,15 @@ use gcode_lang::program::{OpIndex, Program, ProgramId};
 use gcode_lang::source::Span;
 
 use super::calls::{CallSite, CalledProgramName};
-use super::context::{CheckContext, ProgramUnit};
+use super::computed_jumps::ComputedJumps;
+use super::context::{CheckContext, ProgramUnit, Role};
+use super::control_flow::Successors;
+use super::first_reach::has_unclear_read;
 use super::literal;
 use super::locals::Locals;
 use super::modes::modes_before;
 use super::parameters::has_open_parameter_input;
-use super::piece::{Entries, Piece, PieceStart};
+use super::piece::{Piece, PieceStart};
 use super::possible_units::PossibleUnits;
 use super::rules::{
     self, PointCounts, alarming_cancel, limits_lookahead, pending_moves, point_counts, sequence_numbers,
@@ -49,12 +52,18 @@ pub(super) struct WholeProgram {
     pub returns: bool,
     pub ends: bool,
     pub has_exit: bool,
+    pub computed_jumps: ComputedJumps,
 }
 
 /// The check of a program in pieces is not possible.
 pub(super) struct NotInPieces;
 
 impl WholeProgram {
+    /// Creates what is known before the first piece; of the computed jumps that is what an earlier pass found.
+    pub(super) fn new(computed_jumps: ComputedJumps) -> Self {
+        Self { computed_jumps, ..Self::default() }
+    }
+
     /// Keeps the findings of a piece that are not suppressed, as far as the limit allows.
     pub(super) fn keep(&mut self, mut new: Vec<Diagnostic>, limit: FindingLimit<'_>) {
         self.has_unset |= new.iter().any(|finding| finding.kind == rules::UNSET_VARIABLE);
@@ -97,17 +106,21 @@ impl WholeProgram {
         context: &CheckContext<'_>,
         unit: &ProgramUnit<'_>,
         (whole, blocks): (&Program, Range<OpIndex>),
-        (entered, long): (Entries, &[ProgramId]),
+        long: &[ProgramId],
     ) -> Result<(PieceStart, Vec<Diagnostic>), NotInPieces> {
         let is_last = blocks.end == whole.block_count();
-        if entered == Entries::Known && leads_to_numbers(unit, (whole, &blocks)) {
-            return Err(NotInPieces);
-        }
         if leads_elsewhere(context, unit, (whole, &blocks), long) || !is_last && !unit.reaches_end {
             return Err(NotInPieces);
         }
-        let mut findings = rules::findings_in(context, unit);
-        if findings.iter().any(|finding| rests_on_whole(context, finding)) {
+        self.computed_jumps.add(context, unit);
+        // Where another pass follows, the states at the end of the piece are all that matters.
+        let mut findings = match self.computed_jumps.are_outdated() {
+            true => Vec::new(),
+            false => rules::findings_in(context, unit),
+        };
+        if findings.iter().any(|finding| rests_on_whole(context, finding))
+            || self.computed_jumps.lead_back() && rests_on_cycles(unit, &findings)
+        {
             return Err(NotInPieces);
         }
         let judged_in = unit_in_force(context, unit);
@@ -151,6 +164,8 @@ impl WholeProgram {
             modes: modes_before(context, unit)[end].ok_or(NotInPieces)?,
             locals: states_without_arguments(unit)[end].ok_or(NotInPieces)?,
             units: (self.units, judged_in),
+            may_be_left_out: unit.piece.as_ref().is_some_and(|piece| piece.start.may_be_left_out)
+                || unit.flow.block_successors.iter().any(Successors::may_leave),
             pending_move: match limits_lookahead(context, unit) {
                 true => None,
                 false => pending_moves(context, unit)[end].flatten(),
@@ -166,14 +181,14 @@ fn rests_on_whole(context: &CheckContext<'_>, finding: &Diagnostic) -> bool {
     rules::OF_WHOLE_PROGRAM.contains(&finding.kind) || is_haas && finding.kind == rules::LIVE_POSITION
 }
 
-/// Returns true if control may go from the piece to any sequence number elsewhere.
-fn leads_to_numbers(unit: &ProgramUnit<'_>, (whole, blocks): (&Program, &Range<OpIndex>)) -> bool {
-    let mut successors = unit.flow.block_successors.iter().zip(&unit.is_reached);
-    successors.any(|(block, is_reached)| *is_reached && block.jumps_anywhere)
-        && whole.has_number_outside(blocks)
+/// Returns true if a finding, or the lack of one, rests on the cycles about a block, where jumps lead back to other pieces.
+fn rests_on_cycles(unit: &ProgramUnit<'_>, findings: &[Diagnostic]) -> bool {
+    findings.iter().any(|finding| finding.kind == rules::ENDLESS_LOOP)
+        || unit.role == Role::Main && has_unclear_read(unit, states_without_arguments(unit))
 }
 
-/// Returns true if control may come from other blocks than the one before the piece, or go to others than the next one.
+/// Returns true if control may come from other blocks than the one before the piece, or go to others than the next one, and not
+/// by a computed jump.
 fn leads_elsewhere(
     context: &CheckContext<'_>,
     unit: &ProgramUnit<'_>,

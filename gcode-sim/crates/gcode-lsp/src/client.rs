@@ -11,7 +11,7 @@ pub(crate) struct Client {
     pub has_document_changes: bool,
     pub has_hierarchical_symbols: bool,
     pub has_disabled_actions: bool,
-    /// Code actions may state their kinds.
+    /// Code actions may carry their edits; otherwise they are commands.
     pub has_action_literals: bool,
     pub has_prepared_rename: bool,
     pub has_related_information: bool,

@@ -2,7 +2,7 @@
 use std::sync::Arc;
 
 use gcode_control::Progress;
-use gcode_ide::{FileEdit, FileId, ProgramKey};
+use gcode_ide::{FileEdit, FileId, FormatOptions, ProgramKey};
 use lsp_types::{
     CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams,
     CodeActionResponse, Diagnostic, NumberOrString, Range,
@@ -11,6 +11,7 @@ use lsp_types::{
 use crate::edits::{format_edits, renumber_edits, workspace_edit};
 use crate::failure::Failure;
 use crate::findings::{SOURCE, help_of};
+use crate::offered_edit;
 use crate::snapshot::Snapshot;
 
 /// First sequence number and step of a renumbered program.
@@ -54,10 +55,14 @@ pub(crate) fn code_actions(
         actions.extend(source_action(snapshot, title, RENUMBER, edits)?);
     }
     if is_wanted(&FORMAT) {
-        let edits = format_edits(snapshot, file, None, progress);
+        let edits = format_edits(snapshot, file, (None, FormatOptions::default()), progress);
         actions.extend(source_action(snapshot, "Format the file".to_owned(), FORMAT, edits)?);
     }
-    Ok(Some(actions.into_iter().map(CodeActionOrCommand::CodeAction).collect()))
+    let as_offered = |action| match snapshot.client.has_action_literals {
+        true => Some(CodeActionOrCommand::CodeAction(action)),
+        false => offered_edit::command(snapshot, action).map(CodeActionOrCommand::Command),
+    };
+    Ok(Some(actions.into_iter().filter_map(as_offered).collect()))
 }
 
 /// Returns the programs that a range touches; that of a file with one program, wherever the range is.

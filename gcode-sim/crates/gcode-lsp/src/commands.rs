@@ -1,4 +1,4 @@
-//! Commands of the lenses above a program: run, verify, prove, show, debug; and renumber.
+//! Commands of the lenses above a program: run, verify, prove, show, debug; renumber, and the edits of code actions.
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,6 +22,7 @@ use crate::code_actions::NUMBERING;
 use crate::document_uri;
 use crate::edits::{renumber_edits, workspace_edit};
 use crate::failure::Failure;
+use crate::offered_edit::{self, APPLY};
 use crate::program_setup::ProgramSetup;
 use crate::snapshot::Snapshot;
 
@@ -40,9 +41,9 @@ const DEBUG: &str = "gcode-sim.debug";
 const RENUMBER: &str = "gcode-sim.renumber";
 
 /// All commands, as the server announces them.
-pub(crate) const ALL: [&str; 7] = [RUN, VERIFY, PROVE, SHOW, PAGE, DEBUG, RENUMBER];
+pub(crate) const ALL: [&str; 8] = [RUN, VERIFY, PROVE, SHOW, PAGE, DEBUG, RENUMBER, APPLY];
 
-/// Argument of each command: a program of a document.
+/// Argument of each command but [`APPLY`]: a program of a document.
 #[derive(Debug, Serialize, Deserialize)]
 struct Target {
     uri: Uri,
@@ -114,6 +115,10 @@ pub(crate) fn execute(
     let name = params.command.as_str();
     if !ALL.contains(&name) {
         return Err(Failure::params(format!("unknown command {name}; there are {}", ALL.join(", "))));
+    }
+    if name == APPLY {
+        let applied = Some(offered_edit::of_command(snapshot, &params)?);
+        return Ok(CommandResult { applied, ..CommandResult::new(Value::Null) });
     }
     let target = target(&params)?;
     let file = snapshot.file(&TextDocumentIdentifier { uri: target.uri.clone() })?;
@@ -199,17 +204,18 @@ fn plain(value: &Value) -> String {
 }
 
 fn verify(snapshot: &Snapshot, setup: &ProgramSetup, request: &Request) -> Result<CommandResult, Failure> {
-    let Some(reference) = &setup.paths.reference else {
-        let text = "no reference: name the program in [references] of gcode.toml, or put job.toml beside it";
+    let mut library = setup.library(&snapshot.files);
+    let reference = setup.paths.reference.as_deref();
+    let report = snapshot.files.host().verdict_report(request, &mut library, reference);
+    let Some(report) = report.map_err(Failure::refused)? else {
+        let text = "no reference: name the program in [references] of gcode.toml, or put job.toml or reference.csv beside it; \
+                    for a program without holes state [stock] in the machine file";
         let value = json!({ "verdict": null, "message": text });
         return Ok(CommandResult {
             message: Some((MessageType::WARNING, text.to_owned())),
             ..CommandResult::new(value)
         });
     };
-    let mut library = setup.library(&snapshot.files);
-    let report = snapshot.files.host().verdict_report(request, &mut library, reference);
-    let report = report.map_err(Failure::refused)?;
     let part = |key: &str| report.get(key).map(plain).unwrap_or_default();
     let is_pass = part("verdict") == "pass";
     let kind = if is_pass { MessageType::INFO } else { MessageType::ERROR };

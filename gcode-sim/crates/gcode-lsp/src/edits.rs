@@ -3,9 +3,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use gcode_control::Progress;
-use gcode_ide::{FileEdit, FileId, ProgramKey, Symbol, TextRange};
+use gcode_ide::{FileEdit, FileId, FormatOptions, ProgramKey, Symbol, TextRange};
 use lsp_types::{
-    DocumentChanges, DocumentFormattingParams, DocumentRangeFormattingParams, OneOf,
+    DocumentChanges, DocumentFormattingParams, DocumentRangeFormattingParams, FormattingOptions, OneOf,
     OptionalVersionedTextDocumentIdentifier, PrepareRenameResponse, RenameParams, TextDocumentEdit,
     TextDocumentPositionParams, TextEdit, WorkspaceEdit,
 };
@@ -13,6 +13,7 @@ use lsp_types::{
 use crate::failure::Failure;
 use crate::proof::{RenamedVariables, prove};
 use crate::snapshot::Snapshot;
+use crate::text_document::TextDocument;
 
 /// Returns edits of files as the client takes them: with the versions of its documents, if it can.
 #[expect(clippy::mutable_key_type, reason = "the protocol's type has URIs as keys")]
@@ -22,7 +23,7 @@ pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Resul
     for FileEdit { file, edit } in edits {
         let text = match &last {
             Some((known, text)) if *known == file => Arc::clone(text),
-            _ => snapshot.text_of(file)?,
+            _ => editable_text(snapshot, file)?,
         };
         let range = text.range(edit.range.start, edit.range.end);
         by_file.entry(file).or_default().push(TextEdit { range, new_text: edit.text });
@@ -47,6 +48,19 @@ pub(crate) fn workspace_edit(snapshot: &Snapshot, edits: Vec<FileEdit>) -> Resul
     });
     let document_changes = Some(DocumentChanges::Edits(changes.collect()));
     Ok(WorkspaceEdit { document_changes, ..WorkspaceEdit::default() })
+}
+
+/// Returns a text whose columns are those that an editor counts: the text that it has open, or a file in UTF-8.
+fn editable_text(snapshot: &Snapshot, file: FileId) -> Result<Arc<TextDocument>, Failure> {
+    let text = snapshot.text_of(file)?;
+    if snapshot.documents.contains_key(&file) || text.bytes().file_content() == &**text.bytes() {
+        return Ok(text);
+    }
+    let name = snapshot.path(file);
+    Err(Failure::refused(format!(
+        "{} is not in UTF-8, so an editor may count its columns otherwise: open it first",
+        name.display()
+    )))
 }
 
 pub(crate) fn prepare_rename(
@@ -94,7 +108,7 @@ pub(crate) fn format(
     progress: &Arc<Progress>,
 ) -> Result<Option<Vec<TextEdit>>, Failure> {
     let file = snapshot.file(&params.text_document)?;
-    formatted(snapshot, file, None, progress).map(Some)
+    formatted(snapshot, file, (None, options(&params.options)), progress).map(Some)
 }
 
 pub(crate) fn format_range(
@@ -104,16 +118,26 @@ pub(crate) fn format_range(
 ) -> Result<Option<Vec<TextEdit>>, Failure> {
     let file = snapshot.file(&params.text_document)?;
     let (start, end) = snapshot.text_of(file)?.offsets(params.range);
-    formatted(snapshot, file, Some(TextRange::new(start, end)), progress).map(Some)
+    let range = Some(TextRange::new(start, end));
+    formatted(snapshot, file, (range, options(&params.options)), progress).map(Some)
+}
+
+/// Returns those of the client's options that mean something in a program.
+fn options(given: &FormattingOptions) -> FormatOptions {
+    FormatOptions {
+        trims_trailing_spaces: given.trim_trailing_whitespace.unwrap_or_default(),
+        inserts_final_newline: given.insert_final_newline.unwrap_or_default(),
+        trims_final_newlines: given.trim_final_newlines.unwrap_or_default(),
+    }
 }
 
 fn formatted(
     snapshot: &Snapshot,
     file: FileId,
-    range: Option<TextRange>,
+    what: (Option<TextRange>, FormatOptions),
     progress: &Arc<Progress>,
 ) -> Result<Vec<TextEdit>, Failure> {
-    let edits = format_edits(snapshot, file, range, progress).map_err(Failure::refused)?;
+    let edits = format_edits(snapshot, file, what, progress).map_err(Failure::refused)?;
     let text = snapshot.text_of(file)?;
     let edit = |edit: FileEdit| {
         let range = text.range(edit.edit.range.start, edit.edit.range.end);
@@ -129,10 +153,10 @@ fn formatted(
 pub(crate) fn format_edits(
     snapshot: &Snapshot,
     file: FileId,
-    range: Option<TextRange>,
+    (range, options): (Option<TextRange>, FormatOptions),
     progress: &Arc<Progress>,
 ) -> Result<Vec<FileEdit>, String> {
-    let edits = snapshot.project.format(file, range).into_iter().map(|edit| FileEdit { file, edit });
+    let edits = snapshot.project.format(file, range, options).into_iter().map(|edit| FileEdit { file, edit });
     let edits: Vec<_> = edits.collect();
     let proved = prove(snapshot, &edits, &BTreeSet::new(), progress);
     proved.map_err(|why| format!("not formatted: {why}"))?;

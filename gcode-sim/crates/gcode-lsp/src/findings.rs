@@ -98,8 +98,16 @@ pub(crate) fn check(
     (document, checked)
 }
 
-/// Returns the exact place of a finding. One between two characters, where an editor marks nothing, has its block.
+/// Returns the exact place of a finding. One between two characters, where an editor marks nothing, has its block. One in another
+/// file that a call of the document decides has that call: it is found in no check of the other file.
 fn place(finding: &Finding) -> Option<Span> {
+    let own = own_place(finding);
+    let is_here = own.is_none_or(|span| span.source == SourceId(0));
+    let call = || finding.labels.iter().map(|(span, _)| *span).find(|span| span.source == SourceId(0));
+    own.filter(|_| is_here).or_else(call).or(own)
+}
+
+fn own_place(finding: &Finding) -> Option<Span> {
     let block = finding.backtrace.as_ref().map(|backtrace| backtrace.block);
     finding.span.filter(|span| span.start < span.end).or(block).or(finding.span)
 }
@@ -165,7 +173,9 @@ impl FindingContext<'_> {
     }
 
     fn related(&self, finding: &Finding) -> Vec<DiagnosticRelatedInformation> {
-        let labels = finding.labels.iter().map(|(span, caption)| (*span, caption.clone()));
+        let elsewhere = own_place(finding).filter(|span| span.source != SourceId(0));
+        let elsewhere = elsewhere.map(|span| (span, "in this block of the called program".to_owned()));
+        let labels = finding.labels.iter().map(|(span, caption)| (*span, caption.clone())).chain(elsewhere);
         let calls = finding.backtrace.iter().flat_map(|Backtrace { calls, .. }| calling_blocks(calls));
         let calls = calls.map(|span| (span, "called from here".to_owned()));
         let related = labels.chain(calls).filter_map(|(span, message)| {

@@ -24,6 +24,11 @@ pub trait Host: FileAccess + Send + Sync {
         None
     }
 
+    /// Returns false if no process of this computer has an id; true where that cannot be known.
+    fn is_alive(&self, _process: u32) -> bool {
+        true
+    }
+
     /// Returns the folders in a folder, sorted by name.
     fn folders(&self, path: &Path) -> Vec<PathBuf>;
 
@@ -39,7 +44,9 @@ pub trait Host: FileAccess + Send + Sync {
     /// The run cannot begin.
     fn run_report(&self, request: &Request, library: &mut dyn Library) -> Result<Value, String>;
 
-    /// Verifies a program against the reference at a path and returns the document of `gcode-sim verify --format json`.
+    /// Verifies a program as `gcode-sim verify` does and returns the document of `--format json`: against the reference at a path,
+    /// without one against the list beside the program, or by its motion in the stock of the machine file. `None` if it has
+    /// neither.
     ///
     /// # Errors
     /// The run cannot begin, or the reference cannot be used.
@@ -47,8 +54,8 @@ pub trait Host: FileAccess + Send + Sync {
         &self,
         request: &Request,
         library: &mut dyn Library,
-        reference: &Path,
-    ) -> Result<Value, String>;
+        reference: Option<&Path>,
+    ) -> Result<Option<Value>, String>;
 
     /// Proves claims on a program for ranges of its variables and returns the document of `gcode-sim prove --format json`.
     ///

@@ -52,7 +52,12 @@
 //!     fn run_report(&self, _: &Request, _: &mut dyn Library) -> Result<Value, String> {
 //!         Err("no reports".to_owned())
 //!     }
-//!     fn verdict_report(&self, _: &Request, _: &mut dyn Library, _: &Path) -> Result<Value, String> {
+//!     fn verdict_report(
+//!         &self,
+//!         _: &Request,
+//!         _: &mut dyn Library,
+//!         _: Option<&Path>,
+//!     ) -> Result<Option<Value>, String> {
 //!         Err("no reports".to_owned())
 //!     }
 //!     fn proof_report(
@@ -95,6 +100,7 @@ mod hints;
 mod host;
 mod navigation;
 mod notifications;
+mod offered_edit;
 mod overlay;
 mod program_setup;
 mod proof;

@@ -1,5 +1,5 @@
 //! The server's loop: messages of the client and answers from the background, one after the other.
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -28,12 +28,15 @@ const TICK: Duration = Duration::from_millis(250);
 /// Ticks from one look at the disk to the next.
 const POLL: u64 = 4;
 
+/// Ticks from one look at the editor's process to the next.
+const EDITOR_POLL: u64 = 12;
+
 /// How the client ended its session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SessionEnd {
     /// shutdown, then exit.
     Shutdown,
-    /// exit alone, or the end of its messages.
+    /// exit alone, the end of its messages, or of the process that started the server.
     Exit,
 }
 
@@ -49,13 +52,15 @@ enum Phase {
 pub fn serve(connection: &Connection, host: Arc<dyn Host>) -> SessionEnd {
     let (sender, background) = unbounded();
     let state = ServerState::new(host, connection.sender.clone(), sender);
-    let mut server = Server { state, phase: Phase::Starting };
+    let mut server = Server { state, phase: Phase::Starting, editor: None };
     server.run(&connection.receiver, &background)
 }
 
 struct Server {
     state: ServerState,
     phase: Phase,
+    /// Process of the editor: the server ends with it.
+    editor: Option<u32>,
 }
 
 impl Server {
@@ -80,9 +85,16 @@ impl Server {
                     if ticks % POLL == 0 {
                         self.state.poll_disk();
                     }
+                    if ticks % EDITOR_POLL == 0 && self.editor.is_some_and(|editor| !self.is_alive(editor)) {
+                        return SessionEnd::Exit;
+                    }
                 }
             }
         }
+    }
+
+    fn is_alive(&self, process: u32) -> bool {
+        self.state.snapshot.files.host().is_alive(process)
     }
 
     fn on_request(&mut self, request: Request) {
@@ -112,6 +124,8 @@ impl Server {
         self.phase = Phase::Running;
         self.state.send(Response::new_ok(request.id, initialize_result(&client)));
         self.state.snapshot.client = Arc::new(client);
+        // The id may be that of a process elsewhere, outside a container.
+        self.editor = params.process_id.filter(|editor| self.is_alive(*editor));
         let folders = folders(&params);
         self.state.snapshot.folders = Arc::new(folders.iter().filter_map(document_uri::path).collect());
         if let Some(options) = &params.initialization_options {
@@ -243,6 +257,9 @@ fn response(id: RequestId, result: Result<Value, Failure>) -> Response {
 fn folders(params: &InitializeParams) -> Vec<Uri> {
     match &params.workspace_folders {
         Some(folders) if !folders.is_empty() => folders.iter().map(|folder| folder.uri.clone()).collect(),
-        _ => params.root_uri.iter().cloned().collect(),
+        _ => {
+            let path = || document_uri::of_path(Path::new(params.root_path.as_deref()?));
+            params.root_uri.clone().or_else(path).into_iter().collect()
+        }
     }
 }

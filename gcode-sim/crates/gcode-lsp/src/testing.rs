@@ -56,7 +56,12 @@ impl Host for NoFiles {
         Err("no reports".to_owned())
     }
 
-    fn verdict_report(&self, _: &Request, _: &mut dyn Library, _: &Path) -> Result<Value, String> {
+    fn verdict_report(
+        &self,
+        _: &Request,
+        _: &mut dyn Library,
+        _: Option<&Path>,
+    ) -> Result<Option<Value>, String> {
         Err("no reports".to_owned())
     }
 

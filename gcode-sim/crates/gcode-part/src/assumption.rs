@@ -13,7 +13,8 @@ pub struct Assumption {
     /// The block of the first read.
     pub place: AssumptionPlace,
     /// Ids of the holes that it can touch, or their numbers without a reference, or the numbers of flutes; those without a
-    /// nominal one are `extra 1`, `extra 2`, …. Empty if it touches none of them, and another value may make further ones.
+    /// nominal one are `extra 1`, `extra 2`, …. Empty if it touches none of them: it decides a feed beside them, or another
+    /// value may make further ones.
     pub decides: Vec<String>,
 }
 
@@ -55,7 +56,8 @@ impl Assumption {
         };
         let shown = decides.iter().take(MAX_LISTED).cloned().collect::<Vec<_>>().join(", ");
         let decided = match decides.len() {
-            0 => format!("whether more {noun}s are cut"),
+            0 if count == 0 => "what is cut".to_owned(),
+            0 => format!("what is cut besides the {noun}s"),
             1 => format!("{noun} {shown}"),
             all if all == count => format!("all {all} {noun}s"),
             all if MAX_LISTED < all => format!("{noun}s {shown}, … and {} more", all - MAX_LISTED),
@@ -81,10 +83,11 @@ mod tests {
         for (one, holes, expected) in [
             (assumption("#510", None, 2), 3, "#510 = vacant (O0100 line 12) decides holes 1, 2"),
             (assumption("#510", Some(2.5), 1), 3, "#510 = 2.5 (O0100 line 12) decides hole 1"),
+            (assumption("#510", Some(0.0), 0), 0, "#510 = 0 (O0100 line 12) decides what is cut"),
             (
-                assumption("#510", Some(0.0), 0),
-                0,
-                "#510 = 0 (O0100 line 12) decides whether more holes are cut",
+                assumption("D1", Some(0.0), 0),
+                2,
+                "D1 = 0 (O0100 line 12) decides what is cut besides the holes",
             ),
             (assumption("M21", None, 3), 3, "M21 (O0100 line 12) decides all 3 holes"),
             (

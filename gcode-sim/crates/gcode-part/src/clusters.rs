@@ -6,12 +6,16 @@ use std::ops::Range;
 
 use nalgebra::Point3;
 
+use crate::local_search::LocalSearch;
 use crate::point_tree::{LEAF_SIZE, Node, PointTree};
 
 /// The clusters of the points of a tree.
 #[derive(Debug)]
 pub struct Clusters<'t> {
+    tree: &'t PointTree,
     nodes: &'t [Node],
+    /// Most points are alone in their boxes.
+    search: LocalSearch,
     /// For each point, itself or a point of its cluster with a lower index.
     parents: Vec<u32>,
     /// For each node, in the order of the tree: whether all points of its subtree are one cluster.
@@ -23,7 +27,13 @@ impl<'t> Clusters<'t> {
     pub fn new(tree: &'t PointTree) -> Self {
         let nodes = tree.nodes();
         let points = nodes.len();
-        Self { nodes, parents: (0..points as u32).collect(), is_uniform: vec![false; points] }
+        Self {
+            tree,
+            nodes,
+            search: LocalSearch::default(),
+            parents: (0..points as u32).collect(),
+            is_uniform: vec![false; points],
+        }
     }
 
     /// Joins point `index` with each point of the box from `low` to `high` that satisfies `belongs`.
@@ -34,7 +44,11 @@ impl<'t> Clusters<'t> {
         high: &Point3<f64>,
         belongs: &impl Fn(usize) -> bool,
     ) {
-        self.visit(0..self.nodes.len(), index as u32, low, high, belongs);
+        let about = self.search.nodes_about(self.tree, low, high);
+        let is_other = |node: &Node| node.index as usize != index && node.is_in(low, high);
+        if about.is_none_or(|nodes| nodes.iter().any(is_other)) {
+            self.visit(0..self.nodes.len(), index as u32, low, high, belongs);
+        }
     }
 
     /// Returns for each point the lowest index in its cluster.

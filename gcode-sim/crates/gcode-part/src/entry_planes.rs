@@ -54,15 +54,15 @@ pub struct EntryPlanes {
     collars: Vec<Collar>,
     ids: Vec<String>,
     /// Middles of the collars.
-    middles: PointTree,
+    pub(super) middles: PointTree,
     /// Largest distance of a collar's point from its middle.
     reach: f64,
     /// Largest length by which the room of a hole leaves its collar, mm.
-    room: f64,
+    pub(super) room: f64,
     /// The same along each axis.
-    extent: Vector3<f64>,
+    pub(super) extent: Vector3<f64>,
     /// Direction of all axes if they agree, and the height of the highest entry along it.
-    top: Option<(Unit<Vector3<f64>>, f64)>,
+    pub(super) top: Option<(Unit<Vector3<f64>>, f64)>,
 }
 
 /// Metal round one hole: a cylinder from the plane of the nominal entry to the bottom, with the hole in it, and the floor
@@ -140,13 +140,6 @@ impl EntryPlanes {
         &self.ids[index]
     }
 
-    /// Calls `each` with the holes whose metal may reach into the box from `low` to `high`.
-    pub fn near(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
-        if !self.is_above_all(low, high) {
-            self.around(low, high, each);
-        }
-    }
-
     /// Returns true if the box from `low` to `high` is above every entry, where all holes have one direction.
     pub fn is_above_all(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
         self.top.is_some_and(|(out, top)| {
@@ -165,34 +158,14 @@ impl EntryPlanes {
         all.unwrap_or([Point3::origin(); 2])
     }
 
-    /// Returns a lower bound of the distance from the metal round any hole, mm.
-    pub fn nearest_metal(&self, p: &Point3<f64>) -> f64 {
-        self.middles.nearest(p).map_or(f64::INFINITY, |(_, distance)| distance - self.reach)
-    }
-
     /// Calls `each` with the holes whose metal, or the space above it, may reach into the box from `low` to `high`.
     pub fn around(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
         self.middles.in_box(&(low - self.extent), &(high + self.extent), each);
     }
-}
 
-impl EntryPlanes {
-    /// Calls `each` with the holes whose room, or the space up to a height above it, may be nearer than `margin` to the box from
-    /// `low` to `high`.
-    pub fn below(
-        &self,
-        low: &Point3<f64>,
-        high: &Point3<f64>,
-        (margin, height): (f64, f64),
-        each: &mut impl FnMut(usize),
-    ) {
-        let margin = Vector3::repeat(margin.max(self.room));
-        // Without a common direction the space may be on any side.
-        let [before, behind] = match self.top {
-            Some((out, _)) => [height, -height].map(|height| out.map(|out| (out * height).max(0.0))),
-            None => [Vector3::repeat(height); 2],
-        };
-        self.around(&(low - margin - before), &(high + margin + behind), each);
+    /// Returns a lower bound of the distance from the metal round any hole, mm.
+    pub fn nearest_metal(&self, p: &Point3<f64>) -> f64 {
+        self.middles.nearest(p).map_or(f64::INFINITY, |(_, distance)| distance - self.reach)
     }
 }
 
@@ -377,6 +350,7 @@ pub const SAME_END: f64 = 1.0;
 
 #[cfg(test)]
 mod tests {
+    use super::super::entry_search::EntrySearch;
     use super::*;
 
     fn hole(entry: [f64; 3], axis: [f64; 3], diameter: Option<f64>) -> Hole {
@@ -445,8 +419,8 @@ mod tests {
     #[test]
     fn only_holes_that_a_box_reaches_are_near() {
         let up = [0.0, 0.0, 1.0];
-        let planes =
-            EntryPlanes::of(&[hole([10.0, 0.0, 0.0], up, Some(6.0)), hole([40.0, 0.0, -5.0], up, None)], 0.1);
+        let holes = [hole([10.0, 0.0, 0.0], up, Some(6.0)), hole([40.0, 0.0, -5.0], up, None)];
+        let planes = EntrySearch::from(Arc::new(EntryPlanes::of(&holes, 0.1)));
         let near = |low: [f64; 3], high: [f64; 3]| {
             let mut found = Vec::new();
             planes.near(&low.into(), &high.into(), &mut |index| found.push(index));

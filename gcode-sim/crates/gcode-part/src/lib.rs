@@ -40,6 +40,7 @@ mod csv_list;
 mod distance;
 mod drawn_pattern;
 mod entry_planes;
+mod entry_search;
 mod facing;
 mod feature;
 mod flutes;
@@ -50,6 +51,7 @@ mod honeycomb;
 mod indicator;
 pub mod job;
 mod limits;
+mod local_search;
 mod nominal;
 mod nominal_axes;
 mod overlap;
@@ -77,12 +79,14 @@ pub use entry_planes::{
     Collar, EntryPlanes, MAX_BREAK_THROUGH, MAX_EDGE_BREAK, Metal, PARALLEL_COSINE, POINT_LENGTH, SAME_END,
     Step,
 };
+pub use entry_search::EntrySearch;
 pub use feature::{DepthTo, Feature, FeatureKind};
 pub use flutes::Flutes;
 pub use hand::Hand;
 pub use hole::{Hole, HoleList, MM_PER_INCH, Origin, Unit};
 pub use indicator::tilted_ellipsoid;
 pub use limits::{NOISE, exceeds};
+pub use local_search::LocalSearch;
 pub use nominal::NominalPart;
 pub use nominal_axes::{NominalAxes, NominalAxis, NominalThread};
 pub use overlap::overlaps;

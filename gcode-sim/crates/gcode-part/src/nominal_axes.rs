@@ -103,6 +103,11 @@ pub struct NominalAxes {
 }
 
 impl NominalAxes {
+    /// Returns the number of holes.
+    pub fn len(&self) -> usize {
+        self.hole_count
+    }
+
     /// Returns true without any hole.
     pub fn is_empty(&self) -> bool {
         self.axes.is_empty()

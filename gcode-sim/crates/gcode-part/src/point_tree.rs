@@ -1,4 +1,5 @@
 //! A k-d tree of points for box, pair and nearest-neighbour queries on hundreds of thousands of holes.
+use gcode_lang::shares::{share_length, work_on};
 use nalgebra::{Point3, Vector3};
 
 /// Size below which a range of nodes is searched linearly; further halving is slower.
@@ -43,21 +44,43 @@ impl PointTree {
         if let Some(first) = nodes.first().map(|node| node.point) {
             let (low, high) =
                 nodes.iter().fold((first, first), |(low, high), n| (low.inf(&n.point), high.sup(&n.point)));
-            halve(&mut nodes, low, high);
+            let is_shared = share_length(nodes.len()) < nodes.len();
+            let all = (nodes.as_mut_slice(), low, high);
+            match is_shared {
+                true => work_on(split(all).into_iter().flatten(), sort),
+                false => sort(all),
+            }
         }
         Self { nodes }
     }
 
     /// Calls `each` with the index of every point in the box from `low` to `high`, bounds included.
     pub fn in_box(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
-        visit(&self.nodes, 0, low, high, each);
+        self.nodes_in_box(low, high, &mut |node| {
+            each(node.index as usize);
+            true
+        });
+    }
+
+    /// Calls `each` with the nodes in the box from `low` to `high`, bounds included, while it returns true. Returns false if it has
+    /// returned false. The order of two nodes is the same in every box.
+    pub(crate) fn nodes_in_box(
+        &self,
+        low: &Point3<f64>,
+        high: &Point3<f64>,
+        each: &mut impl FnMut(&Node) -> bool,
+    ) -> bool {
+        visit(&self.nodes, 0, low, high, each)
     }
 
     /// Calls `each` once with the indices of every two points whose coordinates differ by at most `reach`.
     pub fn pairs(&self, reach: f64, each: &mut impl FnMut(usize, usize)) {
         let margin = Vector3::repeat(reach);
         for (place, node) in self.nodes.iter().enumerate() {
-            let mut other = |other| each(node.index as usize, other);
+            let mut other = |other: &Node| {
+                each(node.index as usize, other.index as usize);
+                true
+            };
             visit(&self.nodes, place + 1, &(node.point - margin), &(node.point + margin), &mut other);
         }
     }
@@ -83,12 +106,21 @@ impl PointTree {
     }
 }
 
-/// Sorts the points between `low` and `high` into k-d order, split along the longest side of the box.
+/// Nodes, and corners of a box that holds them.
+type Part<'n> = (&'n mut [Node], Point3<f64>, Point3<f64>);
+
+/// Sorts the points between `low` and `high` into k-d order.
+fn sort((nodes, low, high): Part<'_>) {
+    split((nodes, low, high)).into_iter().flatten().for_each(sort);
+}
+
+/// Moves the middle point of a part to its middle, and the others before it and behind it, along the longest side of the box. Returns
+/// both halves; `None` of a part that is a leaf.
 ///
 /// Holes often lie on a plane; a split across that plane would separate none of them.
-fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
+fn split<'n>((nodes, low, high): Part<'n>) -> Option<[Part<'n>; 2]> {
     if nodes.len() <= LEAF_SIZE {
-        return;
+        return None;
     }
     let axis = (high - low).imax();
     let middle = nodes.len() / 2;
@@ -100,41 +132,39 @@ fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
     end[axis] = nodes[middle].point[axis];
     start[axis] = end[axis];
     let (before, behind) = nodes.split_at_mut(middle);
-    halve(before, low, end);
-    halve(&mut behind[1..], start, high);
+    Some([(before, low, end), (&mut behind[1..], start, high)])
 }
 
-/// Calls `each` for the points in a box, without the first `skipped` nodes. It follows one half in a loop: most boxes are
-/// small and meet no other.
+/// Calls `each` for the nodes in a box while it returns true, without the first `skipped` nodes; returns false if it has returned
+/// false. It follows one half in a loop: most boxes are small and meet no other.
 fn visit(
     mut nodes: &[Node],
     mut skipped: usize,
     low: &Point3<f64>,
     high: &Point3<f64>,
-    each: &mut impl FnMut(usize),
-) {
+    each: &mut impl FnMut(&Node) -> bool,
+) -> bool {
     while LEAF_SIZE < nodes.len() {
         let middle = nodes.len() / 2;
         let (before, behind) = (&nodes[..middle], &nodes[middle + 1..]);
         let node = &nodes[middle];
-        if skipped <= middle && node.is_in(low, high) {
-            each(node.index as usize);
+        if skipped <= middle && node.is_in(low, high) && !each(node) {
+            return false;
         }
         let (axis, place) = node.halves();
         let is_before = skipped < middle && low[axis] <= place;
         if place <= high[axis] {
-            if is_before {
-                visit(before, skipped, low, high, each);
+            if is_before && !visit(before, skipped, low, high, each) {
+                return false;
             }
             (nodes, skipped) = (behind, skipped.saturating_sub(middle + 1));
         } else if is_before {
             nodes = before;
         } else {
-            return;
+            return true;
         }
     }
-    let inside = nodes.iter().skip(skipped).filter(|node| node.is_in(low, high));
-    inside.for_each(|node| each(node.index as usize));
+    nodes.iter().skip(skipped).filter(|node| node.is_in(low, high)).all(each)
 }
 
 fn closest(

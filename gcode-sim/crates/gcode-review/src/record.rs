@@ -19,7 +19,7 @@ use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::verify::Verdict;
 use gcode_lang::alarm::kinds::{LIMIT, PS0076};
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_lang::motion::{Axes, Backtrace, CallChain, MAX_AXES, Position};
+use gcode_lang::motion::{Axes, Backtrace, CallChain, EventSink, MAX_AXES, Position};
 use gcode_lang::program::Library;
 use gcode_lang::source::{SourceId, Span};
 use gcode_session::{Criteria, HoleJudgement, Request, Run, SessionError, Simulation};
@@ -113,21 +113,22 @@ impl Revision {
         library: &mut impl Library,
         criteria: Option<Criteria<'_>>,
     ) -> Result<Self, SessionError> {
-        Self::observed(request, library, criteria, &mut ())
+        Self::observed(request, library, criteria, &mut (), &mut ())
     }
 
-    /// Runs a program like [`Revision::of`], with an observer of its blocks.
+    /// Runs a program like [`Revision::of`]; `sink` and `observer` record what else the caller shows.
     pub fn observed(
         request: &Request,
         library: &mut impl Library,
         criteria: Option<Criteria<'_>>,
+        sink: &mut impl EventSink,
         observer: &mut impl Observer,
     ) -> Result<Self, SessionError> {
         let recorder = RefCell::new(Recorder::default());
-        let (mut sink, mut both) =
-            (SharedRecorder(&recorder), ObserverPair(SharedRecorder(&recorder), observer));
+        let (mut sinks, mut observers) =
+            ((SharedRecorder(&recorder), sink), ObserverPair(SharedRecorder(&recorder), observer));
         let HoleJudgement { simulation, verdict } =
-            gcode_session::simulate_judged(request, library, criteria, &mut sink, &mut both)?;
+            gcode_session::simulate_judged(request, library, criteria, &mut sinks, &mut observers)?;
         let recorder = recorder.into_inner();
         let message = || format!("more than {MOST_STEPS} moves: later ones are not compared");
         let truncation = recorder.is_truncated.then(|| Diagnostic::new(&LIMIT, message()));

@@ -14,18 +14,30 @@ use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, Block, Expr, ExprKind, Item, Statement};
 use gcode_lang::syntax::parse;
 use gcode_lint::{
-    ControlKnowledge, check_loaded, is_common, main_programs, programs_called_by_others, rules,
-    variables_read,
+    ControlKnowledge, check_loaded, is_common, main_programs, programs_called_by_others, reachable_programs,
+    rules, variables_read,
 };
 
 /// Rules about what a run does not show, or shows better: it finds the programs that it calls, and alarms at their end.
 const LEFT_OUT: [&str; 2] = ["missing-program", "missing-end"];
 
-/// Returns what a check of the program's text finds: everything from a warning on if the verdict `fails`, otherwise numbers
-/// without a decimal point. The block of an alarm is left out: the alarm says more.
+/// Returns what a check of the programs that the run can reach finds: everything from a warning on if the verdict `fails`,
+/// otherwise numbers without a decimal point. The block of an alarm is left out: the alarm says more.
 pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
-    let memory = run.control.memory().reload();
-    let checked = check_loaded(memory, run.control.settings(), ControlKnowledge::Stated, &mut NoLibrary);
+    let (memory, settings) = (run.control.memory().reload(), run.control.settings());
+    let mut checked = check_loaded(memory, settings, ControlKnowledge::Stated, &mut NoLibrary);
+    let reached = reachable_programs(&mut checked.memory, settings);
+    let programs = checked.memory.programs();
+    let spans: Vec<Span> = checked
+        .memory
+        .ids()
+        .zip(programs)
+        .filter(|(id, _)| !reached.contains(id))
+        .map(|(_, program)| program.span)
+        .collect();
+    let is_beyond = |block: Span| {
+        spans.iter().any(|span| span.source == block.source && (span.start..span.end).contains(&block.start))
+    };
     let stopped = match &run.outcome {
         Outcome::Alarm(stop) => Some(stop.backtrace.block),
         Outcome::End | Outcome::Limit => None,
@@ -34,7 +46,7 @@ pub(super) fn text_findings(run: &Run, fails: bool) -> Vec<Diagnostic> {
         let block = finding.backtrace.as_ref().map(|place| place.block);
         let is_chosen = finding.kind == rules::MISSING_POINT
             || fails && Severity::Warning <= finding.severity && !LEFT_OUT.contains(&finding.kind.code);
-        is_chosen && (stopped.is_none() || block != stopped)
+        is_chosen && (stopped.is_none() || block != stopped) && !block.is_some_and(is_beyond)
     };
     let mut found: Vec<Diagnostic> = checked.findings.into_iter().filter(is_cause).collect();
     for finding in found.iter_mut().filter(|finding| finding.kind == rules::MISSING_POINT) {

@@ -26,6 +26,7 @@ mod assumptions;
 mod causes;
 mod completion;
 mod error;
+mod event_thread;
 pub mod file_uri;
 pub mod files;
 mod grinding;
@@ -49,8 +50,10 @@ pub use open_depths::complete_depths;
 pub use set_up::set_up;
 pub use trace::{ExecutedBlock, Trace, VariableRole, VariableValues};
 
+use self::event_thread::with_event_thread;
 use self::set_up::{load, set_up_control};
 use gcode_control::{Control, Limits, Observer, Outcome, Progress};
+use gcode_inspect::findings::{FEED_NO_HOLE, FEED_WITHOUT_RETRACT};
 use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::stylus::{RapidChecker, Stylus, StylusReadings};
@@ -58,7 +61,7 @@ use gcode_inspect::verify::{Tolerances, Verdict, stop_sentence, verify};
 use gcode_lang::alarm::kinds::LIMIT;
 use gcode_lang::alarm::remedy;
 use gcode_lang::control::Settings;
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, EventSink};
 use gcode_lang::program::Library;
 use gcode_lang::program::modes::Unit;
@@ -240,7 +243,9 @@ pub fn simulate_observed<S: EventSink>(
     let metal = metal.into();
     let mut extractor = extractor(request, metal.clone());
     let mut feeds = second_start::FeedTrace::default();
-    let run = run_observed(request, library, &mut (&mut extractor, (&mut feeds, sink)), observer)?;
+    let run = with_event_thread(&mut extractor, |events| {
+        run_observed(request, library, &mut (events, (&mut feeds, sink)), observer)
+    })?;
     let mut extracted = extractor.finish();
     let lengths = run.control.tool_lengths().map(|(h, _)| h);
     extracted.program_lengths = lengths.filter(|h| !request.states_length(*h)).collect();
@@ -263,6 +268,16 @@ pub fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
 }
 
 impl Simulation {
+    /// Iterates over the findings of a run that no reference judges. A contour or a slot is no hole that failed: the warnings
+    /// that a feed is not counted as a hole belong to the list of the holes.
+    pub fn findings_without_reference(&self) -> impl Iterator<Item = &Diagnostic> {
+        let is_uncounted = |finding: &Diagnostic| {
+            finding.severity == Severity::Warning
+                && [&FEED_NO_HOLE, &FEED_WITHOUT_RETRACT].contains(&finding.kind)
+        };
+        self.extracted.findings.iter().filter(move |finding| !is_uncounted(finding))
+    }
+
     /// Verifies the holes against a reference, and completes the verdict by the request of the run.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, request: &Request) -> Verdict {
         let (machine, locate) = (&request.machine, |span| self.run.locate(span));

@@ -155,8 +155,12 @@ fn accepted_label(path: &Path) -> Option<String> {
 /// several. `path` chooses a program of the file.
 pub(in crate::cli) fn reference_beside(program: &Path, path: Option<&str>) -> Option<PathBuf> {
     let folder = input::folder_of(program);
+    let files = input::folder(folder).ok()?;
+    let is_reference = |path: &PathBuf| REFERENCES.iter().any(|name| path.to_string_lossy().ends_with(name));
+    // Most folders have none, and some have thousands of programs.
+    files.iter().find(|path| is_reference(path))?;
     let programs: Vec<PathBuf> =
-        input::folder(folder).ok()?.into_iter().filter(|path| !path.is_dir() && is_program(path)).collect();
+        files.into_iter().filter(|path| !path.is_dir() && is_program(path)).collect();
     let mains = main_program::of(folder, &programs).ok()?;
     let is_own = |main: &&MainProgram| {
         main.file.file_name() == program.file_name()

@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 
-use super::lines::Text;
+use super::lines::{Part, Text};
 use super::stops::stops;
 use super::words::{count, value};
 use super::{Page, ReviewSide, heading};
@@ -102,7 +102,7 @@ fn program(
     left: &mut usize,
 ) -> Markup {
     let Some(named) = pair.iter().rev().flatten().next() else { return html! {} };
-    let shown = listed_rows(lines(pair), pair, done, left);
+    let shown = listed_rows(in_order_of_run(lines(pair), pair), pair, done, left);
     html! {
         h3.program { (named.programs.join(", ")) }
         div.listing.two[sides.len() == 2] {
@@ -121,6 +121,9 @@ fn program(
                         (count(*lines)) " lines are omitted here: a page holds " (MAX_ROWS)
                         " and those with a hole or a finding"
                     },
+                    ListingRow::Unreached(lines) => div.gap {
+                        (count(*lines)) " lines of programs that the run cannot reach are omitted"
+                    },
                 }
             }
         }
@@ -131,17 +134,40 @@ fn program(
 enum ListingRow {
     Line(LinePair),
     Gap(u64),
+    /// Lines of programs that no call can reach.
+    Unreached(u64),
+}
+
+/// Sorts the lines of a file by what their program is to the run: the main program comes first. Edited lines count as called.
+fn in_order_of_run(lines: Vec<LinePair>, pair: &TextPair<'_>) -> Vec<(Part, LinePair)> {
+    let part = |line: &LinePair| {
+        let halves = || line.iter().zip(pair).map(|(at, text)| Some((text.as_ref()?, (*at)?)));
+        let part = halves().flatten().map(|(text, at)| text.part(at)).min().unwrap_or(Part::Main);
+        let mut written = halves().map(|half| half.map(|(text, at)| &text.lines[at]));
+        let first = written.next();
+        if written.all(|other| Some(other) == first) { part } else { part.min(Part::Called) }
+    };
+    let mut all: Vec<_> = lines.into_iter().map(|line| (part(&line), line)).collect();
+    all.sort_by_key(|(part, _)| *part);
+    all
 }
 
 /// Returns the remaining number of lines, and the linked lines after them.
 fn listed_rows(
-    lines: Vec<LinePair>,
+    lines: Vec<(Part, LinePair)>,
     pair: &TextPair<'_>,
     done: &[ExecutedLines<'_>],
     left: &mut usize,
 ) -> Vec<ListingRow> {
     let mut all: Vec<ListingRow> = Vec::new();
-    for line in lines {
+    for (part, line) in lines {
+        if part == Part::Unreached {
+            match all.last_mut() {
+                Some(ListingRow::Unreached(lines)) => *lines += 1,
+                _ => all.push(ListingRow::Unreached(1)),
+            }
+            continue;
+        }
         let is_linked =
             || line.iter().zip(pair).zip(done).any(|((at, text), done)| is_linked(*at, *text, done));
         if *left > 0 || is_linked() {
@@ -286,7 +312,13 @@ mod tests {
 
     fn text(lines: &[&str]) -> Text {
         let lines = lines.iter().map(|line| (*line).to_owned()).collect();
-        Text { source: SourceId(0), name: "O1.nc".to_owned(), programs: vec!["O0001".to_owned()], lines }
+        Text {
+            source: SourceId(0),
+            name: "O1.nc".to_owned(),
+            programs: vec!["O0001".to_owned()],
+            lines,
+            parts: Vec::new(),
+        }
     }
 
     #[test]
@@ -296,6 +328,30 @@ mod tests {
             [vec![Some(0), Some(0)], vec![Some(1), Some(1)], vec![None, Some(2)], vec![Some(2), Some(3)]];
         assert_eq!(lines(&vec![Some(&old), Some(&new)]), expected);
         assert_eq!(lines(&vec![None, Some(&old)]).len(), 3);
+    }
+
+    /// Line 3 to 4 are the main program, line 5 that of a call, and nothing reaches the first program.
+    #[test]
+    fn the_main_program_comes_first() {
+        let parts = vec![(1, Part::Unreached), (3, Part::Main), (5, Part::Called)];
+        let new = Text { parts, ..text(&["%", "O1", "M30", "O2", "M98 P3", "O3"]) };
+        let rows = |pair: &TextPair<'_>| {
+            let rows = in_order_of_run(lines(pair), pair).into_iter();
+            rows.map(|(part, line)| (part, line.last().copied().flatten())).collect::<Vec<_>>()
+        };
+        let [main, called, unreached] = [Part::Main, Part::Called, Part::Unreached];
+        assert_eq!(
+            rows(&vec![Some(&new)]),
+            [(main, 3), (main, 4), (called, 5), (unreached, 0), (unreached, 1), (unreached, 2)]
+                .map(|(part, line)| (part, Some(line)))
+        );
+        let old = Text { parts: new.parts.clone(), ..text(&["%", "O1", "M02", "O2", "M98 P3", "O3"]) };
+        // An edited line is listed in any case.
+        assert_eq!(
+            rows(&vec![Some(&old), Some(&new)]),
+            [(main, 3), (main, 4), (called, 2), (called, 5), (unreached, 0), (unreached, 1)]
+                .map(|(part, line)| (part, Some(line)))
+        );
     }
 
     #[test]

@@ -35,10 +35,9 @@ pub(super) fn messages(page: &Page<'_>, sides: &[ReviewSide<'_>]) -> Markup {
 /// Returns the findings of a run or of its verdict, most severe first.
 fn findings_of<'a>(side: &ReviewSide<'a>) -> Vec<&'a Diagnostic> {
     let revision = side.observed.revision;
-    let of_run = &revision.simulation.extracted.findings;
     let mut all: Vec<&Diagnostic> = match side.observed.verdict {
         Some(verdict) => verdict.diagnostics.iter().collect(),
-        None => of_run.iter().collect(),
+        None => revision.simulation.findings_without_reference().collect(),
     };
     all.extend(&revision.truncation);
     all.sort_by_key(|finding| Reverse(finding.severity));

@@ -20,12 +20,17 @@
     callers.forEach((caller) => document.getElementById(caller)?.classList.add("from"));
   }
 
-  // Scrolls the programs beside the drawing, and nothing else, until a line is in sight.
+  // Scrolls the programs until a line is in the part of them that the window shows, and the window only if that is not enough:
+  // beside the drawing their end can be below the window's.
   function scrollTo(anchor) {
     const [pane, line] = [document.getElementById("programs"), document.getElementById(anchor)];
-    if (!line || pane.scrollHeight <= pane.clientHeight || getComputedStyle(pane).overflowY !== "auto") return;
+    if (!line || getComputedStyle(pane).overflowY !== "auto") return;
     const [inside, box] = [pane.getBoundingClientRect(), line.getBoundingClientRect()];
-    if (box.top < inside.top || inside.bottom < box.bottom) pane.scrollTop += (box.top + box.bottom - inside.top - inside.bottom) / 2;
+    const isBeside = inside.top < innerHeight / 2;
+    const [top, bottom] = isBeside ? [Math.max(inside.top, 0), Math.min(inside.bottom, innerHeight)] : [inside.top, inside.bottom];
+    if (box.top < top || bottom < box.bottom) pane.scrollTop += (box.top + box.bottom - top - bottom) / 2;
+    const below = line.getBoundingClientRect().bottom - innerHeight;
+    if (isBeside && 0 < below) scrollBy(0, below);
   }
 
   function land(anchor) {

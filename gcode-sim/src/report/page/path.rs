@@ -396,7 +396,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                     li.changed { "different from the other program" }
                     li.other { "the other program\u{2019}s cut" }
                 }
-                @if data.has_hole(|status| matches!(status, HoleStatus::Good | HoleStatus::Unjudged)) { li.hole { "hole" } }
+                @if data.has_hole(|status| matches!(status, HoleStatus::Good | HoleStatus::Unjudged)) { li.hole { "hole, and its depth as a line" } }
                 @if data.has_hole(|status| matches!(status, HoleStatus::Bad | HoleStatus::Extra)) {
                     li.wrong { "hole that differs or has a fault" }
                 }

@@ -285,10 +285,8 @@ class Side {
     if (this.overview) this.drawOverview(colours);
   }
 
-  // Draws the work zeros: a circle with two black quarters, and its name where the first of them is not the only one.
-  drawZeros(colours) {
-    const context = this.context;
-    // Zeros in one place have their names in one line.
+  // Returns the work zeros on the canvas; those in one place have their names in one line.
+  zeroPlaces() {
     const places = [];
     for (const [name, at] of this.zeros) {
       const [x, y] = this.point(at);
@@ -296,7 +294,13 @@ class Side {
       if (same) same.name += `, ${name}`;
       else places.push({ x, y, name });
     }
-    for (const { x, y, name } of places) {
+    return places;
+  }
+
+  // Draws the work zeros: a circle with two black quarters.
+  drawZeros(colours) {
+    const context = this.context;
+    for (const { x, y } of this.zeroPlaces()) {
       Object.assign(context, { strokeStyle: colours.ink, fillStyle: colours.paper, lineWidth: 1.5 });
       context.beginPath();
       context.arc(x, y, 8, 0, 2 * Math.PI);
@@ -309,8 +313,6 @@ class Side {
         context.arc(x, y, 8, from, from + Math.PI / 2);
         context.fill();
       }
-      context.font = "12px system-ui, sans-serif";
-      this.write(name, x + 11, y - 8, colours);
     }
   }
 
@@ -480,13 +482,15 @@ class Side {
       if (wide < BIG && high < BIG) taken.push([x - wide, y - high, x + wide, y + high]);
     }
     context.font = "12px system-ui, sans-serif";
+    context.fillStyle = colours.ink;
+    for (const { x, y, name } of this.zeroPlaces()) this.label(name, [x, y], [9, 9], taken, colours, false);
     for (const name of [...groups.keys()].sort((a, b) => (order(a) < order(b) ? 1 : -1))) {
       const [away, role] = name.split(" ");
       Object.assign(context, { globalAlpha: away === "a" && role === "hole" ? 0.3 : 1, fillStyle: colours[role] });
       const group = groups.get(name);
       // Names in a crowd would be ambiguous.
       const named = this.holes.length <= 60 || (role !== "hole" && group.length <= 60) || role === "pick";
-      if (named) group.forEach((hole) => this.label(hole, taken, colours, role === "pick"));
+      if (named) group.forEach((hole) => this.label(hole.id, this.point(hole.entry), this.reach(hole), taken, colours, role === "pick"));
     }
     context.globalAlpha = 1;
   }
@@ -505,11 +509,9 @@ class Side {
     return [half(Math.cos(angle), Math.sin(angle)), half(Math.sin(angle), Math.cos(angle))];
   }
 
-  // Writes a hole's name close to it at the first free position; without one, a click on the hole shows it.
-  label(hole, taken, colours, always) {
-    const [x, y] = this.point(hole.entry);
-    const [wide, high] = [this.context.measureText(hole.id).width, 12];
-    const [along, rise] = this.reach(hole);
+  // Writes the name of a hole or a work zero close to it at the first free position; without one, a click on the hole shows it.
+  label(name, [x, y], [along, rise], taken, colours, always) {
+    const [wide, high] = [this.context.measureText(name).width, 12];
     const [right, left, middle] = [x + along + 4, x - along - 4 - wide, x - wide / 2];
     // Above to the right and the left, beside, below, and centred above and below.
     const places = [
@@ -525,7 +527,7 @@ class Side {
     const place = places.find(isFree) ?? (always ? places[0] : null);
     if (!place) return;
     taken.push(box(place));
-    this.write(hole.id, ...place, colours);
+    this.write(name, ...place, colours);
   }
 
   // Writes a text with a margin that interrupts lines.

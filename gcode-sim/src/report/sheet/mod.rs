@@ -10,6 +10,7 @@ use maud::{Markup, html};
 use super::encode::base64;
 use super::figures::{count, duration, finding_counts, rounded, short};
 use super::run::comments;
+use gcode_inspect::holes::HoleExtraction;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Conclusion};
 use gcode_lang::diag::{Diagnostic, Severity};
@@ -218,7 +219,7 @@ impl ProgramSheet<'_> {
 
     fn tools(&self) -> Markup {
         let machine = &self.request.machine;
-        let holes = &self.simulation.extracted.holes;
+        let HoleExtraction { holes, air_strokes: beside, .. } = &self.simulation.extracted;
         let used: Vec<&ToolUse> = self.uses.uses.iter().filter(|one| one.first_block.is_some()).collect();
         // A tool that comes again has the number of all its holes in its first row.
         let times = |one: &ToolUse| used.iter().filter(|other| other.tool == one.tool).count();
@@ -227,6 +228,8 @@ impl ProgramSheet<'_> {
         };
         let rows = used.iter().map(|one| {
             let made = holes.iter().filter(|hole| hole.passes().any(|pass| pass.tool == one.tool)).count();
+            // Those of another vise, too: the tool wears there as well.
+            let made = made + beside.iter().filter(|stroke| stroke.tool == one.tool).count();
             let holes = match (made, times(one)) {
                 (0, _) => String::new(),
                 (made, 1) => made.to_string(),
@@ -403,7 +406,7 @@ impl ProgramSheet<'_> {
     }
 }
 
-/// Returns the first comment of the main program: of its part of a dump, whose first line has its number, else of the first file.
+/// Returns the comment in the heading of the main program: in a dump of its part, else of the first file.
 fn main_comment<L: Iterator<Item = String>>(
     sources: impl Iterator<Item = L>,
     number: Option<u32>,
@@ -411,17 +414,28 @@ fn main_comment<L: Iterator<Item = String>>(
     let mut of_first = None;
     for (index, lines) in sources.enumerate() {
         let lines: Vec<String> = lines.collect();
-        if let Some(start) = lines.iter().position(|line| number.is_some() && number_of_line(line) == number)
-        {
-            let next = lines[start + 1..].iter().position(|line| number_of_line(line).is_some());
-            let end = next.map_or(lines.len(), |next| start + 1 + next);
-            return first_comment(lines[start..end].iter().cloned());
+        let own = lines.iter().position(|line| number.is_some() && number_of_line(line) == number);
+        if let Some(start) = own {
+            return heading(&lines[start..]);
         }
         if index == 0 {
-            of_first = first_comment(lines.into_iter());
+            let start = lines.iter().position(|line| !matches!(line.trim(), "" | "%")).unwrap_or(0);
+            of_first = heading(&lines[start..]);
         }
     }
     of_first
+}
+
+/// Returns the comment of a program's first line, or of a line of its own directly behind it. Others are of their blocks, as that
+/// of an M00.
+fn heading(lines: &[String]) -> Option<String> {
+    let [first, rest @ ..] = lines else { return None };
+    let own = first
+        .split_once('(')
+        .filter(|(before, _)| before.trim().is_empty() || number_of_line(before).is_some());
+    let behind = || number_of_line(first).and(rest.first()?.trim_start().strip_prefix('('));
+    let text = own.map(|(_, text)| text).or_else(behind)?;
+    Some(text.split(')').next()?.trim().to_owned())
 }
 
 /// Returns the number of a line that begins a program: `O1520`, `:1520`.
@@ -429,12 +443,6 @@ fn number_of_line(line: &str) -> Option<u32> {
     let digits = line.trim_start().strip_prefix(['O', 'o', ':'])?;
     let end = digits.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(digits.len());
     digits[..end].parse().ok()
-}
-
-fn first_comment(mut lines: impl Iterator<Item = String>) -> Option<String> {
-    let line = lines.find(|line| line.contains('('))?;
-    let (_, rest) = line.split_once('(')?;
-    Some(rest.split(')').next()?.trim().to_owned())
 }
 
 /// Returns kind and diameter of a tool as the machine file states them, else a blank.
@@ -457,5 +465,26 @@ fn range_of(range: Option<[f64; 2]>, format: impl Fn(f64) -> String) -> String {
         None => String::new(),
         Some([min, max]) if min == max => min,
         Some([min, max]) => format!("{min} to {max}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_is_named_by_the_comment_of_its_heading() {
+        let named = |text: &str, number| main_comment([text.lines().map(str::to_owned)].into_iter(), number);
+        for (text, number, name) in [
+            ("%\nO1(PLATE)\nM00(CHECK)\n", Some(1), Some("PLATE")),
+            ("%\nO0001\n(PLATE)\nM00(CHECK)\n", Some(1), Some("PLATE")),
+            ("%\nO1\nG21\nM00(CHECK #500 ON SCREEN)\n", Some(1), None),
+            ("%\nO1\nM00(CHECK)\n", Some(1), None),
+            ("(OTHER)\nO2(TWO)\nM99\nO1\n(ONE)\n", Some(1), Some("ONE")),
+            ("%\n\n(PLATE)\nG21\n", None, Some("PLATE")),
+            ("%\nG21(UNIT)\n(PLATE)\n", None, None),
+        ] {
+            assert_eq!(named(text, number).as_deref(), name, "{text}");
+        }
     }
 }

@@ -3,8 +3,8 @@ use std::rc::Rc;
 
 use serde_json::Value;
 
-use super::{Adapter, Answer, Client, Host, Session, body, read};
-use crate::debuggee::{Debuggee, End, FILTERS, Goal, Stop};
+use super::{Adapter, Answer, Client, Host, Session, body, launch_keys, read};
+use crate::debuggee::{Debuggee, End, FILTERS, Goal, OutputLine, Stop};
 use crate::protocol::arguments::{Initialize, Launch, Restart};
 use crate::protocol::bodies::{Capabilities, ExceptionFilter, ExitEvent};
 use crate::run::ReversibleRun;
@@ -12,6 +12,9 @@ use crate::run::ReversibleRun;
 /// Exit codes of a run, as those of `gcode-sim run`.
 const PASSED: i64 = 0;
 const STOPPED: i64 = 3;
+
+/// Exit code of a run that the user ends, as that of a command at the second Ctrl-C.
+const TERMINATED: i64 = 130;
 
 impl<H: Host> Adapter<H> {
     pub(super) fn initialize(&mut self, arguments: &Initialize) -> Answer {
@@ -52,14 +55,23 @@ impl<H: Host> Adapter<H> {
         })
     }
 
-    pub(super) fn launch(&mut self, arguments: Launch) -> Answer {
+    pub(super) fn launch(&mut self, arguments: &Value) -> Answer {
         if self.session.as_ref().is_some_and(|session| !session.has_ended) {
             return Err("a program is launched already".to_owned());
         }
-        self.load(&arguments)?;
-        self.launch = Some(arguments);
+        let launch = self.read_launch("launch", arguments)?;
+        self.load(&launch)?;
+        self.launch = Some(launch);
         self.begin();
         Ok(Value::Null)
+    }
+
+    /// Reads the arguments of a launch, and tells the client which keys are not used.
+    fn read_launch(&mut self, command: &str, arguments: &Value) -> Result<Launch, String> {
+        let launch = read(command, arguments.clone())?;
+        let unused = arguments.as_object().map_or_else(|| Ok(Vec::new()), launch_keys::unused)?;
+        unused.into_iter().for_each(|text| self.write(&OutputLine { text, block: None }));
+        Ok(launch)
     }
 
     /// Makes a session of a program, with the breakpoints requested so far.
@@ -119,7 +131,9 @@ impl<H: Host> Adapter<H> {
 
     pub(super) fn restart(&mut self, arguments: Restart) -> Answer {
         let launch = match (arguments.arguments, &self.launch) {
-            (Some(changed), Some(_)) if changed.get("program").is_some() => read("restart", changed)?,
+            (Some(changed), Some(_)) if changed.get("program").is_some() => {
+                self.read_launch("restart", &changed)?
+            }
             (_, Some(launch)) => launch.clone(),
             (_, None) => return Err("no program is launched".to_owned()),
         };
@@ -133,8 +147,7 @@ impl<H: Host> Adapter<H> {
     pub(super) fn terminate(&mut self) -> Answer {
         self.goal = None;
         if self.session.as_ref().is_some_and(|session| !session.has_ended) {
-            // As an interrupted `gcode-sim run`.
-            self.report_end(End::Stopped);
+            self.report_end(End::Terminated);
         }
         Ok(Value::Null)
     }
@@ -151,7 +164,11 @@ impl<H: Host> Adapter<H> {
         if let Some(session) = &mut self.session {
             session.has_ended = true;
         }
-        let exit_code = if end == End::Program { PASSED } else { STOPPED };
+        let exit_code = match end {
+            End::Program => PASSED,
+            End::Stopped => STOPPED,
+            End::Terminated => TERMINATED,
+        };
         self.outbox.event("exited", ExitEvent { exit_code });
         self.outbox.event("terminated", Value::Null);
     }

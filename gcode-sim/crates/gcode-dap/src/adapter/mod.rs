@@ -2,6 +2,7 @@
 mod breakpoint_requests;
 mod execution;
 mod host;
+mod launch_keys;
 mod launching;
 mod outbox;
 mod program_files;
@@ -197,7 +198,7 @@ impl<H: Host> Adapter<H> {
         }
         match command {
             "initialize" => self.initialize(&read(command, or_empty(arguments))?),
-            "launch" => self.launch(read(command, arguments)?),
+            "launch" => self.launch(&or_empty(arguments)),
             "configurationDone" => self.configuration_done(),
             "restart" => self.restart(read(command, or_empty(arguments))?),
             "terminate" => self.terminate(),
@@ -250,7 +251,23 @@ fn read<T: DeserializeOwned>(command: &str, mut arguments: Value) -> Result<T, S
     if let Value::Object(all) = &mut arguments {
         all.retain(|_, argument| !argument.is_null());
     }
-    serde_json::from_value(arguments).map_err(|error| format!("arguments of '{command}': {error}"))
+    let read = serde_json::from_value(arguments.clone()).map_err(|error| error.to_string());
+    read.map_err(|error| {
+        let key = wrong_key::<T>(&arguments, &error).map_or_else(String::new, |key| format!("'{key}': "));
+        format!("arguments of '{command}': {key}{error}")
+    })
+}
+
+/// Returns the argument that an error is about: without it there is no error, or another one.
+fn wrong_key<T: DeserializeOwned>(arguments: &Value, error: &str) -> Option<String> {
+    let all = arguments.as_object()?;
+    let key = all.keys().find(|key| {
+        let others = all.iter().filter(|(other, _)| other != key);
+        let others = others.map(|(key, value)| (key.clone(), value.clone())).collect();
+        let read = serde_json::from_value::<T>(Value::Object(others));
+        read.err().is_none_or(|other| other.to_string() != error)
+    });
+    key.cloned()
 }
 
 /// Returns an object in the place of absent arguments.

@@ -16,6 +16,8 @@ pub(crate) enum End {
     Program,
     /// An alarm, or a loop that never ends.
     Stopped,
+    /// The user has ended it.
+    Terminated,
 }
 
 /// Reason why a run stands still.

@@ -1,7 +1,8 @@
 //! Arguments of requests.
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 #[derive(Clone, Debug, Deserialize)]
@@ -20,12 +21,13 @@ impl Default for Initialize {
 
 /// Arguments of `launch`, those of gcode-sim. Editors add keys of their own.
 #[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(serde::Serialize))]
 #[serde(rename_all = "camelCase")]
 pub struct Launch {
     /// Path of the program.
     pub program: String,
     /// O number or name of the main program in a file with several.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "program_name")]
     pub main_program: Option<String>,
     /// Path of the machine file.
     #[serde(default)]
@@ -48,6 +50,15 @@ pub struct Launch {
     /// The run goes through without a stop.
     #[serde(default)]
     pub no_debug: bool,
+}
+
+/// Reads the name of a program; 8101 is O8101.
+fn program_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
+    match Value::deserialize(deserializer)? {
+        Value::String(name) => Ok(Some(name)),
+        Value::Number(number) if number.is_u64() => Ok(Some(format!("O{number}"))),
+        other => Err(D::Error::custom(format!("{other} is no O number and no name of a program"))),
+    }
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]

@@ -114,7 +114,7 @@ impl ReversibleRun {
         self.position
     }
 
-    /// Returns true at the start of the run and where the block before has led into a called program.
+    /// Returns true at the start of the run and where the block before has led into a called program, or to its next pass.
     pub(crate) fn has_entered(&self) -> bool {
         self.has_entered
     }
@@ -140,12 +140,13 @@ impl ReversibleRun {
             let (place, state) = ((self.position, work), self.control.checkpoint());
             self.checkpoints.add(PlacedCheckpoint::new(place, self.made_changes, self.has_entered, state));
         }
-        let depth = self.control.call_depth();
+        let (depth, passes) = (self.control.call_depth(), self.control.passes_left());
         if let Some(outcome) = self.control.step(&mut self.library.as_mut(), sink) {
             return Some(outcome);
         }
         self.position += 1;
-        self.has_entered = self.control.call_depth() > depth;
+        let is_next_pass = || self.control.call_depth() == depth && self.control.passes_left() < passes;
+        self.has_entered = self.control.call_depth() > depth || is_next_pass();
         self.arrive();
         None
     }

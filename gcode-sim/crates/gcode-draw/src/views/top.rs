@@ -224,7 +224,8 @@ impl TopView {
         self.holes.iter().filter(|hole| hole.status == status).count()
     }
 
-    fn headline(&self) -> Option<(HoleStatus, String)> {
+    /// Returns status and words of the line below the name.
+    pub fn headline(&self) -> Option<(HoleStatus, String)> {
         use HoleStatus::{Bad, Extra, Good, Missing};
         if self.purpose == PicturePurpose::Verdict {
             return self.verdict.clone();

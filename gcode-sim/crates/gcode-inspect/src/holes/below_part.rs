@@ -6,7 +6,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::HoleExtractor;
 use super::rapids::{error_if, format_point};
 use crate::findings::BELOW_PART;
-use crate::machine::{TOUCH_DEPTH, tool_name};
+use crate::machine::{HeadKind, TOUCH_DEPTH, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Backtrace, Event};
 use gcode_part::{MAX_BREAK_THROUGH, NOISE, Surface, exceeds};
@@ -44,7 +44,7 @@ impl HoleExtractor<'_> {
         let axis = self.pose.axis.filter(|axis| 1.0 - NOISE <= axis.amax());
         let (Some(body), Some(axis)) = (body, axis) else { return };
         let (underside, height) = (lowest(&body, &axis), self.pose.tip.coords.dot(&axis));
-        if !exceeds(underside - height, MAX_BREAK_THROUGH) {
+        if !exceeds(underside - height, MAX_BREAK_THROUGH) || self.is_above_part(&body) {
             return;
         }
         let point = self.machine.tool_end(self.setup.tool).first().map_or(0.0, |full| full.from);
@@ -71,6 +71,16 @@ impl HoleExtractor<'_> {
         if place.is_worse_than(known) {
             *known = place;
         }
+    }
+
+    /// Returns true if the tip of a tool that its head inclines is farther out than the part in the direction of the head at 0:
+    /// there are no table and no vise.
+    fn is_above_part(&self, body: &Surface) -> bool {
+        let HeadKind::Axes { direction, .. } = &self.machine.head.kind else { return false };
+        let frame = self.machine.part_frame(&self.axis_position);
+        let up = frame.rotation.inverse_transform_unit_vector(direction);
+        let top = -lowest(body, &-up);
+        top < self.pose.tip.coords.dot(&up)
     }
 
     /// Reports the lowest place of each tool: an error where the floor of a pocket is stated.

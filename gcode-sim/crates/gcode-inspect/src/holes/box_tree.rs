@@ -70,8 +70,9 @@ fn union([low, high]: Bounds, [other_low, other_high]: Bounds) -> Bounds {
     [low.inf(&other_low), high.sup(&other_high)]
 }
 
+/// All coordinates are compared, which is faster than a branch for each.
 fn is_met([low, high]: &Bounds, [other_low, other_high]: &Bounds) -> bool {
-    (0..3).all(|i| low[i] <= other_high[i] && other_low[i] <= high[i])
+    (0..3).fold(true, |met, i| met & (low[i] <= other_high[i]) & (other_low[i] <= high[i]))
 }
 
 #[cfg(test)]

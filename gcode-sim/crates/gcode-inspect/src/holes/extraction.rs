@@ -1,7 +1,7 @@
 //! Result of following a run: its holes, the findings about its motion, and what was not compared.
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use super::clearance::CloseMotion;
 use super::{CutConditions, DrilledHole, LengthMismatch, Search, UnknownRapids, UnsearchedMotions};
@@ -9,6 +9,31 @@ use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
 use gcode_part::{HoleList, ProcessLimits, Unit};
+
+/// A bore made backwards.
+#[derive(Clone, Debug)]
+pub(crate) struct BackBored {
+    /// Deepest point of the tip.
+    pub end: Point3<f64>,
+    /// Direction in which the bore is open.
+    pub out: Vector3<f64>,
+    pub backtrace: Backtrace,
+}
+
+/// A stroke of a drilling cycle that cuts nothing of the known part.
+#[derive(Clone, Debug)]
+pub struct AirStroke {
+    /// Where its feed begins.
+    pub start: Point3<f64>,
+    /// Its deepest point.
+    pub bottom: Point3<f64>,
+    /// Direction back to the start.
+    pub out: Vector3<f64>,
+    /// The tool.
+    pub tool: Option<u32>,
+    /// Its block.
+    pub block: Span,
+}
 
 /// Holes that a program drills, and findings about the motion of the tool.
 #[derive(Clone, Debug, Default)]
@@ -62,10 +87,13 @@ pub struct HoleExtraction {
     pub(crate) milled_blocks: Vec<[Span; 2]>,
     /// Ends of the first feeds along the tool that go beside the part.
     pub(crate) feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
+    pub(crate) back_bored: Vec<BackBored>,
     /// Warnings about drilling cycles that cut nothing.
     pub(crate) cycles_in_air: Vec<Diagnostic>,
     /// Number of their strokes.
     pub(crate) strokes_in_air: u64,
+    /// Those of them whose places are known, the first ones.
+    pub air_strokes: Vec<AirStroke>,
     /// Feeds were too many for their metal to be followed.
     pub(crate) is_removal_cut_short: bool,
 }

@@ -63,8 +63,10 @@ impl HoleExtractor<'_> {
             has_unmilled_pockets: !self.metal.pockets.is_empty() && self.milled_blocks.is_empty(),
             milled_blocks: self.milled_blocks.finish(),
             feeds_in_air: self.feeds_in_air,
+            back_bored: self.back_bored,
             cycles_in_air: self.cycles_in_air.finish(),
             strokes_in_air: self.strokes_in_air,
+            air_strokes: self.air_strokes,
             is_removal_cut_short: self.metal.removed.is_full,
         }
     }

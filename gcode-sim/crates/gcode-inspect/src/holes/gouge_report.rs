@@ -11,7 +11,7 @@ use crate::findings::FEED_BESIDE_HOLE;
 use crate::machine::{TOUCH_DEPTH, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
-use gcode_part::{Collar, EntryPlanes};
+use gcode_part::Collar;
 
 /// Largest radius of a hole of unknown diameter that is milled, mm.
 const MAX_OPEN_RADIUS: f64 = 50.0;
@@ -53,7 +53,7 @@ impl HoleExtractor<'_> {
     ) {
         let (depth, point) = (at.depth, format_point(&at.point));
         let level = self.metal.level_at(&at.point);
-        let (message, help) = match (part, self.metal.holes.as_deref()) {
+        let (message, help) = match (part, self.metal.holes.as_ref()) {
             (ToolRegion::TipBeyond(hole), Some(holes)) => (
                 format!(
                     "the tool is fed through hole {} and {depth:.3} mm below its entry, at {point}: limit {:.3}",
@@ -91,7 +91,7 @@ impl HoleExtractor<'_> {
                     (None, None, Some(_), _) => "the part beside its pocket".to_owned(),
                     // Farther from every pocket than the tool is wide, or without any.
                     (None, None, None, _)
-                        if self.metal.holes.as_deref().is_some_and(EntryPlanes::is_empty) =>
+                        if self.metal.holes.as_ref().is_some_and(|holes| holes.is_empty()) =>
                     {
                         "the part outside its pockets".to_owned()
                     }
@@ -133,7 +133,7 @@ impl HoleExtractor<'_> {
 
     /// Returns the nominal hole within whose diameter a point lies, deeper than the hole: the nearest one.
     fn hole_above(&self, p: &Point3<f64>) -> Option<HoleAbove<'_>> {
-        let holes = self.metal.holes.as_deref()?;
+        let holes = self.metal.holes.as_ref()?;
         let mut nearest: Option<(f64, usize)> = None;
         holes.below(p, p, (MAX_OPEN_RADIUS, 0.0), &mut |hole| {
             let collar = holes.collar(hole);
@@ -159,7 +159,7 @@ impl HoleExtractor<'_> {
     /// Returns true if a point is beside a nominal hole without a diameter, and no deeper than that.
     fn is_at_open_hole(&self, p: &Point3<f64>) -> bool {
         let mut is_open = false;
-        if let Some(holes) = self.metal.holes.as_deref().filter(|_| self.surface.is_some()) {
+        if let Some(holes) = self.metal.holes.as_ref().filter(|_| self.surface.is_some()) {
             holes.below(p, p, (MAX_OPEN_RADIUS, 0.0), &mut |hole| {
                 let collar = holes.collar(hole);
                 is_open |= !collar.has_diameter && collar.depth(p) <= collar.max_depth() + TOUCH_DEPTH;

@@ -120,7 +120,7 @@ impl HoleExtractor<'_> {
 
     /// Returns the greatest depth of a tip below the entries of the holes at it, negative above them; `None` beside all holes.
     fn depth_at_entries(&self, tip: &Point3<f64>) -> Option<f64> {
-        let holes = self.metal.holes.as_deref()?;
+        let holes = self.metal.holes.as_ref()?;
         let mut depth: Option<f64> = None;
         let margin = Vector3::repeat(CONTACT_CLEARANCE);
         holes.around(&(*tip - margin), &(*tip + margin), &mut |hole| {

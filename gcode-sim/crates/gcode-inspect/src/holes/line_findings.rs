@@ -2,13 +2,14 @@
 use nalgebra::{Point3, Vector3};
 
 use super::cutting::{CuttingState, PeckExtent, RecordedCut};
+use super::extraction::BackBored;
 use super::line::{CuttingLine, ToolExit};
 use super::near_metal::FeedPart;
 use super::rapids::format_point;
 use super::strokes::{CutKind, MIN_TOOL_COSINE};
 use super::swept_tool::rim;
 use super::unknown_axes::{unknown_position_finding, without_assumed};
-use super::{HoleExtractor, MotionKind};
+use super::{AirStroke, HoleExtractor, MotionKind};
 use crate::findings::{
     BACK_BORED, CYCLE_IN_AIR, FEED_NOT_ALONG_TOOL, FEED_WITHOUT_RETRACT, HEAD_NOT_SET, LEAVES_HOLE_SIDEWAYS,
     RAPID_INTO_PART, START_UNKNOWN, TOOL_KIND, TOOL_NOT_CHANGED,
@@ -30,6 +31,9 @@ const MAX_FEEDS_IN_AIR: usize = 100;
 
 /// Cosine of the largest angle between a surface's normal and a feed parallel to the surface, from rounding.
 const MAX_PARALLEL_COSINE: f64 = 1e-9;
+
+/// Largest number of strokes in the air that are drawn.
+const MAX_AIR_STROKES: usize = 10_000;
 
 impl HoleExtractor<'_> {
     /// Ends the current line where the tool leaves it along a curve, or is replaced.
@@ -155,6 +159,16 @@ impl HoleExtractor<'_> {
             }
         };
         self.strokes_in_air += 1;
+        if unknown.is_none() && self.air_strokes.len() < MAX_AIR_STROKES {
+            let (start, out, tool) = (line.start, line.out, line.cutting_state.tool);
+            self.air_strokes.push(AirStroke {
+                start,
+                bottom,
+                out: out.into_inner(),
+                tool,
+                block: line.backtrace().block,
+            });
+        }
         self.cycles_in_air.add(&CYCLE_IN_AIR, line.backtrace(), 0, |kind| {
             Diagnostic::new(kind, format!("a drilling cycle cuts nothing: {place}"))
                 .help(
@@ -337,6 +351,8 @@ impl HoleExtractor<'_> {
     pub(super) fn report_back_boring(&mut self, line: &CuttingLine) {
         let length = line.cut_depth();
         self.report_shift_into_wall(line);
+        let (end, out, backtrace) = (line.bottom(), line.out.into_inner(), line.backtrace().clone());
+        self.back_bored.push(BackBored { end, out, backtrace });
         self.findings.add(&BACK_BORED, line.backtrace(), 0, |kind| {
             let message =
                 format!("the tool bores {length:.3} mm backwards, out of the part: not counted as a hole");

@@ -46,7 +46,7 @@ impl HoleExtractor<'_> {
     /// Reports the rapid that has led below the part.
     pub(super) fn report_low_rapid(&mut self) {
         let Some(LowRapid { backtrace, hole, at }) = self.low_rapid.take() else { return };
-        let Some(holes) = self.metal.holes.as_deref() else { return };
+        let Some(holes) = self.metal.holes.as_ref() else { return };
         let (id, limit) = (holes.id(hole).to_owned(), holes.collar(hole).max_depth());
         self.findings.add(&RAPID_BEYOND_CUT, &backtrace, 2, |kind| {
             let message = format!(

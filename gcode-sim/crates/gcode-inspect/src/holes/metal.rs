@@ -1,15 +1,15 @@
 //! Metal of the part: solid as far as known, without what feeds have removed, and with the room of holes and pockets.
-use std::sync::Arc;
 
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::axis_box::Bodies;
+use super::left_stock::LeftStock;
 use super::open_regions::OpenRegions;
 use super::removed_metal::RemovedMetal;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
 use crate::machine::{TOUCH_DEPTH, ToolPart};
-use gcode_part::{Collar, EntryPlanes, Frustum, Metal, NOISE, NearestPoint, Surface, Taper};
+use gcode_part::{Collar, EntrySearch, Frustum, Metal, NOISE, NearestPoint, Surface, Taper};
 
 /// Least length of a piece in metal, mm; a shorter one is rounding.
 const MIN_PIECE: f64 = 1e-3;
@@ -35,12 +35,14 @@ pub(super) struct KnownMetal {
     /// Stock or the part's surface; `None` if the metal is known only round the holes.
     pub body: Option<Surface>,
     /// Nominal holes with the metal round them; `None` without a reference.
-    pub holes: Option<Arc<EntryPlanes>>,
+    pub holes: Option<EntrySearch>,
     /// Pockets that feeds may mill, and what joins them; those that end at a face of the body go on beyond it.
     pub pockets: Vec<Surface>,
     /// Pockets as they are stated.
     pub stated_pockets: Vec<Surface>,
     pub removed: RemovedMetal,
+    /// Body without its voids.
+    left: LeftStock,
 }
 
 /// A point in metal.
@@ -71,12 +73,14 @@ impl KnownMetal {
         let stated_pockets = metal.pockets.clone();
         let OpenRegions { pockets, voids } =
             OpenRegions::new(metal.body.as_ref(), metal.pockets, metal.voids);
+        let left = metal.body.map(|body| LeftStock::new(&body, &voids)).unwrap_or_default();
         Self {
             body: metal.body,
-            holes: metal.entries,
+            holes: metal.entries.map(EntrySearch::from),
             pockets,
             stated_pockets,
             removed: RemovedMetal::new(bounds, voids),
+            left,
         }
     }
 
@@ -86,7 +90,7 @@ impl KnownMetal {
     }
 
     /// Returns the metal round the holes as convex bodies, cut or not.
-    pub(super) fn bodies<'c>(&'c self, holes: &'c EntryPlanes) -> Box<Bodies<'c>> {
+    pub(super) fn bodies<'c>(&'c self, holes: &'c EntrySearch) -> Box<Bodies<'c>> {
         Box::new(move |p, reach, each: &mut dyn FnMut(NearestPoint)| {
             let (low, high) = (p - reach, p + reach);
             if holes.is_above_all(&low, &high) || holes.nearest_metal(p) > reach.norm() {
@@ -98,6 +102,30 @@ impl KnownMetal {
             }
             is_small
         })
+    }
+
+    /// Returns the body without its voids, cut or not, as convex bodies.
+    pub(super) fn left_stock(&self) -> Box<Bodies<'_>> {
+        Box::new(|p, reach, each: &mut dyn FnMut(NearestPoint)| {
+            self.left.for_each(p, reach, &self.removed, each);
+            true
+        })
+    }
+
+    /// Returns the largest depth of a travel in the body without its voids, cut or not, mm; `None` outside.
+    pub(super) fn depth_in_stock(&self, travel: &Line) -> Option<f64> {
+        let body = self.body?;
+        let line = Strip::line(*travel);
+        let mut shares = Shares::default();
+        shares.extend(body.piece(&travel[0], &travel[1], 0.0));
+        self.removed.take_voids(&line, &mut shares);
+        Some(self.deepest(travel, &shares)?.depth)
+    }
+
+    /// Returns true if a point is in a void that is open to a side and to the spindle, seen along a tool.
+    pub(super) fn is_in_open_void(&self, p: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> bool {
+        let out = p + axis.into_inner() * self.removed.height_of_metal(p, axis);
+        self.removed.is_open_beside(p, axis) && self.depth_in_stock(&[*p, out]).is_none()
     }
 
     /// Returns true if a cylinder about the tool's axis may touch metal while its lower end moves between two points.
@@ -154,7 +182,7 @@ impl KnownMetal {
         tip: &Point3<f64>,
         axis: &Unit<Vector3<f64>>,
     ) -> Option<(usize, PointInMetal)> {
-        let holes = self.holes.as_deref()?;
+        let holes = self.holes.as_ref()?;
         if self.is_point_in_pocket(tip) {
             return None;
         }
@@ -183,7 +211,7 @@ impl KnownMetal {
 
     /// Returns true for a point above the entry of a nominal hole, within the metal that is known round it.
     pub(super) fn is_above_entry(&self, p: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> bool {
-        let Some(holes) = self.holes.as_deref() else { return false };
+        let Some(holes) = self.holes.as_ref() else { return false };
         let down = p - axis.into_inner() * MAX_HEIGHT_ABOVE_HOLE;
         let (mut is_above, mut is_below) = (false, false);
         holes.around(&p.inf(&down), &p.sup(&down), &mut |hole| {
@@ -205,7 +233,7 @@ impl KnownMetal {
         axis: &Unit<Vector3<f64>>,
         is_counted: impl Fn(&Collar) -> bool,
     ) -> bool {
-        let Some(holes) = self.holes.as_deref() else { return false };
+        let Some(holes) = self.holes.as_ref() else { return false };
         let up = p + axis.into_inner() * self.removed.height_of_metal(p, axis);
         let mut is_below = false;
         holes.around(&up.inf(p), &up.sup(p), &mut |hole| {
@@ -295,7 +323,7 @@ impl KnownMetal {
 
     /// Calls `each` with the nominal holes whose metal may be near a travel.
     pub(super) fn around<'m>(&'m self, [from, to]: &[Point3<f64>; 2], each: &mut impl FnMut(&'m Collar)) {
-        let Some(holes) = self.holes.as_deref() else { return };
+        let Some(holes) = self.holes.as_ref() else { return };
         holes.around(&from.inf(to), &from.sup(to), &mut |hole| each(holes.collar(hole)));
     }
 
@@ -339,12 +367,12 @@ impl KnownMetal {
 
     /// Returns the id of the hole at a point.
     pub(super) fn hole_at(&self, p: &Point3<f64>) -> Option<&str> {
-        Some(self.holes.as_deref()?.id(self.deepest_hole_at(p)?.0))
+        Some(self.holes.as_ref()?.id(self.deepest_hole_at(p)?.0))
     }
 
     /// Returns the hole in whose metal a point is deepest, and the depth.
     fn deepest_hole_at(&self, p: &Point3<f64>) -> Option<(usize, f64)> {
-        let holes = self.holes.as_deref()?;
+        let holes = self.holes.as_ref()?;
         let mut best: Option<(usize, f64)> = None;
         let margin = Vector3::repeat(ROUNDING);
         holes.near(&(p - margin), &(p + margin), &mut |hole| {

@@ -23,6 +23,7 @@ mod finish;
 mod gouge_report;
 mod group;
 mod hole_circles;
+mod left_stock;
 mod length_mismatch;
 mod line;
 mod line_findings;
@@ -67,7 +68,8 @@ pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUN
 pub(crate) use cutting::CutConditions;
 pub(crate) use drill_pass::PITCH_TOLERANCE;
 pub use drill_pass::{Helix, MilledCut, PassCut, TapRetract};
-pub use extraction::HoleExtraction;
+pub(crate) use extraction::BackBored;
+pub use extraction::{AirStroke, HoleExtraction};
 pub(crate) use group::MAX_LINE_OFFSET;
 pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
@@ -140,10 +142,12 @@ pub struct HoleExtractor<'m> {
     gouge_count: u32,
     /// Ends of the first feeds along the tool that go beside the part.
     feeds_in_air: Vec<(Point3<f64>, Backtrace)>,
+    back_bored: Vec<BackBored>,
     /// Cycles that cut nothing.
     cycles_in_air: Findings,
     /// Strokes of these cycles.
     strokes_in_air: u64,
+    air_strokes: Vec<AirStroke>,
     /// Tools of unknown diameter that mill the part.
     unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
@@ -234,8 +238,10 @@ impl<'m> HoleExtractor<'m> {
             hole_strokes: BTreeMap::new(),
             gouge_count: 0,
             feeds_in_air: Vec::new(),
+            back_bored: Vec::new(),
             cycles_in_air: Findings::default(),
             strokes_in_air: 0,
+            air_strokes: Vec::new(),
             unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
@@ -457,15 +463,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
             EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
-            EventKind::ToolChange { number } => {
-                self.report_low_rapid();
-                self.check_tool_known(event, *number);
-                self.begin_change(event);
-                self.milled_blocks.end_tool();
-                self.update_setup(|setup| setup.tool = Some(*number));
-                self.leave_offset();
-                self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
-            }
+            EventKind::ToolChange { number } => self.change_tool(event, *number),
             EventKind::ToolLength { offset, wear, compensation } => {
                 self.update_setup(|setup| (setup.offset, setup.wear) = (*offset, *wear));
                 self.apply_compensation(event, *compensation);

@@ -110,7 +110,7 @@ impl KnownMetal {
         let mut shares = Shares::default();
         let margin = Vector3::repeat(radius);
         let [low, high] = line.bounds();
-        let Some(holes) = self.holes.as_deref() else { return false };
+        let Some(holes) = self.holes.as_ref() else { return false };
         holes.around(&(low - margin), &(high + margin), &mut |hole| {
             let collar = holes.collar(hole);
             let is_near = |p: &Point3<f64>| collar.from_axis(p) <= radius + MAX_OFFSET;
@@ -272,7 +272,7 @@ impl<'m> NearMetal<'m> {
         may_pockets_go: bool,
         within: Option<&Shares>,
     ) -> Shares {
-        let Some(holes) = self.metal.holes.as_deref() else { return Shares::default() };
+        let Some(holes) = self.metal.holes.as_ref() else { return Shares::default() };
         // Without a diameter the wall of a hole is unknown.
         let mut shares = self.solid(strip, |hole| holes.collar(hole).has_diameter, within);
         for pocket in self.metal.pockets_near(&strip.bounds()).filter(|_| may_pockets_go) {
@@ -335,7 +335,7 @@ impl<'m> NearMetal<'m> {
                 FeedPart::Side { radius, .. } => 2.0 * radius,
             };
             let mut rooms = Vec::new();
-            if let Some(holes) = self.metal.holes.as_deref() {
+            if let Some(holes) = self.metal.holes.as_ref() {
                 let [low, high] = &self.bounds;
                 holes.below(low, high, (margin, MAX_HEIGHT), &mut |hole| rooms.push(holes.collar(hole)));
             }

@@ -73,6 +73,11 @@ impl Findings {
             .count(backtrace.block, (kind.code, detail), || make(kind).with_backtrace(backtrace.clone()));
     }
 
+    /// Returns true if a block has the finding.
+    pub(super) fn has(&self, kind: &'static FindingKind, block: Span, detail: u32) -> bool {
+        self.list.index.contains_key(&(block.source.0, block.start, (kind.code, detail)))
+    }
+
     /// Makes the finding on its first occurrence in the program, and counts all; these are `count`.
     pub(super) fn add_in_program(
         &mut self,

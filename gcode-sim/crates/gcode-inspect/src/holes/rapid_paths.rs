@@ -7,10 +7,10 @@ use super::near_metal::{Contact, Judged, NearMetal};
 use super::rapids::{error_if, format_point};
 use super::swept_tool::{TipPaths, contact, faces};
 use super::{HoleExtractor, MotionKind};
+use crate::findings::RAPID_INTO_PART;
 use crate::machine::{AxisMotion, Pose, RapidPath, TOUCH_DEPTH, ToolPart, arrivals};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, Position};
-use gcode_part::{NearestPoint, Surface};
 
 /// Search for metal on the paths of the tool that may be given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -65,6 +65,8 @@ impl HoleExtractor<'_> {
         if !self.metal.is_known() {
             return;
         }
+        // A block is reported once, with its first point.
+        self.search_budget.is_any_enough = self.findings.has(&RAPID_INTO_PART, event.block, 0);
         let (machine, setup) = (self.machine, self.setup);
         let round = self.axis_about_part().filter(|axis| from[*axis] != to[*axis]);
         if (0..to.0.len()).filter(|axis| from[*axis] != to[*axis]).count() < 2 {
@@ -166,7 +168,7 @@ impl HoleExtractor<'_> {
     ) -> bool {
         let mut budget = std::mem::take(&mut self.search_budget);
         let deepest = match (&self.surface, &self.metal.holes) {
-            (Some(surface), _) => all.deepest(&distance_from(surface), TOUCH_DEPTH, &mut budget),
+            (Some(_), _) => all.deepest(&self.metal.left_stock(), TOUCH_DEPTH, &mut budget),
             (None, Some(holes)) => all.deepest(&self.metal.bodies(holes), TOUCH_DEPTH, &mut budget),
             (None, None) => Deepest::Clear,
         };
@@ -285,8 +287,8 @@ impl HoleExtractor<'_> {
             (Some(Some(paths)), _) => contact(part, axis, &paths, &self.metal, Judged::Uncut(None)),
             (Some(None), None) => Contact::Unknown,
             (None, None) => Contact::Clear,
-            (_, Some(body)) => {
-                match path.with_tool(*part).deepest(&distance_from(&body), TOUCH_DEPTH, &mut budget) {
+            (_, Some(_)) => {
+                match path.with_tool(*part).deepest(&self.metal.left_stock(), TOUCH_DEPTH, &mut budget) {
                     Deepest::Clear => Contact::Clear,
                     Deepest::Unknown => Contact::Unknown,
                     // What is removed is not followed while an axis rotates.
@@ -407,15 +409,5 @@ impl HoleExtractor<'_> {
         let (first, last) = (letters(true), letters(false));
         let verb = if first.len() == 1 { "arrives" } else { "arrive" };
         format!(" if {} {verb} before {}", first.join(" and "), last.join(" and "))
-    }
-}
-
-/// Returns the distance from one body, whatever the reach.
-fn distance_from(
-    surface: &Surface,
-) -> impl Fn(&Point3<f64>, &Vector3<f64>, &mut dyn FnMut(NearestPoint)) -> bool + '_ {
-    |p, _, each| {
-        each(surface.nearest(p));
-        true
     }
 }

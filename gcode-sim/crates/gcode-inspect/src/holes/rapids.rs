@@ -168,12 +168,13 @@ impl HoleExtractor<'_> {
             && self.metal.holes.is_some()
             && (self.pose.axis.is_some() || surface.has_flat_faces())
             && self.is_stationary(travel);
-        let depth = match self.has_left_start && !is_judged {
+        let (of_outline, depth) = match self.has_left_start && !is_judged {
             true => self.max_depth_along(&surface, travel),
-            false => f64::NEG_INFINITY,
+            false => (f64::NEG_INFINITY, f64::NEG_INFINITY),
         };
         if depth <= 2.0 * TOUCH_DEPTH {
-            if is_rapid && self.has_left_start && !self.change_retract.is_checked() {
+            let is_outside = of_outline <= 2.0 * TOUCH_DEPTH;
+            if is_rapid && is_outside && self.has_left_start && !self.change_retract.is_checked() {
                 self.record_close_turn(event, &surface, travel);
             }
             return false;
@@ -213,7 +214,8 @@ impl HoleExtractor<'_> {
         let tip = self.pose.tip;
         let is_known =
             self.positions.is_known(self.machine) && (self.has_left_start || self.surface.is_none());
-        let depth = self.metal.depth(&tip).filter(|depth| is_known && TOUCH_DEPTH < *depth);
+        let is_free = self.tool_direction().is_some_and(|axis| self.metal.is_in_open_void(&tip, &axis));
+        let depth = self.metal.depth(&tip).filter(|depth| is_known && !is_free && TOUCH_DEPTH < *depth);
         let Some((depth, backtrace)) = depth.zip(self.last_block.take()) else { return };
         let level = self.metal.level_at(&tip);
         self.findings.add(&TOOL_LEFT_IN_HOLE, &backtrace, 0, |kind| {
@@ -226,9 +228,9 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Returns the largest depth of a curved path below the surface, mm; negative outside. Coarse chords come first: most
-    /// paths are far away.
-    fn max_depth_along(&self, surface: &Surface, travel: &AxisMotion<'_>) -> f64 {
+    /// Returns the largest depth of a curved path below the surface, mm, negative outside, and where no void is. Coarse chords come
+    /// first: most paths are far away.
+    fn max_depth_along(&self, surface: &Surface, travel: &AxisMotion<'_>) -> (f64, f64) {
         let for_each_chord = |tolerance: f64, each: &mut dyn FnMut(&Point3<f64>, &Point3<f64>)| {
             let mut last: Option<Point3<f64>> = None;
             self.machine.for_each_pose(travel, &self.setup, tolerance, |pose| {
@@ -241,16 +243,18 @@ impl HoleExtractor<'_> {
                 is_clear = is_clear && surface.clearance(from, to) > tolerance;
             });
             if is_clear {
-                return f64::NEG_INFINITY;
+                return (f64::NEG_INFINITY, f64::NEG_INFINITY);
             }
         }
-        let mut deepest = f64::NEG_INFINITY;
+        let (mut of_outline, mut in_metal) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for_each_chord(TOUCH_DEPTH, &mut |from, to| {
             if surface.clearance(from, to) <= 0.0 {
-                deepest = deepest.max(surface.depth(&surface.deepest_between(from, to)));
+                of_outline = of_outline.max(surface.depth(&surface.deepest_between(from, to)));
+                in_metal =
+                    self.metal.depth_in_stock(&[*from, *to]).map_or(in_metal, |depth| depth.max(in_metal));
             }
         });
-        deepest
+        (of_outline, in_metal)
     }
 }
 

@@ -46,7 +46,7 @@ impl HoleExtractor<'_> {
 
     /// Returns true if a point is on the axis of a nominal through hole, at its far side or below.
     fn is_through(&self, p: &Point3<f64>, out: &Unit<Vector3<f64>>) -> bool {
-        let Some(holes) = self.metal.holes.as_deref() else { return false };
+        let Some(holes) = self.metal.holes.as_ref() else { return false };
         let mut is_through = false;
         let up = p + out.into_inner() * self.metal.removed.height_of_metal(p, out).max(MAX_OFFSET);
         holes.around(&p.inf(&up), &p.sup(&up), &mut |hole| {

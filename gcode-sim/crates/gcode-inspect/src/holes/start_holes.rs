@@ -28,7 +28,7 @@ const MAX_STEP: f64 = 1.6;
 #[derive(Debug)]
 struct StartHole {
     /// Place of its pass.
-    order: u32,
+    order: usize,
     centre: Point3<f64>,
     axis: Unit<Vector3<f64>>,
     radius: f64,
@@ -40,7 +40,7 @@ struct StartHole {
 pub(super) struct StartHoles {
     followed: Vec<StartHole>,
     /// Places of the passes of removed holes, in their order.
-    removed: Vec<u32>,
+    removed: Vec<usize>,
     /// Number of passes that have been looked through.
     seen: usize,
 }
@@ -54,23 +54,23 @@ struct FlatFeed {
 
 impl StartHoles {
     /// Returns true if the pass made at a place is removed.
-    pub(super) fn is_removed(&self, order: u32) -> bool {
+    pub(super) fn is_removed(&self, order: usize) -> bool {
         self.removed.binary_search(&order).is_ok()
     }
 
-    /// Follows the new ones of some passes, each with its place, that make no nominal hole. Returns false if none is followed.
+    /// Follows the new ones of some passes that make no nominal hole. Returns false if none is followed.
     pub(super) fn follow(
         &mut self,
-        passes: &[(u32, DrillPass)],
+        passes: &[DrillPass],
         machine: &Machine,
         is_nominal: impl Fn(&DrillPass) -> bool,
     ) -> bool {
-        for (order, pass) in passes.get(self.seen..).unwrap_or_default() {
+        for pass in passes.get(self.seen..).unwrap_or_default() {
             if self.followed.len() == MAX_FOLLOWED {
                 break;
             }
             let diameter = pass.diameter(machine).filter(|_| !is_nominal(pass));
-            self.followed.extend(diameter.map(|diameter| StartHole::new(*order, pass, diameter / 2.0)));
+            self.followed.extend(diameter.map(|diameter| StartHole::new(pass, diameter / 2.0)));
         }
         self.seen = passes.len();
         !self.followed.is_empty()
@@ -92,7 +92,7 @@ impl StartHoles {
 }
 
 impl StartHole {
-    fn new(order: u32, pass: &DrillPass, radius: f64) -> Self {
+    fn new(pass: &DrillPass, radius: f64) -> Self {
         let (centre, axis) = (pass.cut.bottom, pass.axis);
         let [u, v] = directions_across(&axis);
         let ring = |ring: u32| {
@@ -103,7 +103,7 @@ impl StartHole {
             })
         };
         let points = (1..=RINGS).flat_map(ring).chain([centre]).collect();
-        Self { order, centre, axis, radius, points }
+        Self { order: pass.cut.order, centre, axis, radius, points }
     }
 
     /// Returns true if a feed may reach the hole at its bottom.

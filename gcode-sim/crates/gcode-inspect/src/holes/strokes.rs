@@ -57,8 +57,8 @@ pub(super) enum CutKind {
 /// Passes, and strokes for which later motion decides.
 #[derive(Debug, Default)]
 pub(super) struct Strokes {
-    /// Passes of holes, with their order.
-    passes: Vec<(u32, DrillPass)>,
+    /// Passes of holes; the order of each is that among all strokes.
+    passes: Vec<DrillPass>,
     /// Strokes along the current tool, true between rapids.
     along_tool: Vec<(u32, DrillPass, bool)>,
     /// Strokes across the upright tool, those of the current tool from `across_begin`.
@@ -120,6 +120,8 @@ impl Strokes {
 
     pub(super) fn set_nominal_axes(&mut self, axes: &Arc<NominalAxes>) {
         self.nominal = Arc::clone(axes);
+        // Most programs make one pass of each hole.
+        self.passes.reserve(axes.len().min(self.max_passes));
     }
 
     pub(super) fn nominal_axes(&self) -> &NominalAxes {
@@ -171,7 +173,7 @@ impl Strokes {
     pub(super) fn is_at_drilled_wall(&self, ring: &Ring, cutter: Option<f64>, machine: &Machine) -> bool {
         let Some(cutter) = cutter else { return false };
         let [inner, outer] = [ring.radius - cutter / 2.0, ring.radius + cutter / 2.0];
-        self.passes.iter().any(|(_, pass)| {
+        self.passes.iter().any(|pass| {
             let to = ring.centre - pass.cut.bottom;
             let level = to.dot(&ring.out);
             let is_wall = pass.diameter(machine).is_some_and(|hole| inner < hole / 2.0 && hole / 2.0 < outer);
@@ -226,7 +228,7 @@ impl Strokes {
         if deepest.is_empty() {
             return;
         }
-        for (_, pass) in &self.passes {
+        for pass in &self.passes {
             if let Some(axis) = self.nominal_of_stroke(pass) {
                 deepest.remove(&entry(axis));
             }
@@ -309,21 +311,18 @@ impl Strokes {
         }
         self.finish_unretracted();
         self.drop_start_holes(machine);
-        self.passes.sort_by_key(|(order, _)| *order);
-        let numbered = self.passes.into_iter().zip(0..);
-        let passes =
-            numbered.map(|((_, pass), order)| DrillPass { cut: PassCut { order, ..pass.cut }, ..pass });
-        let passes = passes.collect();
-        (passes, self.milled, self.first_excess)
+        self.passes.sort_by_key(|pass| pass.cut.order);
+        self.passes.iter_mut().enumerate().for_each(|(place, pass)| pass.cut.order = place);
+        (self.passes, self.milled, self.first_excess)
     }
 
     /// Drops the start holes that feeds have removed whole, but for those of a hole that is milled on their axis.
     fn drop_start_holes(&mut self, machine: &Machine) {
-        let is_removed = |(order, _): &mut (u32, DrillPass)| self.start_holes.is_removed(*order);
-        let mut removed: Vec<(u32, DrillPass)> = self.passes.extract_if(.., is_removed).collect();
-        removed.retain(|(_, start)| {
+        let is_removed = |pass: &mut DrillPass| self.start_holes.is_removed(pass.cut.order);
+        let mut removed: Vec<DrillPass> = self.passes.extract_if(.., is_removed).collect();
+        removed.retain(|start| {
             let bottom = start.cut.bottom.coords.dot(&start.axis);
-            self.passes.iter().any(|(_, wider)| {
+            self.passes.iter().any(|wider| {
                 wider.cut.milled.is_some()
                     && PARALLEL_COSINE <= wider.axis.dot(&start.axis)
                     && wider.offset_of(start) <= MAX_LINE_OFFSET
@@ -345,9 +344,10 @@ impl Strokes {
         }
     }
 
-    fn push_pass(&mut self, order: u32, pass: DrillPass) {
+    fn push_pass(&mut self, order: u32, mut pass: DrillPass) {
         if self.passes.len() < self.max_passes {
-            self.passes.push((order, pass));
+            pass.cut.order = order as usize;
+            self.passes.push(pass);
         } else {
             self.first_excess.get_or_insert(pass.backtrace);
         }

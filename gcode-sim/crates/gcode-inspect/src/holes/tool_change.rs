@@ -9,7 +9,7 @@ use super::swept_tool::ring;
 use crate::findings::{RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
 use crate::machine::{Setup, TOUCH_DEPTH};
 use gcode_lang::diag::{Diagnostic, FindingKind};
-use gcode_lang::motion::{Event, Position};
+use gcode_lang::motion::{Event, Position, SpindleDirection};
 
 /// Least radius at which metal round a tool is looked for, mm, and its distance from the tool.
 const MIN_RADIUS: f64 = 0.5;
@@ -84,7 +84,10 @@ impl HoleExtractor<'_> {
     /// Reports a tool change where the part has been, as in a pocket that is milled.
     fn report_change_below_top(&mut self, event: &Event<'_>, axis: &Unit<Vector3<f64>>) {
         let tip = self.pose.tip;
-        let Some(body) = self.surface.filter(|body| body.is_deeper(&tip, TOUCH_DEPTH)) else { return };
+        let is_free = self.metal.is_in_open_void(&tip, axis);
+        let Some(body) = self.surface.filter(|body| !is_free && body.is_deeper(&tip, TOUCH_DEPTH)) else {
+            return;
+        };
         let Some(top) = body.exit(&tip, axis) else { return };
         let depth = (top - tip).norm();
         self.findings.add(&TOOL_LEFT_IN_HOLE, &event.backtrace(), 1, |kind| {
@@ -124,6 +127,17 @@ impl HoleExtractor<'_> {
         if counted < self.change_retract.rapids.number() {
             self.check_known_end(event, &self.pose.tip.clone());
         }
+    }
+
+    /// Puts a tool into the spindle.
+    pub(super) fn change_tool(&mut self, event: &Event<'_>, number: u32) {
+        self.report_low_rapid();
+        self.check_tool_known(event, number);
+        self.begin_change(event);
+        self.milled_blocks.end_tool();
+        self.update_setup(|setup| setup.tool = Some(number));
+        self.leave_offset();
+        self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
     }
 
     /// Adds the finding on a rapid that cuts; behind a tool change the rapid is counted.

@@ -10,7 +10,7 @@ use super::swept_tool::rim;
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::ToolKind;
 use gcode_lang::diag::Diagnostic;
-use gcode_part::{Collar, EntryPlanes, PARALLEL_COSINE, SAME_END};
+use gcode_part::{Collar, EntrySearch, PARALLEL_COSINE, SAME_END};
 
 /// Depth in a hole from which on the start of a feed is inside it, mm.
 const MIN_START_DEPTH: f64 = 0.1;
@@ -156,9 +156,9 @@ impl HoleExtractor<'_> {
 
     /// Records how deep a feed along the tool goes in the nominal holes on whose axis it is.
     pub(super) fn record_hole_stroke(&mut self, line: &Line, axis: &Unit<Vector3<f64>>) {
-        let Some(holes) = self.metal.holes.clone() else { return };
+        let Some(holes) = &self.metal.holes else { return };
         let (tool, is_sized) = (self.setup.tool, self.tool_radius().is_some());
-        for_each_hole_along(&holes, line, axis, |hole, collar| {
+        for_each_hole_along(holes, line, axis, |hole, collar| {
             let depth = collar.depth(&line[0]).max(collar.depth(&line[1]));
             if depth <= 0.0 {
                 return;
@@ -178,7 +178,7 @@ impl HoleExtractor<'_> {
         if matches!(kind, Some(ToolKind::Tap | ToolKind::Probe)) {
             return false;
         }
-        let Some(holes) = self.metal.holes.as_deref() else { return false };
+        let Some(holes) = self.metal.holes.as_ref() else { return false };
         let mut is_finishing = false;
         for_each_hole_along(holes, line, axis, |hole, collar| {
             let Some(strokes) = self.hole_strokes.get(&hole) else { return };
@@ -307,7 +307,7 @@ impl HoleExtractor<'_> {
 
 /// Calls `each` with the nominal holes on whose axis a stroke along a tool ends, and into which it leads.
 fn for_each_hole_along<'h>(
-    holes: &'h EntryPlanes,
+    holes: &'h EntrySearch,
     [from, to]: &Line,
     axis: &Unit<Vector3<f64>>,
     mut each: impl FnMut(usize, &'h Collar),

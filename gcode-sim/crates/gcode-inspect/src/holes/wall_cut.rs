@@ -17,7 +17,7 @@ const MAX_WALL_CUT: f64 = 0.05;
 impl KnownMetal {
     /// Returns the index of the nominal hole that a tool at a tip is in, and how far the tool reaches beyond its wall.
     fn wall_excess(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>, radius: f64) -> Option<(usize, f64)> {
-        let holes = self.holes.as_deref()?;
+        let holes = self.holes.as_ref()?;
         let mut nearest: Option<(usize, f64)> = None;
         holes.around(tip, tip, &mut |hole| {
             let collar = holes.collar(hole);

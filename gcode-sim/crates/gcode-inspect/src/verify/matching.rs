@@ -1,6 +1,6 @@
 //! Matching of drilled and nominal holes, the nearest pairs first.
-use std::cell::OnceCell;
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use nalgebra::{Point3, Vector3};
 
@@ -9,9 +9,10 @@ use super::position::Deviation;
 use super::{DIAMETER_TOLERANCE, Tolerances, bottom};
 use crate::holes::{DrilledHole, PassCut, ToolPass};
 use crate::machine::{COS_30, Machine, ToolKind, ToolPart};
+use gcode_lang::shares;
 use gcode_part::{
-    EntryPlanes, FeatureKind, Hole, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree, Surface, Taper,
-    exceeds,
+    EntryPlanes, FeatureKind, Hole, LocalSearch, MAX_BREAK_THROUGH, POINT_LENGTH, Pattern, PointTree,
+    Surface, Taper, exceeds,
 };
 
 /// Largest distance of a drilled hole's axis from a matching nominal entry and bottom, mm.
@@ -66,11 +67,11 @@ pub struct Comparison<'a> {
     /// The nominal hole matched with a line, by the first drilled hole of the line.
     nominal_by_line: Vec<Option<usize>>,
     /// Entries of the nominal holes, for the first query.
-    pub(super) entries: OnceCell<PointTree>,
+    pub(super) entries: OnceLock<PointTree>,
     /// Metal round the nominal holes, for the first query.
-    pub(super) collars: OnceCell<EntryPlanes>,
+    pub(super) collars: OnceLock<EntryPlanes>,
     /// Largest diameter of a drilled hole whose list has none, mm, for the first query.
-    pub(super) widest_open: OnceCell<f64>,
+    pub(super) widest_open: OnceLock<f64>,
 }
 
 impl<'a> Comparison<'a> {
@@ -91,47 +92,51 @@ impl<'a> Comparison<'a> {
         let depths = nominal.iter().map(|hole| hole.depth).filter(|_| !through.is_empty());
         let inside = depths.fold(0.0, f64::max);
         let tree = PointTree::new(nominal.iter().map(|hole| Point3::from(hole.entry)).chain(far_ends));
-        let candidates_within = |index: usize, distance: f64, candidates: &mut Vec<HolePair>| {
-            let hole = &actual[index];
-            let deepest = hole.bottom();
-            // The finishing tool may begin inside the cut of another one, and a mill in a void whose wall it cuts above its end.
-            let wall = hole.surface.filter(|_| hole.finishing_cut.milled.is_some());
-            let starts = hole.passes().map(|pass| pass.cut.start).chain(wall);
-            let ends = (hole.entry.inf(&deepest), hole.entry.sup(&deepest));
-            let (low, high) = starts.fold(ends, |(low, high), start| (low.inf(&start), high.sup(&start)));
-            let along = hole.axis.into_inner().abs() * (2.0 * (reach - distance) + inside);
-            let margin = along + Vector3::repeat(distance);
-            let (low, high) = (low - margin, high + margin);
-            let before = candidates.len();
-            tree.in_box(&low, &high, &mut |point| {
-                let other = point.checked_sub(nominal.len()).map_or(point, |far_end| through[far_end]);
-                let cosine = hole.axis.dot(&Vector3::from(nominal[other].axis));
-                // The nearer end of a through hole is the one from which it is drilled.
-                let is_far_end = nominal.len() <= point;
-                if cosine.abs() < TILTED_HOLE_COSINE || is_far_end != (cosine < 0.0) {
-                    return;
-                }
-                if let Some(deviation) = Deviation::new(&nominal[other], &deepest, &hole.axis)
-                    && deviation.zone_diameter() <= 2.0 * distance
-                {
-                    let pair = HolePair { nominal: other, actual: index, deviation, from_far_side: None };
-                    candidates.push(pair);
-                }
-            });
-            candidates[before..].sort_unstable_by_key(|pair| pair.nominal);
-        };
+        let candidates_within =
+            |index: usize, distance: f64, search: &mut LocalSearch, candidates: &mut Vec<HolePair>| {
+                let hole = &actual[index];
+                let deepest = hole.bottom();
+                // The finishing tool may begin inside the cut of another one, and a mill in a void whose wall it cuts above its end.
+                let wall = hole.surface.filter(|_| hole.finishing_cut.milled.is_some());
+                let starts = hole.passes().map(|pass| pass.cut.start).chain(wall);
+                let ends = (hole.entry.inf(&deepest), hole.entry.sup(&deepest));
+                let (low, high) = starts.fold(ends, |(low, high), start| (low.inf(&start), high.sup(&start)));
+                let along = hole.axis.into_inner().abs() * (2.0 * (reach - distance) + inside);
+                let margin = along + Vector3::repeat(distance);
+                let (low, high) = (low - margin, high + margin);
+                let before = candidates.len();
+                search.in_box(&tree, &low, &high, &mut |point| {
+                    let other = point.checked_sub(nominal.len()).map_or(point, |far_end| through[far_end]);
+                    let cosine = hole.axis.dot(&Vector3::from(nominal[other].axis));
+                    // The nearer end of a through hole is the one from which it is drilled.
+                    let is_far_end = nominal.len() <= point;
+                    if cosine.abs() < TILTED_HOLE_COSINE || is_far_end != (cosine < 0.0) {
+                        return;
+                    }
+                    if let Some(deviation) = Deviation::new(&nominal[other], &deepest, &hole.axis)
+                        && deviation.zone_diameter() <= 2.0 * distance
+                    {
+                        let pair = HolePair { nominal: other, actual: index, deviation, from_far_side: None };
+                        candidates.push(pair);
+                    }
+                });
+                candidates[before..].sort_unstable_by_key(|pair| pair.nominal);
+            };
         let mut pair_of = vec![None; nominal.len()];
         let mut is_taken = vec![false; actual.len()];
-        let mut candidates = Vec::new();
+        let mut candidates: Vec<HolePair>;
         // Most holes are near their nominal ones: those are matched first, in the same order as all at once. From the far
         // side of a through hole a match waits for all others.
         let mut distance =
             if through.is_empty() { reach.min(FIRST_DISTANCE.max(2.0 * tolerances.position)) } else { reach };
         loop {
-            candidates.clear();
-            for index in (0..actual.len()).filter(|index| !is_taken[*index]) {
-                candidates_within(index, distance, &mut candidates);
-            }
+            let open: Vec<usize> = (0..actual.len()).filter(|index| !is_taken[*index]).collect();
+            candidates = shares::map_shares(&open, |open| {
+                let (mut search, mut candidates) = (LocalSearch::default(), Vec::new());
+                open.iter()
+                    .for_each(|index| candidates_within(*index, distance, &mut search, &mut candidates));
+                candidates
+            });
             assign_nearest(&candidates, (nominal, actual), &mut pair_of, &mut is_taken);
             if reach <= distance {
                 break;
@@ -179,9 +184,9 @@ impl<'a> Comparison<'a> {
             repeated,
             in_air: Vec::new(),
             nominal_by_line,
-            entries: OnceCell::new(),
-            collars: OnceCell::new(),
-            widest_open: OnceCell::new(),
+            entries: OnceLock::new(),
+            collars: OnceLock::new(),
+            widest_open: OnceLock::new(),
         }
     }
 

@@ -6,6 +6,7 @@ use super::{Comparison, HolePair, bottom};
 use crate::holes::DrilledHole;
 use crate::machine::{Frame, HeadKind, Machine};
 use gcode_lang::motion::{AxisIndex, Position};
+use gcode_lang::shares;
 use gcode_lang::units::Deg;
 
 /// The largest effect of rounding on each pair.
@@ -27,7 +28,7 @@ impl<'a> RoundingDeviation<'a> {
         let axes = rounded_axes(comparison, machine);
         let mut rounding = Self { comparison, machine, axes, position_deviations: Vec::new() };
         let deviation = |pair: &HolePair| 2.0 * max_displacement(&rounding.axis_effects(pair));
-        rounding.position_deviations = comparison.pairs.iter().map(deviation).collect();
+        rounding.position_deviations = shares::map(&comparison.pairs, deviation);
         rounding
     }
 

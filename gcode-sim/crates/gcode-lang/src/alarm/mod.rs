@@ -12,7 +12,7 @@ use crate::source::{Span, Spanned};
 pub use code::{AlarmCode, AlarmRow};
 pub use digit_limit::DigitLimit;
 pub use lacking_code::{OtherControl, lacking_code_help};
-pub use typos::{missing_macro_help, remedy, repeats_in_p_help};
+pub use typos::{missing_macro_help, missing_macros_help, remedy, repeats_in_p_help};
 
 /// Reason for the stop of a control. Variants hold facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
@@ -476,6 +476,8 @@ pub enum Alarm {
     WordNotSimulated(char),
     /// A code, the mode that rules it out, and the code that ends the mode.
     CodeInMode(String, &'static str, &'static str),
+    /// A feed with the F of another mode: the code × 10 of the mode in which F was commanded, and that of the feed.
+    FeedOfOtherMode(u32, u32),
 }
 
 /// Alarm with its span. Boxed, because almost every step of a run returns a result without an alarm.

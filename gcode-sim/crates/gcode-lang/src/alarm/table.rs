@@ -158,6 +158,7 @@ impl Alarm {
             Self::StylusBroken { deflection, overtravel_limit } => (&SIM0003, format!("the stylus is deflected by {deflection:.3} mm, limit {overtravel_limit:.3} mm"), Some("probe with a lower feed, and back off before the next touch")),
             Self::NotSimulated { what } => (&SIM0001, format!("{what} is not simulated"), Some(NOT_EXECUTED)),
             Self::WordNotSimulated(letter) => (&SIM0001, format!("{letter} in this block is not simulated"), Some(NOT_EXECUTED)),
+            Self::FeedOfOtherMode(commanded, active) => (&SIM0001, format!("a feed in G{} with the F of G{} is not simulated", active / 10, commanded / 10), Some("command F in the block that changes the mode of the feed, or behind it: its unit is another one")),
             Self::CodeInMode(code, active, cancel) => (&SIM0001, format!("G{code} while {active} is on (command {cancel} before it) is not simulated"), Some(NOT_EXECUTED)),
         }
     }

@@ -371,11 +371,6 @@ impl Program {
         self.loops.contain(block)
     }
 
-    /// Returns true if a block outside some blocks has a sequence number.
-    pub fn has_number_outside(&self, blocks: &Range<OpIndex>) -> bool {
-        self.numbers().iter().any(|(_, block)| !blocks.contains(&(*block as OpIndex)))
-    }
-
     /// Lowers one block for execution and returns it; `None` after the last block.
     #[inline(always)]
     pub fn lower_block(&mut self, index: OpIndex) -> Option<(&Self, &Op)> {

@@ -67,6 +67,7 @@ pub(crate) fn doubled_numbers(
         Diagnostic::new(&RULE.kind, message)
             .with_severity(severity)
             .with_backtrace(Backtrace { block, calls: None })
+            .label(first, "the first one")
             .help("give one of them another number")
     };
     fold_notes(doubled.into_iter().map(finding).collect())

@@ -84,7 +84,7 @@ pub(crate) fn pending_moves(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) 
             None => op.and_then(|op| move_effect(context, op.kind())),
         };
         // A computed jump may lead from elsewhere.
-        let is_computed = unit.program.ops().len() + 1 == block;
+        let is_computed = unit.flow.computed_node() == block;
         let after = match after {
             _ if is_computed => None,
             Some(true) => op.map(|op| op.span),

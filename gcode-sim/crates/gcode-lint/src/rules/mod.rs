@@ -98,6 +98,9 @@ pub(super) static MISSING_PROGRAM: &FindingKind = &missing_program::RULE.kind;
 /// Kind of finding about a position read in a move.
 pub(super) static LIVE_POSITION: &FindingKind = &live_position::RULE.kind;
 
+/// Kind of finding about a loop that never ends.
+pub(super) static ENDLESS_LOOP: &FindingKind = &endless_loop::RULE.kind;
+
 /// Kinds of findings about a block that other blocks, wherever they are, add to or take away.
 pub(super) static OF_WHOLE_PROGRAM: [&FindingKind; 3] =
     [&loop_pairs::RULE.kind, &unreachable::RULE.kind, &unreachable_alarm::RULE.kind];

@@ -50,9 +50,13 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
         let alarm = planner.certain_alarm(words, unit.op(block).span, modes.in_force());
         if let Some(alarm) = alarm.filter(|alarm| !has_own_rule(&alarm.node, words)) {
             let finding = context.alarm_finding(unit, &RULE.kind, block, &alarm);
-            // Older controls, and others by FCV (0001#1), repeat a cycle L times.
-            let is_repeat = matches!(alarm.node, Alarm::ImproperAddress { letter: 'L' });
-            found.push(if is_repeat || has_builder_code(context, words) {
+            // Older controls, and others by FCV (0001#1), repeat a cycle L times; options add offsets.
+            let is_optional = match alarm.node {
+                Alarm::ImproperAddress { letter: 'L' } => true,
+                Alarm::OffsetNumber { .. } => !is_standard_offset(words),
+                _ => false,
+            };
+            found.push(if is_optional || has_builder_code(context, words) {
                 context.unless_optional(finding)
             } else {
                 finding
@@ -61,6 +65,11 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
     }
     *context.planner.lock().unwrap_or_else(PoisonError::into_inner) = Some(planner);
     found
+}
+
+/// Returns true for L2, with which G10 sets an offset of G54 to G59: every control has six.
+fn is_standard_offset(words: &Words) -> bool {
+    words.list.iter().any(|word| word.letter == b'L' && literal::word_count(word) == Some(2))
 }
 
 /// Returns the place of a G67 that raises an alarm if no modal call is in force.
@@ -83,12 +92,13 @@ fn may_call_modally(context: &CheckContext<'_>) -> bool {
     context.units.iter().any(is_unclear)
 }
 
-/// Returns true for the alarms that `stray-word` reports.
+/// Returns true for the alarms that `stray-word` and `missing-offset` report.
 fn has_own_rule(alarm: &Alarm, words: &Words) -> bool {
     let is_stray = |word: &LoweredWord| word.comma && !matches!(word.letter, b'R' | b'C');
     match alarm {
         Alarm::ImproperAddress { letter: 'A'..='C' | 'E' | 'U'..='Z' } => true,
         Alarm::CornerWords => words.list.iter().any(is_stray),
+        Alarm::OffsetNumber { .. } => words.list.iter().any(|word| matches!(word.letter, b'H' | b'D')),
         _ => false,
     }
 }
@@ -129,6 +139,10 @@ fn is_arc(motion: Motion) -> bool {
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
     use super::RULE;
+    use crate::{ControlKnowledge, check_loaded};
+    use gcode_lang::control::Settings;
+    use gcode_lang::diag::Severity;
+    use gcode_lang::program::{Memory, NoLibrary};
 
     #[test]
     fn the_alarm_of_the_control_is_named() {
@@ -149,6 +163,8 @@ mod tests {
             ("G10 P1 R50.", "PS1144"),
             ("G65 P2 I1. I2. I3. I4. I5. I6. I7. I8. I9. I10. I11.", "PS1095"),
             ("G01 X20. ,R4. ,C4. F300.", "PS0053"),
+            ("G10 L2 P7 X0", "PS0030"),
+            ("G54.1 P400 X0", "PS0030"),
             ("G53.1", "PS5458"),
             ("G68.2 X0 Y0 Z0 I0 J30. K0 G53.1", "PS5458"),
         ] {
@@ -171,6 +187,22 @@ mod tests {
         assert_eq!(lines(&RULE, "O1\nG83 Z-5. R1. Q1. F9.\nG80\nG83 X2. Z-5. R1.\nM30\n"), [4]);
         assert_eq!(lines(&RULE, "O1\nIF[#500 EQ 1]GOTO 5\nG73 Z-5. R1. Q1. F9.\nN5 G83 X2.\nM30\n"), NOWHERE);
         assert_eq!(lines(&RULE, "O1\nG81 Z-5. R1. F9.\nM98 P2\nG28 Z5.\nM30\nO2\nG80\nM99\n"), NOWHERE);
+    }
+
+    /// A larger number of tool offsets is an option, a seventh offset of G10 L2 is none.
+    #[test]
+    fn an_offset_that_an_option_adds_is_a_note() {
+        let severity = |block: &str| {
+            let mut memory = Memory::default();
+            memory.load("O1.nc", format!("O1\n{block}\nM30\n").into_bytes());
+            let checked =
+                check_loaded(memory, &Settings::default(), ControlKnowledge::Assumed, &mut NoLibrary);
+            checked.findings.iter().map(|finding| finding.severity).collect::<Vec<_>>()
+        };
+        assert_eq!(severity("G10 L2 P7 X0"), [Severity::Error]);
+        assert_eq!(severity("G10 L2 P6 X0"), []);
+        assert_eq!(severity("G10 L10 P5000 R1."), [Severity::Note]);
+        assert_eq!(severity("G54.1 P400"), [Severity::Note]);
     }
 
     #[test]

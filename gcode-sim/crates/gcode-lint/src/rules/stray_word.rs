@@ -8,6 +8,7 @@ use gcode_lang::program::modes::Motion;
 use gcode_lang::program::{LoweredWord, Words};
 
 use crate::control_flow::Successors;
+use crate::piece::Piece;
 use crate::prelude::*;
 
 pub(super) static RULE: Rule =
@@ -40,11 +41,12 @@ fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Diagnostic> {
 
 /// Returns for each block whether a block before it can jump over it, or end the program.
 fn blocks_that_can_be_left_out(unit: &ProgramUnit<'_>) -> Vec<bool> {
-    let (mut farthest, mut may_end) = (0, false);
+    let of_piece = |piece: &Piece| (piece.left_out_until, piece.start.may_be_left_out);
+    let (mut farthest, mut may_be_left) = unit.piece.as_ref().map(of_piece).unwrap_or_default();
     let after = |(block, successors): (usize, &Successors)| {
-        let can_be_left_out = may_end || block < farthest;
+        let can_be_left_out = may_be_left || block < farthest;
         farthest = successors.jumps.iter().copied().fold(farthest, usize::max);
-        may_end |= successors.is_exit || successors.jumps_anywhere;
+        may_be_left |= successors.may_leave();
         can_be_left_out
     };
     unit.flow.block_successors.iter().enumerate().map(after).collect()

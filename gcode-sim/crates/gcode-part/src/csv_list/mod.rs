@@ -14,6 +14,7 @@ use super::hole::{Hole, HoleList, Unit};
 use super::read::{check, complete, repeated_id};
 use crate::reader::FileError;
 use crate::{exceeds, thread_size};
+use gcode_lang::units::Deg;
 
 /// Beginning of the last line of a list whose run stopped before its end.
 pub const STOPPED: &str = "# stopped: ";
@@ -279,7 +280,7 @@ impl Cells<'_> {
                 self.text("radius")
             ));
         }
-        let (sine, cosine) = angle.to_radians().sin_cos();
+        let (sine, cosine) = (Deg(angle).sin(), Deg(angle).cos());
         Ok(([x, radius * sine, radius * cosine], [0.0, sine, cosine]))
     }
 

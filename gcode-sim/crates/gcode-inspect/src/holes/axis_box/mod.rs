@@ -38,19 +38,25 @@ const FEW_CELLS: usize = 200;
 const MAX_PARAMETERS: usize = MAX_AXES + 3;
 
 /// Calls its last argument with the distance of a point from every convex body that may reach into the box about it with
-/// these half sides. Returns false instead if they may be too many: a smaller box has fewer.
+/// these half sides. Returns false instead if they may be too many: a smaller box has fewer. A box in
+/// a void is in no body.
 pub(super) type Bodies<'b> = dyn Fn(&Point3<f64>, &Vector3<f64>, &mut dyn FnMut(NearestPoint)) -> bool + 'b;
 
 /// Cells that the boxes of a run have taken.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SearchBudget {
     taken: usize,
+    /// Metal is known to be met: any other point of it does.
+    pub is_any_enough: bool,
 }
 
 impl SearchBudget {
     /// Returns the largest number of cells for metal, and for a deeper point.
     fn limits(self) -> (usize, usize) {
-        if self.taken < ALL_CELLS { (MAX_CELLS, MAX_REFINEMENTS) } else { (FEW_CELLS, 0) }
+        match self.taken < ALL_CELLS {
+            true => (MAX_CELLS, if self.is_any_enough { 0 } else { MAX_REFINEMENTS }),
+            false => (FEW_CELLS, 0),
+        }
     }
 }
 
@@ -301,21 +307,34 @@ impl<'m> AxisBox<'m> {
         let (spread, middle) = (self.spread(&cell), self.point(&cell.middle));
         let [height, u, v] = self.tool.map_or([0.0; 3], |_| self.of_tool(&cell.middle));
         let is_beside = self.tool.is_some_and(|tool| tool.taper.at(height) < libm::hypot(u, v));
-        let mut bound = f64::NEG_INFINITY;
+        let (mut bound, mut is_deeper) = (f64::NEG_INFINITY, false);
         let are_all = bodies(&middle, &spread.reach(), &mut |nearest| {
             let depth = -nearest.distance;
-            if !is_beside && best.map_or(least, |best| best.depth) < depth {
-                *best = Some(DeepPoint { point: middle, depth, arrived: None });
-            }
+            is_deeper |= !is_beside && best.map_or(least, |best| best.depth) < depth;
             bound = bound.max(depth + spread.towards(&nearest.normal));
         });
         if !are_all {
             bound = f64::INFINITY;
         }
+        // The middle may be empty where a body reaches into the cell.
+        self.keep_deeper(is_deeper.then_some(middle), bodies, least, best);
         let found = best.map_or(least, |best| best.depth);
-        let sides =
-            if found + RESOLUTION < bound { self.deeper_sides(&cell.middle, bodies) } else { Vec::new() };
-        for point in sides.iter().map(|side| self.point(side)) {
+        if found + RESOLUTION < bound {
+            let sides = self.deeper_sides(&cell.middle, bodies);
+            self.keep_deeper(sides.iter().map(|side| self.point(side)), bodies, least, best);
+        }
+        BoundedCell { bound, cell, widest: spread.widest }
+    }
+
+    /// Replaces `best` by the deepest of some points, if one is deeper.
+    fn keep_deeper(
+        &self,
+        points: impl IntoIterator<Item = Point3<f64>>,
+        bodies: &Bodies<'_>,
+        least: f64,
+        best: &mut Option<DeepPoint>,
+    ) {
+        for point in points {
             bodies(&point, &Vector3::zeros(), &mut |nearest| {
                 let depth = -nearest.distance;
                 if best.map_or(least, |best| best.depth) < depth {
@@ -323,7 +342,6 @@ impl<'m> AxisBox<'m> {
                 }
             });
         }
-        BoundedCell { bound, cell, widest: spread.widest }
     }
 
     /// Returns the longest lever of a rotation at a position; an axis of the table may move the centre of the next.

@@ -10,7 +10,8 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use self::slabs::{Slab, Slabs};
 use self::sweep_box::{StripReach, SweepBox, bounds_between};
-use super::box_tree::{BoxTree, group};
+use super::box_tree::{Bounds, BoxTree, group};
+use super::left_stock::holds_box;
 use super::profile::Profile;
 use super::shares::Shares;
 use super::strip::{Line, Strip};
@@ -203,6 +204,20 @@ impl RemovedMetal {
         for void in &self.voids {
             shares.take_away(strip.piece(|[from, to]| void.piece(from, to, -TOUCH_DEPTH)));
         }
+    }
+
+    /// Returns true if one void holds a box.
+    pub(super) fn is_in_void(&self, bounds: &Bounds) -> bool {
+        self.voids.iter().any(|void| holds_box(void, bounds))
+    }
+
+    /// Returns true if a point is in a void that is open to a side of the metal, seen along a tool.
+    pub(super) fn is_open_beside(&self, p: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> bool {
+        let is_open = |void: &Surface| {
+            let ([low, high], [least, greatest]) = (void.bounds(), self.bounds);
+            (0..3).any(|i| axis[i].abs() < 1.0 - NOISE && (low[i] < least[i] || greatest[i] < high[i]))
+        };
+        self.voids.iter().any(|void| holds_box(void, &[*p, *p]) && is_open(void))
     }
 
     /// Returns the number of sweeps so far.

@@ -22,6 +22,9 @@ const MAX_GROUPS: usize = 64;
 /// Depths that differ by less are equal, mm.
 const SAME_DEPTH: f64 = 0.02;
 
+/// Tilts that differ by less are equal.
+const SAME_TILT: Deg = Deg(0.02);
+
 /// Offsets below this are rounding, mm.
 const MIN_OFFSET: f64 = 0.0005;
 
@@ -49,6 +52,8 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             (reported, report_repeated_sets(comparison, findings))
         }
     };
+    // A tilted hole is less deep: the tilt comes first.
+    reported.extend(report_common_tilts(comparison, findings));
     reported.extend(report_common_depths(comparison, findings));
     findings.put_first_summed(reported);
     repeated.into_iter().for_each(|finding| findings.add(Subject::Whole, finding));
@@ -91,10 +96,43 @@ fn fold_tilted(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> usiz
     findings.fold(&[&HOLE_DEPTH], |subject| tilted.contains(&subject))
 }
 
-fn report_common_depths(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Vec<GroupFinding> {
-    let shown = findings.iter().filter(|one| !one.is_folded && one.finding.kind == &HOLE_DEPTH);
+/// Returns the pairs of holes that have a finding of a kind.
+fn pairs_with<'c>(
+    kind: &'static FindingKind,
+    comparison: &'c Comparison<'_>,
+    findings: &HoleFindings,
+) -> Vec<&'c HolePair> {
+    let shown = findings.iter().filter(|one| !one.is_folded && one.finding.kind == kind);
     let shown: BTreeSet<Subject> = shown.map(|one| one.subject).collect();
-    let wrong = comparison.pairs.iter().filter(|pair| shown.contains(&Subject::Nominal(pair.nominal)));
+    comparison.pairs.iter().filter(|pair| shown.contains(&Subject::Nominal(pair.nominal))).collect()
+}
+
+/// Reports holes with one tilt, of a head, a table or a tilted plane; a depth error that follows from it is folded.
+fn report_common_tilts(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Vec<GroupFinding> {
+    let wrong = pairs_with(&HOLE_TILTED, comparison, findings);
+    let tilt = |pair: &HolePair| pair.deviation.tilt;
+    let report = |group: Vec<&HolePair>| {
+        let (nominal, actual) = group.iter().map(|pair| (pair.nominal, pair.actual)).unzip();
+        let (holes, folded) = fold_group(comparison, findings, &[&HOLE_TILTED], nominal, actual);
+        let follows = |pair: &&&HolePair| {
+            let shortened = comparison.nominal[pair.nominal].depth * (tilt(pair).cos() - 1.0);
+            !exceeds((pair.deviation.depth_error - shortened).abs(), comparison.tolerances.depth)
+        };
+        let following: BTreeSet<Subject> =
+            group.iter().filter(follows).map(|pair| Subject::Nominal(pair.nominal)).collect();
+        let folded = folded + findings.fold(&[&HOLE_DEPTH], |subject| following.contains(&subject));
+        let error = format!("tilted by {:.3}°", tilt(group[0]).0);
+        let message = format!("{holes}: {error} (position tolerance Φ{})", comparison.tolerances.position);
+        let finding = Diagnostic::new(&HOLES_ALIKE, message)
+            .help("check the head angle or the tilted plane, and that the feed runs along the holes");
+        let members: BTreeSet<usize> = group.iter().map(|pair| pair.actual).collect();
+        (locate_group(finding, folded, comparison, &members, group[0].actual), summed(&holes, &error))
+    };
+    groups(wrong, |a, b| (tilt(a).0 - tilt(b).0).abs() < SAME_TILT.0).into_iter().map(report).collect()
+}
+
+fn report_common_depths(comparison: &Comparison<'_>, findings: &mut HoleFindings) -> Vec<GroupFinding> {
+    let wrong = pairs_with(&HOLE_DEPTH, comparison, findings);
     let error = |pair: &HolePair| pair.deviation.depth_error;
     let report = |group: Vec<&HolePair>| {
         let (nominal, actual) = group.iter().map(|pair| (pair.nominal, pair.actual)).unzip();

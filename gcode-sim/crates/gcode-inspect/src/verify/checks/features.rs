@@ -7,6 +7,7 @@ use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
 use crate::verify::mill_size::size_mills;
 use crate::verify::outline::{CutShape, Outline};
 use crate::verify::voids::Blank;
+use gcode_lang::shares;
 use gcode_part::{Feature, FeatureKind, MAX_EDGE_BREAK, POINT_LENGTH};
 
 /// What the end of a tool leaves open, by the tool's number.
@@ -76,7 +77,7 @@ pub(in crate::verify) fn judge_all(
         let is_whole = findings.is_empty() && gaps.is_empty();
         (!is_whole).then_some(FeatureFindings { nominal: pair.nominal, findings, gaps })
     };
-    comparison.pairs.iter().filter_map(judge).collect()
+    shares::map_shares(&comparison.pairs, |pairs| pairs.iter().filter_map(judge).collect())
 }
 
 /// Judges the features of a hole; `None` for a hole of one diameter and one pass, which other checks cover.

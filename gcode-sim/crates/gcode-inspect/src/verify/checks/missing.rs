@@ -1,6 +1,7 @@
 //! Nominal holes that are not drilled, each with the nearest extra hole.
 use super::*;
 use crate::findings::{HOLE_MISSING, MAIN_PROGRAM};
+use crate::holes::BackBored;
 use crate::machine::COS_30;
 use crate::verify::bottom;
 
@@ -36,11 +37,19 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     for nominal in &comparison.missing {
         let end = bottom(&comparison.nominal[*nominal]);
         let finding = Diagnostic::new(&HOLE_MISSING, format!("hole {} is missing", comparison.id(*nominal)));
-        let finding = match tree.nearest(&end) {
+        let out = Vector3::from(comparison.nominal[*nominal].axis);
+        let is_it =
+            |bore: &&BackBored| COS_30 < bore.out.dot(&out) && (bore.end - end).cross(&out).norm() <= ON_AXIS;
+        let back_bored = inspection.extraction.back_bored.iter().find(is_it);
+        let finding = match (tree.nearest(&end), back_bored) {
+            (_, Some(bore)) => finding
+                .note("a bore on its axis is made backwards: only what is open on the tool's side is compared with the list")
+                .help("remove the row, and check the bore in the picture or on the review page; the verdict names it as not checked")
+                .with_backtrace(bore.backtrace.clone()),
             _ if beside.is_none() && !has_direction(&comparison.nominal[*nominal]) => finding
                 .note("no tool cuts from its side of the part")
                 .help("check the angle of the table or of the head, and whether the program commands it"),
-            Some((near, distance)) => {
+            (Some((near, distance)), None) => {
                 let off = extra[near].bottom() - end;
                 if let Some(height) = height_above(&comparison.nominal[*nominal], &off) {
                     finding
@@ -69,7 +78,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
                         .with_backtrace(extra[near].backtrace.clone())
                 }
             }
-            None => match &beside {
+            (None, None) => match &beside {
                 Some((end, backtrace)) => finding
                     .note(format!(
                         "the feed to x {:.3} y {:.3} z {:.3} on the part goes beside it and cuts nothing",

@@ -26,13 +26,14 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
         }
     }
     for (diameter, group) in by_diameter.into_iter().filter(|(_, group)| MIN_HOLES <= group.len()) {
-        let Some(usual) = most_common(group.iter().map(|(_, drilled)| tools(drilled).collect())) else {
-            continue;
-        };
+        // Most holes are made with the tools of the one before.
+        let alike = group.chunk_by(|(_, one), (_, next)| tools(one).eq(tools(next)));
+        let sets = alike.map(|holes| (tools(holes[0].1).collect(), holes.len()));
+        let Some(usual) = most_common(sets, group.len()) else { continue };
         let lacking_holes = report_incomplete(comparison, &usual, &group, f64::from_bits(diameter), findings);
         for (nominal, drilled) in group.into_iter().filter(|(nominal, _)| !lacking_holes.contains(nominal)) {
-            let own: BTreeSet<u32> = tools(drilled).collect();
-            let lacking: Vec<String> = usual.difference(&own).map(|tool| format!("T{tool}")).collect();
+            let lacking = usual.iter().filter(|tool| tools(drilled).all(|own| own != **tool));
+            let lacking: Vec<String> = lacking.map(|tool| format!("T{tool}")).collect();
             if lacking.is_empty() {
                 continue;
             }
@@ -108,11 +109,10 @@ fn tools(drilled: &DrilledHole) -> impl Iterator<Item = u32> + '_ {
     drilled.earlier_passes.iter().map(|pass| pass.tool).chain([drilled.tool]).flatten()
 }
 
-/// Returns the set that more than half of the holes have.
-fn most_common(holes: impl ExactSizeIterator<Item = BTreeSet<u32>>) -> Option<BTreeSet<u32>> {
-    let all = holes.len();
+/// Returns the set that more than half of `all` holes have; each set comes with the number of its holes, and may come again.
+fn most_common(sets: impl Iterator<Item = (BTreeSet<u32>, usize)>, all: usize) -> Option<BTreeSet<u32>> {
     let mut counts: BTreeMap<BTreeSet<u32>, usize> = BTreeMap::new();
-    holes.for_each(|set| *counts.entry(set).or_default() += 1);
+    sets.for_each(|(set, holes)| *counts.entry(set).or_default() += holes);
     counts.into_iter().find(|(_, count)| all < 2 * count).map(|(set, _)| set)
 }
 
@@ -123,8 +123,9 @@ mod tests {
     #[test]
     fn the_usual_tools_are_those_of_more_than_half_of_the_holes() {
         let (both, one) = (BTreeSet::from([1, 2]), BTreeSet::from([1]));
-        assert_eq!(most_common([both.clone(), one.clone(), both.clone()].into_iter()), Some(both.clone()));
-        assert_eq!(most_common([both.clone(), one.clone(), both, one].into_iter()), None);
-        assert_eq!(most_common(std::iter::empty::<BTreeSet<u32>>()), None);
+        let sets = [(both.clone(), 1), (one.clone(), 3), (both.clone(), 3)];
+        assert_eq!(most_common(sets.into_iter(), 7), Some(both.clone()));
+        assert_eq!(most_common([(both, 2), (one, 2)].into_iter(), 4), None);
+        assert_eq!(most_common(std::iter::empty(), 0), None);
     }
 }

@@ -142,3 +142,26 @@ fn an_offset_number_has_the_range_of_its_code() {
         assert!(remedy(400, line).contains("OFFSETS"), "{line}");
     }
 }
+
+#[test]
+fn what_is_typed_for_a_number_is_named() {
+    let in_brackets = || Alarm::RoundBracketsForValue;
+    let prose = "write a number before the comment, or remove the letter";
+    assert_eq!(help(in_brackets(), "G01 Z (Move to Z depth) F5.", "(Move to Z depth)"), prose);
+    assert_eq!(help(in_brackets(), "G01 Z(SIN(30)*#1)", "(SIN(30)*#1)"), "write '[' and ']'");
+    let no_number = || Alarm::RoundBrackets { letter: Some('F') };
+    assert_eq!(help(no_number(), "G01 Z-1. F (feed) M8", "(feed) M8"), prose);
+    assert_eq!(help(no_number(), "G01 Z-1. F(#1*2) M08 AA", "(#1*2) M08 AA"), "write '[' and ']'");
+    let feed = "set #513 above 0 before this block: vacant or 0 it is no feed";
+    assert_eq!(help(Alarm::FeedZero, "G31 Z-5. F#513", "G31 Z-5. F#513"), feed);
+    assert_eq!(help(Alarm::FeedZero, "G1 X5.", "G1 X5."), "command F before or in this block");
+    assert_eq!(help(Alarm::DivideByZero, "#1=5/#27", "5/#27"), "check #27: a vacant variable counts as 0");
+    assert!(help(Alarm::WhileFormat, "ENDIF", "IF").contains("a control has no ENDIF"));
+    let named = "write [#RADIUS] for a variable that SETVN names, or its number";
+    assert_eq!(help(no_value(), "G01 X#[RADIUS] F100.", "RADIUS]"), named);
+    assert_eq!(help(no_value(), "G01 X#<radius> F100.", "<radius>"), named);
+    assert_eq!(help(no_value(), "G01 X#[5+] F100.", "]"), "");
+    let of_program = "write O0001: a program number begins with the letter O";
+    assert_eq!(help(not_a_word(), "00001 ;", "00001 ;"), of_program);
+    assert!(!help(not_a_word(), "0001", "0001").contains("program"));
+}

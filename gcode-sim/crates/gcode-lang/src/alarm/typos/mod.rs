@@ -21,6 +21,7 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         number_with_n,
         misplaced_comma,
         exponent,
+        named_variable,
         unclosed_bracket,
         missing_operator,
         function_without_brackets,
@@ -33,6 +34,11 @@ pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
         protected_program,
         lacking_code,
         vacant_target,
+        prose_for_value,
+        vacant_feed,
+        vacant_divisor,
+        end_of_if,
+        zero_for_o,
     ];
     rules.into_iter().find_map(|rule| rule(alarm, &line)).or_else(|| alarm.row().help)
 }
@@ -65,6 +71,60 @@ fn vacant_target(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     })
 }
 
+/// Detects `Z (Move to Z depth)`: words behind an address that has no number, and no expression in round brackets.
+fn prose_for_value(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    const IN_EXPRESSIONS: [&str; 20] = [
+        "SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "SQRT", "ABS", "BIN", "BCD", "ROUND", "FIX", "FUP",
+        "LN", "EXP", "POW", "MOD", "AND", "OR", "XOR",
+    ];
+    let comment = alarm_line.text.split(')').next()?;
+    let words = comment.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| 1 < word.len());
+    let mut words = words.filter(|word| !IN_EXPRESSIONS.contains(&word.to_ascii_uppercase().as_str()));
+    let has_value = matches!(alarm, Alarm::RoundBracketsForValue | Alarm::RoundBrackets { .. });
+    (has_value && words.next().is_some())
+        .then(|| "write a number before the comment, or remove the letter".to_owned())
+}
+
+/// Detects `G01 X1. F#513` with a vacant or zero #513.
+fn vacant_feed(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let (_, feed) = alarm_line.whole.split_once("F#").filter(|_| *alarm == Alarm::FeedZero)?;
+    let number = leading(feed, |c| c.is_ascii_digit());
+    (!number.is_empty())
+        .then(|| format!("set #{number} above 0 before this block: vacant or 0 it is no feed"))
+}
+
+/// Detects `#1=5/#2` with a vacant or zero #2.
+fn vacant_divisor(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let (_, divisor) = alarm_line.text.rsplit_once("/#").filter(|_| *alarm == Alarm::DivideByZero)?;
+    let number = leading(divisor, |c| c.is_ascii_digit());
+    (!number.is_empty()).then(|| format!("check #{number}: a vacant variable counts as 0"))
+}
+
+/// Detects `ENDIF`.
+fn end_of_if(_: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    alarm_line.whole.replace(' ', "").starts_with("ENDIF").then(|| {
+        "write IF[…]GOTO with the opposite condition past the blocks: a control has no ENDIF".to_owned()
+    })
+}
+
+/// Detects `#[RADIUS]` and `#<radius>`.
+fn named_variable(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let before = alarm_line.before.trim_end();
+    let is_name = before.ends_with("#[") || before.ends_with('#') && alarm_line.rest.starts_with('<');
+    let name = alarm_line.rest.trim_start_matches('<');
+    let name = leading(name, |c| c.is_ascii_alphanumeric() || c == '_').to_ascii_uppercase();
+    (is_read_failure(alarm) && is_name && name.starts_with(|c: char| c.is_ascii_alphabetic()))
+        .then(|| format!("write [#{name}] for a variable that SETVN names, or its number"))
+}
+
+/// Detects `00001` in place of a program number.
+fn zero_for_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let digits = leading(alarm_line.whole.trim(), |c| c.is_ascii_digit());
+    let is_number = alarm_line.before.trim().is_empty() && digits.starts_with('0') && 4 < digits.len();
+    (matches!(alarm, Alarm::NotAWord { .. }) && is_number)
+        .then(|| format!("write O{}: a program number begins with the letter O", &digits[1..]))
+}
+
 /// Program numbers that a control can protect: macros of the machine builder and of the probe's maker.
 const PROTECTED_PROGRAMS: RangeInclusive<u32> = 8000..=9999;
 
@@ -75,6 +135,14 @@ pub fn missing_macro_help(number: u32) -> Option<String> {
             "a macro of the control or the probe: save O{number:04} and the macros that it calls from the control to a folder, and give that with --lib or as libraries in gcode.toml; for a run without it, put a stub there (O{number:04} and M99); check lists all that are missing"
         )
     })
+}
+
+/// Returns what to do about several such macros, of which one is named.
+pub fn missing_macros_help(first: &str) -> String {
+    format!(
+        "macros of the control or the probe: save them and the macros that they call from the control to a folder, and give that with --lib or \
+         as libraries in gcode.toml; for a run without them, put a stub there for each, as {first} and M99"
+    )
 }
 
 /// Line of an alarm, without its comments.
@@ -328,7 +396,9 @@ fn work_offset_range(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String
         return None;
     }
     if has('G', 10.0) && has('L', 2.0) {
-        return Some("write P0 for the external offset, P1 to P6 for G54 to G59".to_owned());
+        return Some(
+            "write P0 for the external offset, P1 to P6 for G54 to G59; L20 P1 is G54.1 P1".to_owned(),
+        );
     }
     let is_additional = has('G', 54.0) || has('G', 54.1) || has('G', 154.0) || has('L', 20.0);
     is_additional.then(|| {
