@@ -68,7 +68,7 @@ pub(crate) fn meanings(index: &FileIndex, program: usize) -> Vec<VariableMeaning
             }
         } else {
             continued = None;
-            by_letter.extend(letter_meaning(text, entry.range));
+            by_letter.extend(text.split([';', ',']).filter_map(|part| letter_meaning(part, entry.range)));
         }
     }
     // A comment that names the variable precedes one that names its letter.
@@ -77,11 +77,12 @@ pub(crate) fn meanings(index: &FileIndex, program: usize) -> Vec<VariableMeaning
     found
 }
 
-/// Returns the meaning in `A = RADIUS`, `A: RADIUS` or `A - RADIUS`, unless it is a formula.
+/// Returns the meaning in `A = RADIUS`, `A: RADIUS`, `A - RADIUS` or `A.....RADIUS`, unless it is a formula.
 fn letter_meaning(comment: &str, range: TextRange) -> Option<VariableMeaning> {
     let letter = comment.trim_start().chars().next()?.to_ascii_uppercase();
     let behind = comment.trim_start().get(1..)?.trim_start();
-    let words = behind.strip_prefix([':', '=', '-'])?.trim();
+    let sign = behind.chars().next().filter(|c| matches!(c, ':' | '=' | '-' | '.'))?;
+    let words = behind.trim_start_matches(sign).trim();
     let number = (1..=26).find(|local| argument_letter(*local) == Some(letter))?;
     let is_text =
         words.len() > 2 && !words.contains(['=', '*', '[', '#']) && words.starts_with(char::is_alphabetic);
@@ -191,6 +192,10 @@ mod tests {
             ["#4 MODES", "#5 MODES", "#24 RESULTS", "#25 RESULTS", "#26 RESULTS", "#141 READ"]
         );
         assert_eq!(stated("O1\n(R = RADIUS)\n(D: DEPTH)\n(#18 OTHER)\n"), ["#18 OTHER", "#7D DEPTH"]);
+        assert_eq!(
+            stated("O1\n(R=RADIUS; A=ANGLE)\n(D....DEPTH)\n"),
+            ["#18R RADIUS", "#1A ANGLE", "#7D DEPTH"]
+        );
         assert_eq!(stated("O1\n(X = R, Y = B*2)\n(B - 2)\n(P = PITCH)\n(NOTE: SLOW)\n"), [""; 0]);
         assert_eq!(stated("O1\n(SET HEAD TO #140)\nX#1\n(NO MEANING #)\n"), ["#140 SET HEAD TO"]);
     }
