@@ -106,8 +106,9 @@ pub(super) struct RunConditions {
 
     #[arg(
         long,
-        value_name = "JOB.toml",
-        help = "The part for probing: G31 stops where the ball of the machine's or the job's [probe] touches it"
+        value_name = "FILE",
+        help = "The part for probing, a job file or a list of holes in the [stock]: G31 stops where the ball of [probe] touches it \
+                [default: the [stock] of a machine file with [probe]]"
     )]
     pub(super) part: Option<PathBuf>,
 

@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     })?;
     if request.part.is_none() && 0 < touches {
         output::print_message(
-            "note: the probe touches the [stock] of the machine file as it is before the run, with what the program cuts\n",
+            "note: the probe touches the [stock] of the machine file as it is before the run: what the program cuts stays\n",
         );
     }
     let mut system = Vec::new();

@@ -122,7 +122,6 @@ const MAX_PASSES: usize = 200_000;
 pub struct HoleExtractor<'m> {
     machine: &'m Machine,
     surface: Option<Surface>,
-    /// What a touch probe touches; `None` if that is unknown.
     probed: Option<PartSolid>,
     metal: KnownMetal,
     rapid_path: RapidPath,
@@ -298,13 +297,6 @@ impl<'m> HoleExtractor<'m> {
         self.surface = metal.body;
         self.probed = metal.body.and_then(|body| PartSolid::new(body, metal.voids.clone()));
         self.metal = KnownMetal::new(metal);
-        self
-    }
-
-    /// Sets the part that a touch probe touches, if it is not the metal.
-    #[must_use]
-    pub fn with_probed(mut self, part: Option<PartSolid>) -> Self {
-        self.probed = part.or(self.probed);
         self
     }
 

@@ -9,8 +9,16 @@ use crate::findings::FEED_BESIDE_HOLE;
 use crate::machine::{ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, EventKind, SkipMove, SkipSignal};
+use gcode_part::PartSolid;
 
 impl HoleExtractor<'_> {
+    /// Sets the part that a touch probe touches, if it is not the metal.
+    #[must_use]
+    pub fn with_probed(mut self, part: Option<PartSolid>) -> Self {
+        self.probed = part.or(self.probed);
+        self
+    }
+
     /// Returns the number of probing moves of a probe with a part that it could touch.
     pub fn probe_count(&self) -> u64 {
         self.probe_count
