@@ -135,3 +135,87 @@ fn sizes(hole: &Hole) -> Option<Vec<(f64, f64)>> {
         true => hole.diameter.map(|diameter| vec![(diameter, hole.depth)]),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLATE: &str = r#"{"kind": "box", "min": [0, 0, -20], "max": [100, 50, 0]}"#;
+
+    fn stock(text: &str) -> Stock {
+        serde_json::from_str(text).unwrap()
+    }
+
+    fn distance(part: &ProbedPart, p: [f64; 3]) -> f64 {
+        part.solid.nearest(&Point3::from(p)).distance
+    }
+
+    fn near(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
+    }
+
+    /// A bore Φ30 through the plate with a counterbore Φ40, 6 deep, and a blind M10×1.5, whose crests are on 10 − 1.0825·1.5 = 8.376.
+    #[test]
+    fn the_holes_of_a_list_are_open_in_the_stock() {
+        let text = r#"{"unit": "mm", "holes": [
+            {"entry": [30, 25, 0], "axis": [0, 0, 1], "depth": 20, "through": true,
+             "features": [{"kind": "bore", "diameter": 30, "depth": 20}, {"kind": "counterbore", "diameter": 40, "depth": 6},
+                          {"kind": "countersink", "diameter": 44, "angle": 90}]},
+            {"entry": [80, 25, 0], "axis": [0, 0, 1], "features": [{"kind": "tap", "diameter": 10, "depth": 12, "pitch": 1.5}]}]}"#;
+        let part = ProbedPart::parse(text, Some(&stock(PLATE))).unwrap();
+        near(distance(&part, [30.0, 25.0, -12.0]), 15.0);
+        near(distance(&part, [47.0, 25.0, -3.0]), 3.0);
+        near(distance(&part, [47.0, 25.0, -5.5]), 0.5);
+        near(distance(&part, [30.0, 25.0, -20.0]), 15.0);
+        near(distance(&part, [80.0, 25.0, -4.0]), 5.0 - 0.625 * 3.0_f64.sqrt() / 2.0 * 1.5);
+        near(distance(&part, [80.0, 25.0, -11.0]), 1.0);
+        near(distance(&part, [80.0, 25.0, -14.0]), -2.0);
+    }
+
+    /// A hole whose axis leans to +x: above the plane through its entry the metal is away too. Its mouth in the top is 6/0.8 = 7.5 long to
+    /// both sides. 5 to the left of its centre the rim is 2.5 away: the wall that is nearer, 6 − 5·0.8 = 2, is above the top. To
+    /// the right that wall is below it.
+    #[test]
+    fn an_oblique_hole_is_open_up_to_the_surface() {
+        let text = "id,x,y,z,i,j,k,depth,diameter\nA,50,25,0,0.6,0,0.8,10,12\n";
+        let part = ProbedPart::parse(text, Some(&stock(PLATE))).unwrap();
+        near(distance(&part, [45.0, 25.0, -1e-9]), 2.5);
+        near(distance(&part, [55.0, 25.0, -1e-9]), 2.0);
+    }
+
+    #[test]
+    fn a_list_without_diameters_or_without_stock_is_refused() {
+        let list =
+            |columns: &str, values: &str| format!("id,x,y,z,i,j,k{columns}\nA,50,25,0,0,0,1{values}\n");
+        let refusal = |text: &str, stock: Option<&Stock>| ProbedPart::parse(text, stock).unwrap_err().message;
+        let plate = stock(PLATE);
+        assert_eq!(
+            refusal(&list(",depth", ",5"), Some(&plate)),
+            "hole A has no diameter: a hole to probe needs one"
+        );
+        assert_eq!(
+            refusal(&list(",diameter", ",5"), Some(&plate)),
+            "hole A has no depth: a hole to probe needs one"
+        );
+        let whole = list(",depth,diameter", ",5,4");
+        let surface = stock(r#"{"kind": "surface"}"#);
+        assert!(refusal(&whole, None).ends_with("give [stock] in the machine file"));
+        assert!(refusal(&whole, Some(&surface)).ends_with("give a box or a cylinder"));
+    }
+
+    /// The tube of the job has its bore and its ends; a stock of the machine file overrides it.
+    #[test]
+    fn a_honeycomb_is_a_tube_with_ends() {
+        let text = "family = \"honeycomb\"\ncontrol = { dialect = \"fanuc-31i\", increment = \"IS-B\" }\n\
+                    machine = { rotary = { letter = \"A\", sign = 1 } }\n\
+                    cylinder = { diameter = 120.0, bore = 100.0, length = 180.0 }\n\
+                    pattern = { pitch = 10.0, metric = \"arc\" }\ndrill = { diameter = 5.0, depth = 12.0 }\n\
+                    tolerance = { position = 0.1 }\n";
+        let part = ProbedPart::parse(text, None).unwrap_or_else(|error| panic!("{error}"));
+        near(distance(&part, [90.0, 0.0, 0.0]), 50.0);
+        near(distance(&part, [-7.0, 55.0, 0.0]), 7.0);
+        near(distance(&part, [184.0, 63.0, 0.0]), 5.0);
+        let part = ProbedPart::parse(text, Some(&stock(PLATE))).unwrap();
+        near(distance(&part, [50.0, 25.0, 4.0]), 4.0);
+    }
+}
