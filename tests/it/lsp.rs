@@ -200,6 +200,42 @@ fn a_cancelled_request_is_answered_once() {
     assert_eq!(client.end(), Some(0));
 }
 
+/// A program of more than 100,000 blocks is checked in pieces. As a whole, these take 130 MB and more, in pieces half of the limit.
+#[cfg(target_os = "linux")]
+#[test]
+fn long_programs_with_unreadable_lines_and_missing_macros_are_opened_in_little_memory() {
+    const LINES: usize = 110_000;
+    const MAX_MEGABYTES: u64 = 110;
+    let mixed = |line: usize| {
+        let kinds = ["G1 X2.5", "#100=3.", "M08", "G65 P100 X1. Z-2.", "(TEXT)"];
+        format!("N{line} {}\n", kinds[line % kinds.len()])
+    };
+    let unreadable = |line: usize| format!("N{line} G0 X1..5\n");
+    let texts: [(&str, &dyn Fn(usize) -> String, usize); 2] =
+        [("unreadable", &unreadable, 1001), ("mixed", &mixed, 1)];
+    for (name, line, findings) in texts {
+        let text = format!("O1\nG21 G90 F100.\n{}M30\n", (1..=LINES).map(line).collect::<String>());
+        let mut client = Client::start();
+        client.initialize();
+        let document = json!({ "uri": "untitled:O1", "languageId": "nc", "version": 1, "text": text });
+        client.send(json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } }));
+        let published = loop {
+            let message = client.receive();
+            if message["method"] == "textDocument/publishDiagnostics" {
+                break message;
+            }
+        };
+        assert_eq!(published["params"]["diagnostics"].as_array().unwrap().len(), findings, "{name}");
+        let status = std::fs::read_to_string(format!("/proc/{}/status", client.child.id())).unwrap();
+        let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
+        let megabytes = peak.trim().trim_end_matches(" kB").parse::<u64>().unwrap() / 1000;
+        client.ask(1, "shutdown", Value::Null);
+        client.send(json!({ "method": "exit" }));
+        assert_eq!(client.end(), Some(0));
+        assert!(megabytes < MAX_MEGABYTES, "{name}: {megabytes} MB");
+    }
+}
+
 /// Returns what the extension for VS Code contributes.
 fn extension() -> Value {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../editors/vscode/package.json");
