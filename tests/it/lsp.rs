@@ -206,14 +206,12 @@ fn a_cancelled_request_is_answered_once() {
 fn long_programs_with_unreadable_lines_and_missing_macros_are_opened_in_little_memory() {
     const LINES: usize = 110_000;
     const MAX_MEGABYTES: u64 = 110;
-    let mixed = |line: usize| {
+    let mixed: fn(usize) -> String = |line| {
         let kinds = ["G1 X2.5", "#100=3.", "M08", "G65 P100 X1. Z-2.", "(TEXT)"];
         format!("N{line} {}\n", kinds[line % kinds.len()])
     };
-    let unreadable = |line: usize| format!("N{line} G0 X1..5\n");
-    let texts: [(&str, &dyn Fn(usize) -> String, usize); 2] =
-        [("unreadable", &unreadable, 1001), ("mixed", &mixed, 1)];
-    for (name, line, findings) in texts {
+    let unreadable: fn(usize) -> String = |line| format!("N{line} G0 X1..5\n");
+    for (name, line, findings) in [("unreadable", unreadable, 1001), ("mixed", mixed, 1)] {
         let text = format!("O1\nG21 G90 F100.\n{}M30\n", (1..=LINES).map(line).collect::<String>());
         let mut client = Client::start();
         client.initialize();

@@ -27,6 +27,10 @@ pub fn main_programs(memory: &Memory, called: &BTreeSet<ProgramId>) -> Vec<Progr
 
 /// Returns the main program with those that its calls can reach: all programs if one of them computes the number of a program.
 pub fn reachable_programs(memory: &mut Memory, settings: &Settings) -> BTreeSet<ProgramId> {
+    // A long program alone isn't read for its calls.
+    if memory.programs().len() == 1 {
+        return memory.ids().collect();
+    }
     let mut reached = BTreeSet::from([memory.main()]);
     let mut pending = vec![memory.main()];
     while let Some(id) = pending.pop() {

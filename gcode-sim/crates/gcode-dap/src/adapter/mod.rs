@@ -251,8 +251,8 @@ fn read<T: DeserializeOwned>(command: &str, mut arguments: Value) -> Result<T, S
     if let Value::Object(all) = &mut arguments {
         all.retain(|_, argument| !argument.is_null());
     }
-    let read = serde_json::from_value(arguments.clone()).map_err(|error| error.to_string());
-    read.map_err(|error| {
+    T::deserialize(&arguments).map_err(|error| {
+        let error = error.to_string();
         let key = wrong_key::<T>(&arguments, &error).map_or_else(String::new, |key| format!("'{key}': "));
         format!("arguments of '{command}': {key}{error}")
     })
