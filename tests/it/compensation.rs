@@ -187,14 +187,16 @@ proptest! {
         keeps_the_radius(&text, &ways, radius, NOTHING)?;
     }
 
-    /// The centre of an arc by R is kept in hundredths of the increment.
+    /// The centre of an arc by R and the arc's start are kept in hundredths of the increment, each at most half the
+    /// diagonal of 0.00001 mm off. The start's distance from the centre feels both, and the centre's place counts once
+    /// more beside the contour: at most three times 0.0000071 mm.
     #[test]
     fn round_a_contour_with_arcs_the_centre_keeps_the_radius(
         (corners, bulges) in contours(), outside in any::<bool>(), radius in 1_u32..3000
     ) {
         let radius = f64::from(radius) / 1000.0;
         let (text, ways) = round(&corners, &bulges, outside, radius);
-        keeps_the_radius(&text, &ways, radius, 2e-5)?;
+        keeps_the_radius(&text, &ways, radius, 2.13e-5)?;
     }
 
     /// Compensation keeps its distance from the path that the corner words make without compensation.

@@ -115,7 +115,7 @@ impl<'a> Edits<'a> {
     pub(super) fn new(old: &'a Record, new: &'a Record) -> Self {
         let programs = match (written(old), written(new)) {
             (Some(was), Some(is)) => [was, is],
-            _ => [executed(old), executed(new)],
+            _ => executed(old, new),
         };
         let by_name = |all: Vec<ProgramSide<'a>>| all.into_iter().map(|side| (side.name.clone(), side));
         let [was, mut is] = programs.map(|all| by_name(all).collect::<BTreeMap<_, _>>());

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::block_list::{BlockList, ExecutedBlocks};
-use super::block_location::BlockLocation;
+use super::block_location::{BlockLocation, ReachedBlock};
 use super::common_sequence::{EqualRun, common_lines};
 use super::record::{Record, Revision};
 
@@ -149,21 +149,25 @@ pub(super) fn written(record: &Record) -> Option<Vec<ProgramSide<'_>>> {
     Some((0..blocks.programs.len()).map(side).collect())
 }
 
-/// Returns the blocks that steps and their calls name, by program; the main program has no name.
-pub(super) fn executed(record: &Record) -> Vec<ProgramSide<'_>> {
-    let mut found: BTreeMap<(String, u32), (BlockLocation, usize)> = BTreeMap::new();
-    let mut is_known = vec![false; record.blocks.len()];
-    let mut main = record.program.clone();
-    for number in 0..record.steps.len() {
-        let block_number = record.steps.block_number(number);
-        if std::mem::replace(&mut is_known[block_number], true) {
-            continue;
-        }
-        for block in record.blocks.location(block_number).outermost_first() {
-            main.get_or_insert_with(|| block.program.clone());
-            found.entry((block.program.clone(), block.line)).or_insert_with(|| (block.clone(), number));
-        }
+/// Returns the executed blocks of two records, one of them from a file, by program: those that steps and their calls name,
+/// and the others if both records have them.
+pub(super) fn executed<'a>(old: &'a Record, new: &'a Record) -> [Vec<ProgramSide<'a>>; 2] {
+    match (other_blocks(old), other_blocks(new)) {
+        (Some(was), Some(is)) => [named_sides(old, was), named_sides(new, is)],
+        _ => [named_sides(old, Vec::new()), named_sides(new, Vec::new())],
     }
+}
+
+/// Returns the blocks of steps and these others by program; the main program has no name.
+fn named_sides(record: &Record, others: Vec<ReachedBlock>) -> Vec<ProgramSide<'_>> {
+    let mut found = blocks_of_steps(record);
+    for ReachedBlock { program, line, block, steps } in others {
+        let location = BlockLocation { program: program.clone(), line, block, calls: Vec::new() };
+        found.entry((program, line)).or_insert((location, steps));
+    }
+    let outermost = |block: Cow<'_, BlockLocation>| Some(block.outermost_first().next()?.program.clone());
+    let first = (record.steps.len() > 0).then(|| record.block(0));
+    let main = record.program.clone().or(first.and_then(outermost));
     let mut programs: BTreeMap<String, Vec<(BlockLocation, Option<usize>)>> = BTreeMap::new();
     for ((program, _), (block, reached)) in found {
         let name = if Some(&program) == main.as_ref() { String::new() } else { program };
@@ -171,6 +175,40 @@ pub(super) fn executed(record: &Record) -> Vec<ProgramSide<'_>> {
         programs.entry(name).or_default().push((location, Some(reached)));
     }
     programs.into_iter().map(|(name, blocks)| ProgramSide::named(name, blocks)).collect()
+}
+
+/// Returns the blocks that steps and their calls name, each with the number of steps before it, by program and line.
+fn blocks_of_steps(record: &Record) -> BTreeMap<(String, u32), (BlockLocation, usize)> {
+    let mut found = BTreeMap::new();
+    let mut is_known = vec![false; record.blocks.len()];
+    for number in 0..record.steps.len() {
+        let block_number = record.steps.block_number(number);
+        if std::mem::replace(&mut is_known[block_number], true) {
+            continue;
+        }
+        for block in record.blocks.location(block_number).outermost_first() {
+            found.entry((block.program.clone(), block.line)).or_insert_with(|| (block.clone(), number));
+        }
+    }
+    found
+}
+
+/// Returns the executed blocks with words that no step names; `None` for a file without them.
+pub(super) fn other_blocks(record: &Record) -> Option<Vec<ReachedBlock>> {
+    let Some(programs) = written(record) else { return record.other_blocks.clone() };
+    let of_steps = blocks_of_steps(record);
+    let mut others = Vec::new();
+    for side in &programs {
+        for index in 0..side.count() {
+            let Some((steps, _)) = side.reached(index) else { continue };
+            let (program, line) = side.place(index);
+            if !of_steps.contains_key(&(program.to_owned(), line)) && !words(&side.text(index)).is_empty() {
+                let (program, block) = (program.to_owned(), side.text(index).into_owned());
+                others.push(ReachedBlock { program, line, block, steps });
+            }
+        }
+    }
+    Some(others)
 }
 
 /// The passage between the first and the last difference of two programs: blocks with words, by their indices, old and

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::block_list::{BlockList, ExecutedBlocks};
-use super::block_location::BlockLocation;
+use super::block_location::{BlockLocation, ReachedBlock};
 use super::first_command::FirstCommand;
 use super::kinds;
 use super::modal_conditions::ModalConditions;
@@ -39,6 +39,8 @@ pub struct Record {
     pub(super) unfinished: BTreeSet<usize>,
     /// Blocks by the numbers that steps, conditions and first commands name.
     pub(super) blocks: BlockList,
+    /// Executed blocks that no step names; of a file that has them.
+    pub(super) other_blocks: Option<Vec<ReachedBlock>>,
     /// Modal conditions by the numbers that steps name.
     pub(super) conditions: Vec<ModalConditions>,
     /// First commands of the program; `None` in accepted results that do not have them.
@@ -205,6 +207,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
         feeds,
         unfinished: BTreeSet::new(),
         blocks: BlockList::Executed(Box::new(ExecutedBlocks::new(numbers, memory))),
+        other_blocks: None,
     }
 }
 
