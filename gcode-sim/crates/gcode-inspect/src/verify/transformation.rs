@@ -27,6 +27,9 @@ const SAMPLE: usize = 6;
 /// Largest number of candidates for a shift or an angle.
 const MAX_CANDIDATES: usize = 200;
 
+/// Heights that differ by less are equal, mm.
+const SAME_HEIGHT: f64 = 0.02;
+
 /// Millimetres in an inch.
 const INCH: f64 = 25.4;
 
@@ -102,7 +105,11 @@ impl Transformation {
             return None;
         }
         let search = Search { comparison, machine, lines: &lines };
-        let mut best: Option<(Mistake, Vec<(usize, usize)>)> = None;
+        let on_their_axes = if is_open { search.matched(&lines) } else { Vec::new() };
+        let is_enough =
+            |matched: usize| MIN_AGREEING_SHARE * count as f64 <= matched as f64 && before + 2 <= matched;
+        let raised = search.common_height(&on_their_axes).filter(|_| is_enough(on_their_axes.len()));
+        let mut best = raised.map(|_| (Mistake::Shifted(Vector3::zeros()), on_their_axes));
         let mut consider = |(mistake, mut mapped): (Mistake, Vec<Line>)| {
             mapped.retain(|line| subset.binary_search(&line.place).is_ok());
             if is_open && !search.fits_sample(&mapped) {
@@ -110,9 +117,7 @@ impl Transformation {
             }
             let matched = search.matched(&mapped);
             let is_better = best.as_ref().is_none_or(|(_, known)| known.len() < matched.len());
-            let is_enough =
-                MIN_AGREEING_SHARE * count as f64 <= matched.len() as f64 && before + 2 <= matched.len();
-            if is_better && is_enough {
+            if is_better && is_enough(matched.len()) {
                 best = Some((mistake, matched));
             }
         };
@@ -124,8 +129,14 @@ impl Transformation {
         }
         search.shifts().into_iter().for_each(&mut consider);
         search.rotations().into_iter().for_each(&mut consider);
-        let (mistake, matched) = best?;
-        let is_moved = |(nominal, line): &&(usize, usize)| !search.is_at(*nominal, &lines[*line]);
+        let (mut mistake, matched) = best?;
+        let mut is_raised = false;
+        if let (Mistake::Shifted(by), Some(height)) = (&mut mistake, search.common_height(&matched)) {
+            *by += height;
+            is_raised = true;
+        }
+        let is_moved =
+            |(nominal, line): &&(usize, usize)| is_raised || !search.is_at(*nominal, &lines[*line]);
         let first = matched.iter().filter(is_moved).map(|(_, line)| *line).min()?;
         let backtrace = match lines[first].index {
             Some(index) => comparison.actual[index].backtrace.clone(),
@@ -191,6 +202,21 @@ impl Search<'_> {
             Some((nominal, mapped[line].place))
         };
         (0..self.comparison.nominal.len()).filter_map(find).collect()
+    }
+
+    /// Returns how far above the bottoms of nominal holes their lines end, if all end equally far above the entries.
+    fn common_height(&self, matched: &[(usize, usize)]) -> Option<Vector3<f64>> {
+        let height = |(nominal, line): &(usize, usize)| {
+            let hole = &self.comparison.nominal[*nominal];
+            let out = Vector3::from(hole.axis);
+            let height = (self.lines[*line].bottom - Point3::from(hole.entry)).dot(&out) + hole.depth;
+            (hole.depth < height).then_some(out * height)
+        };
+        let (first, others) = matched.split_first()?;
+        let first = height(first)?;
+        let is_same =
+            |one: &(usize, usize)| height(one).is_some_and(|height| (height - first).norm() < SAME_HEIGHT);
+        others.iter().all(is_same).then_some(first)
     }
 
     /// Returns the point of the part at the work zero of an offset.

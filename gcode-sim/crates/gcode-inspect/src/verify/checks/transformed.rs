@@ -59,8 +59,13 @@ fn describe(mistake: &Mistake, machine: &Machine) -> (String, String, String) {
             format!("the holes are shifted by {}", shift_words(by)),
             "without the shift".to_owned(),
             missing_origin(machine, by).unwrap_or_else(|| {
-                "check the work offset (G54 to G59), G52, G92, and the point from which the program counts"
-                    .to_owned()
+                let others = match by.z.abs() < MIN_SHIFT {
+                    true => "and the point from which the program counts",
+                    false => {
+                        "the tool length and its H; in G91 R counts from the level before it, and Z from R"
+                    }
+                };
+                format!("check the work offset (G54 to G59), G52, G92, {others}")
             }),
         ),
         Mistake::Rotated(axis, by) => {
