@@ -304,7 +304,7 @@ impl Simulation {
 impl Run {
     /// Follows the values that the run read and nothing in its program set to the holes that it makes, in a second run.
     pub fn dependencies(&self, request: &Request) -> Dependencies {
-        assumptions::of_holes(request, self, &Metal::default(), true)
+        assumptions::of_holes(request, self, &Metal::default())
     }
 
     /// Returns program and line of a block: `O8101`, 31.

@@ -3,13 +3,13 @@ use gcode_control::slice::StatedValues;
 
 /// Returns true if a text has a block skip, `#` before anything but a local or a harmless system variable, PRM, or a tool
 /// offset whose value the machine file does not state.
-pub(super) fn names_outside(text: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
+pub(super) fn names_outside(text: &[u8], stated: &StatedValues, has_moves: bool) -> bool {
     let mut rest = text;
     // Most lines of a long file are numbers alone.
     while let Some(found) = find_outside_sign(rest) {
         let start = rest[..found].iter().rposition(is_line_end).map_or(0, |end| end + 1);
         let end = rest[found..].iter().position(is_line_end).map_or(rest.len(), |length| found + length);
-        if line_names_outside(&rest[start..end], stated, has_holes) {
+        if line_names_outside(&rest[start..end], stated, has_moves) {
             return true;
         }
         rest = &rest[end..];
@@ -37,7 +37,7 @@ fn find_outside_sign(text: &[u8]) -> Option<usize> {
 }
 
 /// Returns [`names_outside`] for one line.
-fn line_names_outside(line: &[u8], stated: &StatedValues, has_holes: bool) -> bool {
+fn line_names_outside(line: &[u8], stated: &StatedValues, has_moves: bool) -> bool {
     let (mut is_in_comment, mut has_assignment, mut open_brackets) = (false, false, 0);
     line.iter().enumerate().any(|(at, byte)| match byte.to_ascii_uppercase() {
         bracket @ (b'(' | b')') => {
@@ -61,7 +61,7 @@ fn line_names_outside(line: &[u8], stated: &StatedValues, has_holes: bool) -> bo
         // Behind `=` or inside brackets a slash divides.
         b'/' => !has_assignment && open_brackets <= 0,
         b'#' => !matches!(number_behind(line, at), Some(0..=33 | 3000 | 3006 | 3100..=3102)),
-        letter @ (b'H' | b'D') if has_holes => is_open_offset(line, at, letter, stated),
+        letter @ (b'H' | b'D') if has_moves => is_open_offset(line, at, letter, stated),
         _ => false,
     })
 }
@@ -110,7 +110,7 @@ mod tests {
             ("X[#4/2] /2 Y1.\n", true, true),
             ("#1=PRM[20]\n", true, true),
         ] {
-            let found = [true, false].map(|has_holes| names_outside(text.as_bytes(), &stated, has_holes));
+            let found = [true, false].map(|has_moves| names_outside(text.as_bytes(), &stated, has_moves));
             assert_eq!(found, [with_holes, without], "{text}");
         }
     }

@@ -41,10 +41,9 @@ struct Followed {
 }
 
 impl<'r> SecondRun<'r> {
-    /// Sets the second run up; `None` if the first one can't have read a value from outside. `makes_any` states that there
-    /// are holes or flutes.
-    fn new(request: &'r Request, run: &Run, makes_any: bool) -> Option<Self> {
-        if run.control.is_cancelled() || !may_read_outside(request, run, makes_any) {
+    /// Sets the second run up; `None` if the first one can't have read a value from outside.
+    fn new(request: &'r Request, run: &Run) -> Option<Self> {
+        if run.control.is_cancelled() || !may_read_outside(request, run) {
             return None;
         }
         let mut control = set_up_control(request, run.control.memory().reload()).ok()?;
@@ -73,8 +72,8 @@ impl<'r> SecondRun<'r> {
 
 /// Follows the outside values to the holes through a second run, if the first one can have read any. `metal` is that of the
 /// first run.
-pub(super) fn of_holes(request: &Request, run: &Run, metal: &Metal, has_holes: bool) -> Dependencies {
-    let Some(second) = SecondRun::new(request, run, has_holes) else { return Dependencies::default() };
+pub(super) fn of_holes(request: &Request, run: &Run, metal: &Metal) -> Dependencies {
+    let Some(second) = SecondRun::new(request, run) else { return Dependencies::default() };
     let (followed, extractor) = second.follow(super::extractor(request, metal.clone()).without_rapids());
     let marks_of = |hole: &DrilledHole| {
         let passes = hole.earlier_passes.iter().map(|pass| &pass.backtrace);
@@ -100,19 +99,19 @@ pub(super) fn beside<T>(
 ) -> (T, Dependencies) {
     let Simulation { run, metal, extracted } = simulation;
     let holes = &extracted.holes;
-    let Some(second) = SecondRun::new(request, run, !holes.is_empty()) else {
+    let Some(second) = SecondRun::new(request, run) else {
         return (work(), Dependencies::default());
     };
     let (done, known) = thread::scope(|scope| {
         let known = scope.spawn(|| of_known_holes(second, holes));
         (work(), known.join().unwrap_or_else(|panic| resume_unwind(panic)))
     });
-    (done, known.unwrap_or_else(|| of_holes(request, run, metal, !holes.is_empty())))
+    (done, known.unwrap_or_else(|| of_holes(request, run, metal)))
 }
 
 /// Follows the outside values to the passes over flutes.
 pub(super) fn of_flutes(request: &Request, run: &Run, tracker: FluteTracker<'_>) -> Dependencies {
-    let Some(second) = SecondRun::new(request, run, true) else { return Dependencies::default() };
+    let Some(second) = SecondRun::new(request, run) else { return Dependencies::default() };
     let (followed, tracker) = second.follow(tracker);
     let passes = tracker.finish().passes;
     let marks = passes.iter().map(|pass| marks_of([&pass.backtrace], &followed.strokes)).collect();
@@ -171,9 +170,10 @@ impl Dependencies {
 }
 
 /// Returns true if the run can have read a value that its program does not set. A text that names a variable beyond the
-/// locals counts as reading it. Without holes only those values matter that can decide whether a block is executed, or how.
-fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
+/// locals counts as reading it. Without moves only those values matter that can decide whether a block is executed, or how.
+fn may_read_outside(request: &Request, run: &Run) -> bool {
     let control = &run.control;
+    let has_moves = control.moves() > 0;
     let mut stated = stated_values(request);
     if request.settings.assumes_radius_offsets() {
         // A D that the program sets is one even where the machine file states it.
@@ -196,7 +196,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
     };
     !request.variables.is_empty()
         || request.settings.skip_signal.is_some()
-        || has_holes
+        || has_moves
             && (!control.unset_work_offsets().is_empty()
                 || stated.work_systems.values().any(|axes| control.placed_axes() & !axes != 0)
                 || is_code_unknown()
@@ -207,7 +207,7 @@ fn may_read_outside(request: &Request, run: &Run, has_holes: bool) -> bool {
             .memory()
             .sources()
             .iter()
-            .any(|(_, source)| names_outside(&source.bytes, &stated, has_holes))
+            .any(|(_, source)| names_outside(&source.bytes, &stated, has_moves))
 }
 
 /// Returns what the machine file and the reference state.

@@ -22,7 +22,7 @@ fn assumptions_on(machine: &str, text: &str, variables: &[(u32, f64)]) -> (Vec<S
     let holes = simulation.extracted.holes.len();
     let found = simulation.dependencies(&request);
     // The holes of the first run have the values of those that a second extraction finds.
-    let extracted = of_holes(&request, &simulation.run, &simulation.metal, holes > 0);
+    let extracted = of_holes(&request, &simulation.run, &simulation.metal);
     assert_eq!(found.marks, extracted.marks, "{text}");
     let all = found.assumptions(&simulation.run, |hole| Some((hole + 1).to_string()));
     let shown = all.into_iter().map(|(Assumption { what, value, place, decides }, _)| {
