@@ -3,8 +3,11 @@ use super::steps::{ROUNDED, Step};
 use gcode_lang::motion::PlanarArc;
 use gcode_lang::units::Deg;
 
+/// The longest arc whose centre follows from its ends and its radius, degrees: the ends of a longer one are too near.
+const LONGEST_BY_RADIUS: f64 = 350.0;
+
 /// Describes the difference of two arcs, unless it follows from a shift of their ends: I, J and K count from the
-/// start, R is the distance of the centre, and parallel arcs have one centre.
+/// start, R is the distance of the centre, and parallel arcs have one centre. R fixes the centre of no circle.
 pub(super) fn reshaped(
     (old, a): (&Step<'_>, &PlanarArc),
     (new, b): (&Step<'_>, &PlanarArc),
@@ -20,10 +23,12 @@ pub(super) fn reshaped(
     let same_sweep = (a.sweep.0 - b.sweep.0).abs() <= 1e-3;
     let same_centre = near(a.centre.0, b.centre.0) && near(a.centre.1, b.centre.1);
     let same_way = a.plane == b.plane && (a.sweep.0 > 0.0) == (b.sweep.0 > 0.0);
+    let same_turn = (a.sweep.0 - b.sweep.0).abs() < 180.0;
+    let has_chord = [a, b].iter().all(|arc| arc.sweep.0.abs() <= LONGEST_BY_RADIUS);
     let goes_along = alike(0)
-        || near(radius(ends), radius(ends_now)) && is_long(a) == is_long(b)
+        || near(radius(ends), radius(ends_now)) && is_long(a) == is_long(b) && has_chord
         || same_centre && same_sweep && is_moved;
-    if same_way && goes_along {
+    if same_way && same_turn && goes_along {
         return None;
     }
     Some(format!(
@@ -92,5 +97,34 @@ mod tests {
                 "{x}"
             );
         }
+    }
+
+    /// A circle from (10, 0) ends where it starts, about any centre.
+    #[test]
+    fn a_full_circle_about_another_centre_differs() {
+        let circle = |start: f64, centre: (f64, f64), sweep: f64| {
+            let from = Position([start, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            let arc = PlanarArc { plane: (0, 1), centre, sweep: Deg(sweep) };
+            let step = Step {
+                kind: &StepKind::Rapid,
+                from,
+                to: from,
+                at: from,
+                block_number: 0,
+                set_by: None,
+                condition: 0,
+            };
+            (step, arc)
+        };
+        let was = circle(10.0, (0.0, 0.0), 360.0);
+        let differs = |start: f64, centre: (f64, f64), sweep: f64| {
+            let is = circle(start, centre, sweep);
+            reshaped((&was.0, &was.1), (&is.0, &is.1), start != 10.0, 0.001).is_some()
+        };
+        assert!(!differs(10.0, (0.0, 0.0), 360.0) && !differs(12.0, (2.0, 0.0), 360.0));
+        assert!(differs(10.0, (20.0, 0.0), 360.0) && differs(10.0, (10.0, 10.0), 360.0));
+        assert!(differs(12.0, (22.0, 0.0), 360.0));
+        // A further turn, and an end beside the start so that almost nothing of the circle is left.
+        assert!(differs(10.0, (0.0, 0.0), 720.0) && differs(10.0, (0.0, 0.0), 0.01));
     }
 }
