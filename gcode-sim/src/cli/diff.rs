@@ -96,7 +96,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitStatus, UsageError> {
     );
     let (old, new) = (old?, new?);
     let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
-    let unexecuted = unexecuted(&old, &new);
+    let unexecuted = unexecuted(&old.record, &new.record);
     let report = ChangesReport::new(
         (&old_request.name, &old.record),
         (&new_request.name, &new.record),

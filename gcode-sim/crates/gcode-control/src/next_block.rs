@@ -4,7 +4,7 @@ use super::flow::CallFrame;
 use super::registers::Registers;
 use super::words::{computed_row, count};
 use gcode_lang::program::code_facts::{AxisWords, Letters, Unsimulated};
-use gcode_lang::program::g_codes::{Effect, OneShot};
+use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot};
 use gcode_lang::program::m_codes::MCodeEffect;
 use gcode_lang::program::modes::Distance;
 use gcode_lang::program::{
@@ -173,20 +173,31 @@ impl Registers {
         !word.comma && matches!(self.evaluate_word(words, word), Ok(Some(_)))
     }
 
+    /// Iterates over the rows of a block's G codes.
+    fn g_code_rows(&self, words: &Words) -> impl Iterator<Item = &'static GCodeRow> {
+        let codes = words.list.iter().filter(|word| word.letter == b'G');
+        codes
+            .filter_map(|word| computed_row(self.evaluate_word(words, word).ok()??, &self.data.settings).ok())
+    }
+
+    /// Returns true if G90 is in force in a block.
+    fn is_absolute(&self, words: &Words) -> bool {
+        let commanded = self.g_code_rows(words).filter_map(|row| match row.effect {
+            Effect::Distance(distance) => Some(distance),
+            _ => None,
+        });
+        commanded.last().unwrap_or(self.state.modal.distance) == Distance::Absolute
+    }
+
     fn collect_commands(&self, words: &Words, commands: &mut BlockCommands) {
         // The letters of G65 and M98 are arguments.
         if words.call().is_some() {
             return;
         }
         let words = self.data.words_not_skipped(words).0;
-        let mut distance = self.state.modal.distance;
+        let is_absolute = self.is_absolute(words);
         let mut axis_words = AxisWords::Move;
-        for word in words.list.iter().filter(|word| word.letter == b'G') {
-            let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
-            let Ok(row) = computed_row(raw, &self.data.settings) else { continue };
-            if let Effect::Distance(new) = row.effect {
-                distance = new;
-            }
+        for row in self.g_code_rows(words) {
             if !matches!(row.facts.axis_words, AxisWords::Move | AxisWords::Hole) {
                 axis_words = row.facts.axis_words;
             }
@@ -195,9 +206,7 @@ impl Registers {
         }
         let is_positioned = match axis_words {
             AxisWords::Position => true,
-            AxisWords::Move | AxisWords::Hole | AxisWords::PositionInAbsolute => {
-                distance == Distance::Absolute
-            }
+            AxisWords::Move | AxisWords::Hole | AxisWords::PositionInAbsolute => is_absolute,
             AxisWords::Tables => {
                 self.collect_written_offsets(words, commands);
                 false
@@ -276,6 +285,13 @@ impl Registers {
             match row.facts.unsimulated {
                 Unsimulated::No => {}
                 Unsimulated::Path(letters) => unsimulated.path_codes.push(text(letters)),
+                // The point on the way depends on a work offset, which may be 0 in a run.
+                Unsimulated::Code(letters)
+                    if matches!(row.effect, Effect::OneShot(code) if code.moves_to_reference())
+                        && self.is_absolute(words) =>
+                {
+                    unsimulated.g_codes.push(format!("G90 {}", text(letters)));
+                }
                 Unsimulated::Code(letters) => unsimulated.g_codes.push(text(letters)),
                 Unsimulated::Writes => unsimulated.writes = true,
             }
@@ -402,7 +418,13 @@ mod tests {
         for (block, code) in path {
             assert_eq!(codes(block).path_codes, [code], "{block}");
         }
-        for (block, code) in [("G25", "G25"), ("G91 G28 Z0", "G28"), ("G30 P3 Z0", "G30 P3")] {
+        for (block, code) in [
+            ("G25", "G25"),
+            ("G91 G28 Z0", "G28"),
+            ("G91 G30 P3 Z0", "G30 P3"),
+            ("G90 G28 Z0", "G90 G28"),
+            ("G53 G0 Z0", "G53"),
+        ] {
             assert_eq!(codes(block).g_codes, [code], "{block}");
         }
         // M19 stops the spindle, and orients it.

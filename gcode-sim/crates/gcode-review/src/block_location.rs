@@ -38,15 +38,3 @@ impl BlockLocation {
         self.calls.iter().rev().chain([self])
     }
 }
-
-/// An executed block that no step names.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ReachedBlock {
-    pub program: String,
-    /// Line in its file, from 1.
-    pub line: u32,
-    pub block: String,
-    /// Number of steps before its first execution.
-    pub steps: usize,
-}

@@ -5,6 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::block_location::BlockLocation;
+use super::kinds;
+use super::program_text::UnexecutedChange;
 use gcode_lang::diag::FindingKind;
 
 /// Entry of one edit: its effects on part and control, the one with the highest precedence first.
@@ -39,6 +41,13 @@ impl From<Effect> for Change {
     fn from(effect: Effect) -> Self {
         let Effect { code, message, old, new } = effect;
         Self { code, message, old, new, anchor: None, also: Vec::new() }
+    }
+}
+
+impl From<UnexecutedChange> for Change {
+    fn from(UnexecutedChange { old, new }: UnexecutedChange) -> Self {
+        let message = "a changed block is not executed: its effect is unknown".to_owned();
+        Effect { code: kinds::UNEXECUTED.code.into(), message, old, new }.into()
     }
 }
 

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::block_location::BlockLocation;
 use super::change::Effect;
 use super::hole_groups::HoleEffect;
-use super::program_text::{ProgramSide, executed, for_each_gap, written};
+use super::other_blocks::sides;
+use super::program_text::{ProgramSide, for_each_gap};
 use super::record::Record;
 
 /// A block that is written differently, or consecutive blocks that are added, removed, moved or rewritten together.
@@ -111,14 +112,10 @@ pub(super) struct Edits<'a> {
 }
 
 impl<'a> Edits<'a> {
-    /// Compares the programs' texts; of a record without texts the blocks that steps and their calls name.
+    /// Compares the programs' texts, or what a file has of them.
     pub(super) fn new(old: &'a Record, new: &'a Record) -> Self {
-        let programs = match (written(old), written(new)) {
-            (Some(was), Some(is)) => [was, is],
-            _ => executed(old, new),
-        };
         let by_name = |all: Vec<ProgramSide<'a>>| all.into_iter().map(|side| (side.name.clone(), side));
-        let [was, mut is] = programs.map(|all| by_name(all).collect::<BTreeMap<_, _>>());
+        let [was, mut is] = sides(old, new).map(|all| by_name(all).collect::<BTreeMap<_, _>>());
         // The edit of a program that one revision alone calls is its call.
         let shared = was.into_iter().filter_map(|(name, before)| Some([before, is.remove(&name)?]));
         Self::of_programs(shared.collect())
@@ -261,7 +258,7 @@ impl<'a> Edits<'a> {
                 block: block.to_owned(),
                 calls: Vec::new(),
             };
-            let blocks = lines.iter().map(|line| (location(line), Some(0)));
+            let blocks = lines.iter().map(|line| (location(line), Some((0, true))));
             ProgramSide::named(String::new(), blocks.collect())
         };
         Self::of_programs(vec![["X1.", "X2."].map(|block| program(lines, block))])

@@ -64,6 +64,7 @@ change_kinds! {
     VARIABLE = "variable", "a common variable has another final value";
     MODE = "mode", "another modal code is active at the end";
     COUNTER = "counter", "the parts counter has another final value";
+    UNEXECUTED = "unexecuted", "a changed block is not executed";
     CASE_NEW = "case-new", "a case has no accepted result";
     CASE_OLDER = "case-older", "accepted by an earlier version that recorded less";
     CASE_REFUSED = "case-refused", "a case can't be used";

@@ -1,6 +1,7 @@
 //! Accepted results of earlier versions, which recorded less of a run: what they lack is named and not compared.
 use std::collections::BTreeMap;
 
+use super::block_list::BlockList;
 use super::kinds;
 use super::modal_conditions::{ModalAspect, ModalSetting};
 use super::record::Record;
@@ -50,6 +51,9 @@ fn reworded(message: &str, was: &str, is: &str) -> Option<String> {
     left.is_empty().then_some(text)
 }
 
+/// G codes that earlier versions did not record.
+const LATE_CODES: [&str; 7] = ["G12", "G13", "G45", "G46", "G47", "G48", "G53"];
+
 impl Record {
     /// Returns true for a record of an earlier version, which lacks the first commands.
     pub fn is_legacy(&self) -> bool {
@@ -62,6 +66,9 @@ impl Record {
         let mut all = Vec::new();
         if self.is_legacy() {
             all.extend(self.unrecorded_legacy_aspects().into_iter().map(str::to_owned));
+        }
+        if self.lacks_other_blocks() {
+            all.push("blocks that make no move, and G53".to_owned());
         }
         all.extend(self.unrecorded_modes(current).map(|mode| format!("{mode} at the end")));
         all
@@ -91,6 +98,12 @@ impl Record {
         let mut record = self.clone();
         if accepted.has_systems_named(FORMER_SYSTEM) && !accepted.has_systems_named(HAAS_SYSTEM) {
             record.rename_haas_systems();
+        }
+        if accepted.lacks_other_blocks() {
+            record.leave_out(|kind| {
+                let StepKind::Silent(UnsimulatedKind::GCode, text) = kind else { return false };
+                LATE_CODES.iter().any(|code| text.split(' ').next() == Some(code))
+            });
         }
         if !accepted.is_legacy() {
             return record;
@@ -128,6 +141,10 @@ impl Record {
         let residual = std::mem::take(&mut self.ending.residual).into_iter();
         self.ending.residual =
             residual.map(|(name, entry)| (name.replace(HAAS_SYSTEM, FORMER_SYSTEM), entry)).collect();
+    }
+
+    fn lacks_other_blocks(&self) -> bool {
+        self.other_blocks.is_none() && matches!(self.blocks, BlockList::Listed(_))
     }
 
     fn lacks_condition(&self, what: ModalAspect) -> bool {

@@ -48,6 +48,7 @@ mod leg;
 mod legacy_records;
 mod links;
 mod modal_conditions;
+mod other_blocks;
 mod pass_changes;
 mod passes;
 mod path;

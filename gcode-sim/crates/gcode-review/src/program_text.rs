@@ -8,9 +8,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::block_list::{BlockList, ExecutedBlocks};
-use super::block_location::{BlockLocation, ReachedBlock};
+use super::block_location::BlockLocation;
 use super::common_sequence::{EqualRun, common_lines};
-use super::record::{Record, Revision};
+use super::other_blocks::sides;
+use super::record::Record;
 
 /// Blocks of both revisions that cause a difference.
 pub(super) type Cause = (BlockLocation, BlockLocation);
@@ -73,16 +74,20 @@ pub(super) struct ProgramSide<'a> {
 enum SideBlocks<'a> {
     /// All blocks of a program of the memory, by its number.
     Text(&'a ExecutedBlocks, usize),
-    /// Some blocks, each with the number of steps before its first execution.
-    Named(Vec<(BlockLocation, Option<usize>)>),
+    /// Blocks of a file.
+    Named(Vec<NamedBlock>),
 }
 
+/// A block with the number of steps before its first execution, and whether it was ever executed as a whole; `None` if it
+/// was not executed.
+pub(super) type NamedBlock = (BlockLocation, Option<(usize, bool)>);
+
 impl<'a> ProgramSide<'a> {
-    pub(super) fn named(name: String, blocks: Vec<(BlockLocation, Option<usize>)>) -> Self {
+    pub(super) fn named(name: String, blocks: Vec<NamedBlock>) -> Self {
         Self { name, blocks: SideBlocks::Named(blocks) }
     }
 
-    fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         match &self.blocks {
             SideBlocks::Text(blocks, program) => blocks.programs[*program].texts.count(),
             SideBlocks::Named(all) => all.len(),
@@ -97,7 +102,7 @@ impl<'a> ProgramSide<'a> {
         }
     }
 
-    fn text(&self, index: usize) -> Cow<'_, str> {
+    pub(super) fn text(&self, index: usize) -> Cow<'_, str> {
         match &self.blocks {
             SideBlocks::Text(blocks, program) => {
                 match blocks.sources.text_in(blocks.programs[*program].texts.span(index)) {
@@ -133,7 +138,7 @@ impl<'a> ProgramSide<'a> {
     pub(super) fn reached(&self, index: usize) -> Option<(usize, bool)> {
         match &self.blocks {
             SideBlocks::Text(blocks, program) => blocks.reached(*program, index),
-            SideBlocks::Named(all) => all[index].1.map(|reached| (reached, true)),
+            SideBlocks::Named(all) => all[index].1,
         }
     }
 }
@@ -147,68 +152,6 @@ pub(super) fn written(record: &Record) -> Option<Vec<ProgramSide<'_>>> {
         ProgramSide { name, blocks: SideBlocks::Text(blocks, number) }
     };
     Some((0..blocks.programs.len()).map(side).collect())
-}
-
-/// Returns the executed blocks of two records, one of them from a file, by program: those that steps and their calls name,
-/// and the others if both records have them.
-pub(super) fn executed<'a>(old: &'a Record, new: &'a Record) -> [Vec<ProgramSide<'a>>; 2] {
-    match (other_blocks(old), other_blocks(new)) {
-        (Some(was), Some(is)) => [named_sides(old, was), named_sides(new, is)],
-        _ => [named_sides(old, Vec::new()), named_sides(new, Vec::new())],
-    }
-}
-
-/// Returns the blocks of steps and these others by program; the main program has no name.
-fn named_sides(record: &Record, others: Vec<ReachedBlock>) -> Vec<ProgramSide<'_>> {
-    let mut found = blocks_of_steps(record);
-    for ReachedBlock { program, line, block, steps } in others {
-        let location = BlockLocation { program: program.clone(), line, block, calls: Vec::new() };
-        found.entry((program, line)).or_insert((location, steps));
-    }
-    let outermost = |block: Cow<'_, BlockLocation>| Some(block.outermost_first().next()?.program.clone());
-    let first = (record.steps.len() > 0).then(|| record.block(0));
-    let main = record.program.clone().or(first.and_then(outermost));
-    let mut programs: BTreeMap<String, Vec<(BlockLocation, Option<usize>)>> = BTreeMap::new();
-    for ((program, _), (block, reached)) in found {
-        let name = if Some(&program) == main.as_ref() { String::new() } else { program };
-        let location = BlockLocation { calls: Vec::new(), ..block };
-        programs.entry(name).or_default().push((location, Some(reached)));
-    }
-    programs.into_iter().map(|(name, blocks)| ProgramSide::named(name, blocks)).collect()
-}
-
-/// Returns the blocks that steps and their calls name, each with the number of steps before it, by program and line.
-fn blocks_of_steps(record: &Record) -> BTreeMap<(String, u32), (BlockLocation, usize)> {
-    let mut found = BTreeMap::new();
-    let mut is_known = vec![false; record.blocks.len()];
-    for number in 0..record.steps.len() {
-        let block_number = record.steps.block_number(number);
-        if std::mem::replace(&mut is_known[block_number], true) {
-            continue;
-        }
-        for block in record.blocks.location(block_number).outermost_first() {
-            found.entry((block.program.clone(), block.line)).or_insert_with(|| (block.clone(), number));
-        }
-    }
-    found
-}
-
-/// Returns the executed blocks with words that no step names; `None` for a file without them.
-pub(super) fn other_blocks(record: &Record) -> Option<Vec<ReachedBlock>> {
-    let Some(programs) = written(record) else { return record.other_blocks.clone() };
-    let of_steps = blocks_of_steps(record);
-    let mut others = Vec::new();
-    for side in &programs {
-        for index in 0..side.count() {
-            let Some((steps, _)) = side.reached(index) else { continue };
-            let (program, line) = side.place(index);
-            if !of_steps.contains_key(&(program.to_owned(), line)) && !words(&side.text(index)).is_empty() {
-                let (program, block) = (program.to_owned(), side.text(index).into_owned());
-                others.push(ReachedBlock { program, line, block, steps });
-            }
-        }
-    }
-    Some(others)
 }
 
 /// The passage between the first and the last difference of two programs: blocks with words, by their indices, old and
@@ -345,10 +288,10 @@ pub struct UnexecutedChange {
     pub new: Option<BlockLocation>,
 }
 
-/// Returns the changed blocks of programs of both revisions that no run executed as a whole, in their order: their
-/// effect is unknown.
-pub fn unexecuted(old: &Revision, new: &Revision) -> Vec<UnexecutedChange> {
-    let [was, is] = [old, new].map(|revision| written(&revision.record).unwrap_or_default());
+/// Returns the changed blocks of programs of both records that no run executed as a whole, in their order: their effect
+/// is unknown. A file of an earlier version has none.
+pub fn unexecuted(old: &Record, new: &Record) -> Vec<UnexecutedChange> {
+    let [was, is] = sides(old, new);
     let has_words = |side: &ProgramSide<'_>, index: usize| !words(&side.text(index)).is_empty();
     let with_words = |side: &ProgramSide<'_>| (0..side.count()).any(|index| has_words(side, index));
     let is_done =
@@ -389,6 +332,7 @@ mod tests {
     use gcode_session::Request;
 
     use super::*;
+    use crate::Revision;
 
     fn side(text: &str) -> ProgramSide<'static> {
         let block = |(line, block): (usize, &str)| BlockLocation {
@@ -397,7 +341,7 @@ mod tests {
             block: block.to_owned(),
             calls: Vec::new(),
         };
-        let blocks = text.lines().enumerate().map(|line| (block(line), Some(line.0)));
+        let blocks = text.lines().enumerate().map(|line| (block(line), Some((line.0, true))));
         ProgramSide::named(String::new(), blocks.collect())
     }
 
@@ -412,7 +356,7 @@ mod tests {
             Revision::of(&request, &mut NoLibrary, None).unwrap()
         };
         let lines = |old: &Revision, new: &Revision| {
-            let all = unexecuted(old, new).into_iter();
+            let all = unexecuted(&old.record, &new.record).into_iter();
             all.map(|change| [change.old, change.new].map(|block| block.map(|block| block.line)))
                 .collect::<Vec<_>>()
         };

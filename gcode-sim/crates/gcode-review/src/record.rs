@@ -7,10 +7,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::block_list::{BlockList, ExecutedBlocks};
-use super::block_location::{BlockLocation, ReachedBlock};
+use super::block_location::BlockLocation;
 use super::first_command::FirstCommand;
 use super::kinds;
 use super::modal_conditions::ModalConditions;
+use super::other_blocks::OtherBlock;
 use super::recorder::{MOST_STEPS, Recorder, RunStart, SharedRecorder};
 use super::step_list::StepList;
 use super::steps::StepKind;
@@ -39,8 +40,8 @@ pub struct Record {
     pub(super) unfinished: BTreeSet<usize>,
     /// Blocks by the numbers that steps, conditions and first commands name.
     pub(super) blocks: BlockList,
-    /// Executed blocks that no step names; of a file that has them.
-    pub(super) other_blocks: Option<Vec<ReachedBlock>>,
+    /// Blocks that no step names, of a file that has them.
+    pub(super) other_blocks: Option<Vec<OtherBlock>>,
     /// Modal conditions by the numbers that steps name.
     pub(super) conditions: Vec<ModalConditions>,
     /// First commands of the program; `None` in accepted results that do not have them.

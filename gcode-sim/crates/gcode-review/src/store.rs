@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::block_list::BlockList;
-use super::block_location::{BlockLocation, ReachedBlock};
+use super::block_location::BlockLocation;
 use super::first_command::FirstCommand;
 use super::legacy_records::present_words;
 use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
-use super::program_text::other_blocks;
+use super::other_blocks::{OtherBlock, other_blocks};
 use super::record::{EndState, Record, Totals};
 use super::recorder::RunStart;
 use super::step_list::{NewStep, StepList};
@@ -36,9 +36,9 @@ pub struct AcceptedFile {
     ending: EndState,
     #[serde(rename = "places")]
     blocks: Vec<BlockLocation>,
-    /// Executed blocks that no step names: an edit of one of them can cause a difference.
+    /// Blocks that no step names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    other_blocks: Option<Vec<ReachedBlock>>,
+    other_blocks: Option<Vec<OtherBlock>>,
     /// The first commands of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     begun: Option<Vec<FirstCommand>>,
@@ -471,29 +471,5 @@ mod tests {
         let found = changes(&accepted, &new, 1e-4);
         let lines = [&found[0].old, &found[0].new].map(|at| at.as_ref().unwrap().line);
         assert_eq!((found.len(), &*found[0].code, lines), (1, "feed", [3, 3]));
-    }
-    /// G52 and an assignment make no step: the file keeps them, because later moves depend on them.
-    #[test]
-    fn an_edited_block_without_a_step_is_the_cause_behind_a_file() {
-        let record = |shift: &str, depth: &str| {
-            let text = format!("O1\nG90 G54 G0 X0 Y0 Z9.\n{shift}\n{depth}\nG1 X10. F9\nZ-#1\nM30\n");
-            let request = Request::new("O1.nc", text.into_bytes(), Machine::default());
-            Revision::of(&request, &mut NoLibrary, None).unwrap().record
-        };
-        let file = record("G52 X1.", "#1=5.").to_json().unwrap();
-        // A file of an earlier version names the blocks that move.
-        let others = file.find("\"other_blocks\"").unwrap()..file.find("\"begun\"").unwrap();
-        let earlier = file.replace(&file[others], "");
-        let shifted = ["G52 X1.", "G52 X2."];
-        for (new, of_edit, of_move) in [
-            (record("G52 X2.", "#1=5."), shifted, ["G1 X10. F9"; 2]),
-            (record("G52 X1.", "#1=6."), ["#1=5.", "#1=6."], ["Z-#1"; 2]),
-        ] {
-            for (file, expected) in [(&file, of_edit), (&earlier, of_move)] {
-                let found = changes(&Record::from_json(file).unwrap(), &new, 1e-4);
-                let blocks = [&found[0].old, &found[0].new].map(|at| at.as_ref().unwrap().block.clone());
-                assert_eq!(blocks, expected);
-            }
-        }
     }
 }

@@ -15,7 +15,7 @@ use gcode_inspect::verify::{self, denied_assumptions};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::Backtrace;
 use gcode_part::{Assumption, NominalPart, Total};
-use gcode_review::{BlockLocation, Change, Record, Revision, changes};
+use gcode_review::{BlockLocation, Change, Record, Revision, changes, unexecuted};
 use gcode_session::files::PROGRAM_ENDINGS;
 use gcode_session::{Criteria, Run};
 
@@ -213,7 +213,9 @@ impl Case {
                     UsageError::new(format!("{}: {error}; {remedy}", path.display()))
                 })?;
                 not_compared = accepted.unrecorded_aspects(&revision.record);
-                let found = changes(&accepted, &revision.record.reduced_to(&accepted), tolerance);
+                let mut found = changes(&accepted, &revision.record.reduced_to(&accepted), tolerance);
+                let unexecuted = unexecuted(&accepted, &revision.record);
+                found.extend(unexecuted.into_iter().map(Change::from));
                 let answer = match (found.is_empty(), not_compared.is_empty()) {
                     (false, _) => CaseAnswer::Changed,
                     (true, false) => CaseAnswer::Older,

@@ -151,7 +151,7 @@ pub enum Unsimulated {
     No,
     /// Corner accuracy or lookahead, with the values of these letters.
     Path(Letters),
-    /// Effect of the code itself, with the values of these letters.
+    /// Effect of the code itself, or of an offset that may be 0 in a run, with the values of these letters.
     Code(Letters),
     /// Possible change of offsets or parameters.
     Writes,
@@ -259,8 +259,13 @@ pub(super) const DECLARED_WAIT: CodeFacts = CodeFacts { lookahead: Blocks, timin
 const ONE_SHOT: CodeFacts = CodeFacts { axis_words: Other, ..MODAL };
 
 /// G45 to G48.
-pub(super) const TOOL_OFFSET: CodeFacts =
-    CodeFacts { without_axes: Nothing, lookahead: Alarms, coordinates: NotTransformed, ..ONE_SHOT };
+pub(super) const TOOL_OFFSET: CodeFacts = CodeFacts {
+    without_axes: Nothing,
+    lookahead: Alarms,
+    coordinates: NotTransformed,
+    unsimulated: Unsimulated::Code(Letters::of(b"D")),
+    ..ONE_SHOT
+};
 pub(super) const DWELL: CodeFacts = CodeFacts {
     words: CodeWords {
         own: Letters::of(b"U"),
@@ -325,8 +330,12 @@ pub(super) const MEASURE: CodeFacts = CodeFacts {
     unsimulated: Unsimulated::Writes,
     ..SKIP
 };
-pub(super) const MACHINE_COORDINATE_SYSTEM: CodeFacts =
-    CodeFacts { without_axes: WithoutAxes::Waits, coordinates: NotTransformed, ..SKIP };
+pub(super) const MACHINE_COORDINATE_SYSTEM: CodeFacts = CodeFacts {
+    without_axes: WithoutAxes::Waits,
+    coordinates: NotTransformed,
+    unsimulated: Unsimulated::Code(NO_LETTERS),
+    ..SKIP
+};
 /// G53.1.
 pub(super) const TOOL_AXIS: CodeFacts = CodeFacts {
     lookahead: Refused,
@@ -357,10 +366,12 @@ pub(super) const CIRCLE_POCKET: CodeFacts = CodeFacts {
     axis_words: PositionInAbsolute,
     words: CodeWords { own: Letters::of(b"L"), ..CodeWords::NONE },
     coordinates: NotScaled,
+    unsimulated: Unsimulated::Code(Letters::of(b"D")),
     ..ONE_SHOT
 };
 /// G70 to G72 of a Haas.
-pub(super) const BOLT_HOLES: CodeFacts = CodeFacts { is_turning_cycle: true, ..CIRCLE_POCKET };
+pub(super) const BOLT_HOLES: CodeFacts =
+    CodeFacts { is_turning_cycle: true, unsimulated: Unsimulated::No, ..CIRCLE_POCKET };
 /// G174 and G184 of a Haas.
 pub(super) const ASKEW_TAPPING: CodeFacts =
     CodeFacts { axis_words: PositionInAbsolute, lookahead: Refused, coordinates: NotScaled, ..ONE_SHOT };
