@@ -72,7 +72,7 @@ mod touch_uncertainty;
 mod travel_shares;
 
 pub use assumption::{Assumption, AssumptionPlace, Total};
-pub use clusters::Clusters;
+pub use clusters::clusters;
 pub use contact::Frustum;
 pub use csv_list::STOPPED;
 pub use entry_planes::{

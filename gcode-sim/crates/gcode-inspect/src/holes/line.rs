@@ -420,7 +420,7 @@ impl CuttingLine {
     }
 
     /// Returns the pass of the line, and the repeated ones that end with it.
-    pub(super) fn finish(mut self) -> (DrillPass, impl Iterator<Item = DrillPass>) {
+    pub(super) fn finish(&mut self) -> (DrillPass, impl Iterator<Item = DrillPass> + use<>) {
         let before = self.end_stroke();
         let last = self.repeated.take().map(|(_, pass)| pass);
         let pass = self.tapped.take().unwrap_or_else(|| self.drill_pass(&self.deepest));

@@ -52,6 +52,7 @@ use crate::holes::HoleExtraction;
 use crate::machine::Machine;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
+use gcode_lang::shares;
 use gcode_lang::source::Span;
 use gcode_part::{Hole, Reference, Stock, Surface};
 use nalgebra::{Point3, Vector3};
@@ -98,13 +99,16 @@ struct HoleInspection<'a> {
     machine: &'a Machine,
 }
 
+/// Returns the program and the line of a block; several threads may ask.
+type Locate<'l> = dyn Fn(Span) -> (String, u32) + Sync + 'l;
+
 /// Compares the holes of a program with the reference. `locate` returns the program and the line of a block.
 pub fn verify(
     extraction: &HoleExtraction,
     reference: &Reference,
     tolerances: Tolerances,
     machine: &Machine,
-    locate: &dyn Fn(Span) -> (String, u32),
+    locate: &Locate<'_>,
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
@@ -157,16 +161,18 @@ pub fn verify(
             false => findings.add(Subject::Motion, finding.clone()),
         }
     }
-    for check in checks::ALL {
-        check(&inspection, &mut findings);
-    }
     let comparison = &inspection.comparison;
-    let rounding = RoundingDeviation::of(comparison, machine);
+    let beside_checks = || {
+        let rounding = RoundingDeviation::of(comparison, machine);
+        (rounding, not_checked::list(&inspection, locate))
+    };
+    let ((rounding, not_checked), ()) = shares::both(comparison.pairs.len(), beside_checks, || {
+        checks::ALL.iter().for_each(|check| check(&inspection, &mut findings));
+    });
     let mut verdict = verdict::verdict(comparison, &rounding, findings.into_list(), locate);
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    let not_checked = not_checked::list(&inspection, locate);
     verdict.words.gaps = not_checked::gaps(&not_checked);
     verdict.not_checked = not_checked.iter().map(NotChecked::sentence).collect();
     verdict.parts().update_summary();

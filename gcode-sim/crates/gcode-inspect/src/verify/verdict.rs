@@ -11,11 +11,12 @@ use super::conclusion::{
 use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
 use super::verdict_finding::{Finding, finding_of, limit_per_kind, origin};
-use super::{Comparison, HoleNeighbours, HolePair, Neighbours};
+use super::{Comparison, HoleNeighbours, HolePair, Locate, Neighbours};
 use crate::findings::{HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::holes::DrilledHole;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::CallChain;
+use gcode_lang::shares;
 use gcode_lang::source::Span;
 use gcode_part::{Assumption, Hole, Origin, Total};
 
@@ -159,10 +160,10 @@ pub(super) fn verdict(
     comparison: &Comparison<'_>,
     rounding: &RoundingDeviation<'_>,
     mut findings: Vec<HoleFinding>,
-    locate: &dyn Fn(Span) -> (String, u32),
+    locate: &Locate<'_>,
 ) -> Verdict {
     findings.sort_by_key(|one| one.subject == Subject::Motion);
-    let holes = hole_verdicts(comparison, rounding, error_codes_by_hole(comparison, &findings), locate);
+    let holes = hole_verdicts(comparison, rounding, &error_codes_by_hole(comparison, &findings), locate);
     let extra = |index: &usize| ExtraHole {
         hole: comparison.actual[*index].hole(locate),
         why: super::checks::extra::explain(comparison, *index),
@@ -232,13 +233,12 @@ fn error_codes_by_hole(comparison: &Comparison<'_>, findings: &[HoleFinding]) ->
 fn hole_verdicts(
     comparison: &Comparison<'_>,
     rounding: &RoundingDeviation<'_>,
-    mut codes_by_hole: Vec<Vec<&'static str>>,
-    locate: &dyn Fn(Span) -> (String, u32),
+    codes_by_hole: &[Vec<&'static str>],
+    locate: &Locate<'_>,
 ) -> Vec<HoleVerdict> {
-    let pairs = comparison.matched().zip(&rounding.position_deviations);
-    let verdict = |((pair, nominal, drilled), rounding): ((&HolePair, &Hole, &DrilledHole), &f64)| {
+    let verdict = |((pair, nominal, drilled), rounding): &((&HolePair, &Hole, &DrilledHole), &f64)| {
         let (deviation, phi) = (&pair.deviation, pair.deviation.zone_diameter());
-        let error_codes = std::mem::take(&mut codes_by_hole[pair.nominal]);
+        let error_codes = codes_by_hole[pair.nominal].clone();
         HoleVerdict {
             id: comparison.id(pair.nominal).to_owned(),
             position_deviation: phi,
@@ -252,7 +252,7 @@ fn hole_verdicts(
             } else {
                 phi - comparison.tolerances.position
             },
-            rounding: *rounding,
+            rounding: **rounding,
             is_through: nominal.through,
             nominal: HoleGeometry {
                 entry: nominal.entry,
@@ -274,7 +274,8 @@ fn hole_verdicts(
             far_side_index: pair.from_far_side,
         }
     };
-    pairs.map(verdict).collect()
+    let pairs: Vec<_> = comparison.matched().zip(&rounding.position_deviations).collect();
+    shares::map(&pairs, verdict)
 }
 
 impl Verdict {

@@ -297,6 +297,8 @@ pub(super) struct Columns {
     pub(super) separator: char,
     /// Unit of all lengths.
     pub(super) unit: Unit,
+    /// `angle` and `radius` are the places of the holes, round the axis x.
+    pub(super) is_round: bool,
 }
 
 impl Columns {
@@ -361,7 +363,7 @@ impl Columns {
         };
         let has_columns = |kind: &FeatureKind| names.iter().any(|name| is_of(name, *kind));
         let feature_kinds = FeatureKind::ALL.into_iter().filter(has_columns).collect();
-        let columns = Self { names, unused, feature_kinds, separator, unit };
+        let columns = Self { names, unused, feature_kinds, separator, unit, is_round };
         let place: &[&str] = if is_round { &["x", "angle", "radius"] } else { &["x", "y"] };
         if let Some(missing) = place.iter().find(|name| !columns.has(name)) {
             let round = if is_round { ": x, angle and radius are the place of a hole round x" } else { "" };
@@ -385,13 +387,8 @@ impl Columns {
 
     /// Returns the length of the unit of a column's numbers, mm; 1 for a column without lengths.
     pub(super) fn length_of_unit(&self, column: &str) -> f64 {
-        let is_length = !matches!(column, "i" | "j" | "k" | "angle") && !column.ends_with(" angle");
-        if is_length && self.unit == Unit::Inch { MM_PER_INCH } else { 1.0 }
-    }
-
-    /// Returns true if `angle` and `radius` are the places of the holes, round the axis x.
-    pub(super) fn is_round(&self) -> bool {
-        is_round(&self.names)
+        let is_length = || !matches!(column, "i" | "j" | "k" | "angle") && !column.ends_with(" angle");
+        if self.unit == Unit::Inch && is_length() { MM_PER_INCH } else { 1.0 }
     }
 
     pub(super) fn place(&self, name: &str) -> Option<usize> {
@@ -405,13 +402,13 @@ impl Columns {
         if self.unit == Unit::Inch {
             facts.push("lengths are in inches".to_owned());
         }
-        if self.is_round() {
+        if self.is_round {
             facts.push("angle counts about x, from z towards y, and the axis is along radius".to_owned());
         }
-        if !self.has("z") && !self.is_round() {
+        if !self.has("z") && !self.is_round {
             facts.push("z is 0: no column z".to_owned());
         }
-        if !self.has("i") && !self.is_round() {
+        if !self.has("i") && !self.is_round {
             facts.push("the axis is 0, 0, 1: no columns i, j, k".to_owned());
         }
         if has_open_depths {
@@ -427,7 +424,7 @@ impl Columns {
                 "the depth of hole {first}{others} is less than that of a feature: the feature counts"
             ));
         }
-        if *has_comma {
+        if has_comma.get() {
             facts.push("commas in numbers are decimal commas".to_owned());
         }
         if !self.unused.is_empty() {

@@ -4,6 +4,8 @@ mod columns;
 #[cfg(test)]
 mod tests;
 
+use std::cell::Cell;
+
 pub(super) use columns::is_csv;
 pub(super) use columns::wrong_header;
 use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator, unit};
@@ -27,8 +29,9 @@ const SAME_PITCH: f64 = 0.001;
 
 /// Returns true if a depth says that the hole goes through, as drawings do.
 fn is_through(depth: &str) -> bool {
-    ["thru", "through", "thru all", "through all", "durchgehend", "通孔"]
-        .contains(&depth.to_lowercase().as_str())
+    depth.starts_with(char::is_alphabetic)
+        && ["thru", "through", "thru all", "through all", "durchgehend", "通孔"]
+            .contains(&depth.to_lowercase().as_str())
 }
 
 /// A list with what its reader assumed.
@@ -87,8 +90,8 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
     let mut cells = Cells {
         columns: &columns,
         record: csv::StringRecord::new(),
-        has_comma: false,
-        has_point: false,
+        has_comma: Cell::default(),
+        has_point: Cell::default(),
         has_hole_deep_drill: false,
         shallow: Vec::new(),
     };
@@ -166,8 +169,8 @@ struct CsvHole {
 struct Cells<'c> {
     columns: &'c Columns,
     record: csv::StringRecord,
-    has_comma: bool,
-    has_point: bool,
+    has_comma: Cell<bool>,
+    has_point: Cell<bool>,
     /// A drill has no depth of its own, and is as deep as its hole.
     has_hole_deep_drill: bool,
     /// Holes whose depth is less than that of a feature.
@@ -180,23 +183,23 @@ impl Cells<'_> {
     }
 
     /// Returns a number; `None` for an empty cell.
-    fn number(&mut self, column: &str) -> Result<Option<f64>, String> {
-        let text = self.text(column).to_owned();
-        if text.is_empty() { Ok(None) } else { self.parse(column, &text).map(Some) }
+    fn number(&self, column: &str) -> Result<Option<f64>, String> {
+        let text = self.text(column);
+        if text.is_empty() { Ok(None) } else { self.parse(column, text).map(Some) }
     }
 
     /// Parses a number, which has a decimal comma where commas are no separators.
-    fn parse(&mut self, column: &str, text: &str) -> Result<f64, String> {
+    fn parse(&self, column: &str, text: &str) -> Result<f64, String> {
         let (has_comma, has_point) = (text.contains(','), text.contains('.'));
         if has_comma && self.columns.separator == ',' {
             return Err(format!(
                 "column '{column}' is '{text}': a number with a point is required, because commas are separators"
             ));
         }
-        self.has_comma |= has_comma;
-        self.has_point |= has_point;
+        self.has_comma.set(self.has_comma.get() || has_comma);
+        self.has_point.set(self.has_point.get() || has_point);
         // One of the two could separate thousands.
-        if self.columns.separator != ',' && self.has_comma && self.has_point {
+        if self.columns.separator != ',' && self.has_comma.get() && self.has_point.get() {
             return Err(format!(
                 "column '{column}' is '{text}': the list has commas and points in its numbers"
             ));
@@ -206,7 +209,7 @@ impl Cells<'_> {
         number.map_err(|_| format!("column '{column}' is '{text}': a number is required"))
     }
 
-    fn required(&mut self, column: &str, default: Option<f64>) -> Result<f64, String> {
+    fn required(&self, column: &str, default: Option<f64>) -> Result<f64, String> {
         match (self.number(column)?, default.filter(|_| !self.columns.has(column))) {
             (Some(number), _) | (None, Some(number)) => Ok(number),
             (None, None) => Err(format!("column '{column}' is empty: a number is required")),
@@ -216,13 +219,14 @@ impl Cells<'_> {
     /// Returns the hole of the line.
     fn hole(&mut self, index: usize) -> Result<CsvHole, String> {
         let (count, expected) = (self.record.len(), self.columns.names.len());
-        let has_more = self.record.iter().skip(expected).any(|cell| !cell.trim().is_empty());
+        let has_more =
+            expected < count && self.record.iter().skip(expected).any(|cell| !cell.trim().is_empty());
         if count < expected || has_more {
             let has_doubt = self.columns.separator == ',' && expected < count;
             let help = if has_doubt { ": decimal commas need semicolons between the columns" } else { "" };
             return Err(format!("{count} columns, the header has {expected}{help}"));
         }
-        let (entry, axis) = if self.columns.is_round() { self.round_place()? } else { self.place()? };
+        let (entry, axis) = if self.columns.is_round { self.round_place()? } else { self.place()? };
         if is_through(self.text("depth")) {
             return Err(format!(
                 "column 'depth' is '{}': the thickness of the part is required, and true in a column 'through'",
@@ -263,7 +267,7 @@ impl Cells<'_> {
     }
 
     /// Returns the entry and the axis of the line.
-    fn place(&mut self) -> Result<([f64; 3], [f64; 3]), String> {
+    fn place(&self) -> Result<([f64; 3], [f64; 3]), String> {
         let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
         let axis =
             [self.required("i", Some(0.0))?, self.required("j", Some(0.0))?, self.required("k", Some(1.0))?];
@@ -271,7 +275,7 @@ impl Cells<'_> {
     }
 
     /// Returns the entry and the axis of a hole at an angle about x, in degrees from z towards y, that points away from x.
-    fn round_place(&mut self) -> Result<([f64; 3], [f64; 3]), String> {
+    fn round_place(&self) -> Result<([f64; 3], [f64; 3]), String> {
         let [x, angle, radius] =
             [self.required("x", None)?, self.required("angle", None)?, self.required("radius", None)?];
         if radius <= 0.0 {
@@ -288,7 +292,7 @@ impl Cells<'_> {
     fn features(&mut self) -> Result<Vec<Feature>, String> {
         let mut cell = self.text("features").to_owned();
         if self.columns.separator != ',' {
-            self.has_comma |= cell.contains(',');
+            self.has_comma.set(self.has_comma.get() || cell.contains(','));
             cell = cell.replace(',', ".");
         }
         let unit = self.columns.length_of_unit("features");
