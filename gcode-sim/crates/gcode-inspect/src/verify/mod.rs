@@ -99,16 +99,13 @@ struct HoleInspection<'a> {
     machine: &'a Machine,
 }
 
-/// Returns the program and the line of a block; several threads may ask.
-type Locate<'l> = dyn Fn(Span) -> (String, u32) + Sync + 'l;
-
 /// Compares the holes of a program with the reference. `locate` returns the program and the line of a block.
 pub fn verify(
     extraction: &HoleExtraction,
     reference: &Reference,
     tolerances: Tolerances,
     machine: &Machine,
-    locate: &Locate<'_>,
+    locate: &(dyn Fn(Span) -> (String, u32) + Sync),
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);

@@ -11,12 +11,11 @@ use super::conclusion::{
 use super::hole_finding::{HoleFinding, Subject};
 use super::rounding::RoundingDeviation;
 use super::verdict_finding::{Finding, finding_of, limit_per_kind, origin};
-use super::{Comparison, HoleNeighbours, HolePair, Locate, Neighbours};
+use super::{Comparison, HoleNeighbours, HolePair, Neighbours};
 use crate::findings::{HOLE_DEPTH, HOLE_NOT_THROUGH};
 use crate::holes::DrilledHole;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::CallChain;
-use gcode_lang::shares;
 use gcode_lang::source::Span;
 use gcode_part::{Assumption, Hole, Origin, Total};
 
@@ -160,10 +159,10 @@ pub(super) fn verdict(
     comparison: &Comparison<'_>,
     rounding: &RoundingDeviation<'_>,
     mut findings: Vec<HoleFinding>,
-    locate: &Locate<'_>,
+    locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
     findings.sort_by_key(|one| one.subject == Subject::Motion);
-    let holes = hole_verdicts(comparison, rounding, &error_codes_by_hole(comparison, &findings), locate);
+    let holes = hole_verdicts(comparison, rounding, error_codes_by_hole(comparison, &findings), locate);
     let extra = |index: &usize| ExtraHole {
         hole: comparison.actual[*index].hole(locate),
         why: super::checks::extra::explain(comparison, *index),
@@ -233,12 +232,13 @@ fn error_codes_by_hole(comparison: &Comparison<'_>, findings: &[HoleFinding]) ->
 fn hole_verdicts(
     comparison: &Comparison<'_>,
     rounding: &RoundingDeviation<'_>,
-    codes_by_hole: &[Vec<&'static str>],
-    locate: &Locate<'_>,
+    mut codes_by_hole: Vec<Vec<&'static str>>,
+    locate: &dyn Fn(Span) -> (String, u32),
 ) -> Vec<HoleVerdict> {
-    let verdict = |((pair, nominal, drilled), rounding): &((&HolePair, &Hole, &DrilledHole), &f64)| {
+    let pairs = comparison.matched().zip(&rounding.position_deviations);
+    let verdict = |((pair, nominal, drilled), rounding): ((&HolePair, &Hole, &DrilledHole), &f64)| {
         let (deviation, phi) = (&pair.deviation, pair.deviation.zone_diameter());
-        let error_codes = codes_by_hole[pair.nominal].clone();
+        let error_codes = std::mem::take(&mut codes_by_hole[pair.nominal]);
         HoleVerdict {
             id: comparison.id(pair.nominal).to_owned(),
             position_deviation: phi,
@@ -252,7 +252,7 @@ fn hole_verdicts(
             } else {
                 phi - comparison.tolerances.position
             },
-            rounding: **rounding,
+            rounding: *rounding,
             is_through: nominal.through,
             nominal: HoleGeometry {
                 entry: nominal.entry,
@@ -274,8 +274,7 @@ fn hole_verdicts(
             far_side_index: pair.from_far_side,
         }
     };
-    let pairs: Vec<_> = comparison.matched().zip(&rounding.position_deviations).collect();
-    shares::map(&pairs, verdict)
+    pairs.map(verdict).collect()
 }
 
 impl Verdict {

@@ -288,6 +288,40 @@ fn is_round(names: &[String]) -> bool {
     has("angle") && !has("y")
 }
 
+/// A column by its name, with its place in a line; `None` if the list lacks it.
+#[derive(Clone, Copy)]
+pub(super) struct Column<'n> {
+    pub(super) name: &'n str,
+    pub(super) place: Option<usize>,
+}
+
+/// The columns of a hole, besides those of its features.
+#[derive(Clone, Copy)]
+pub(super) struct HoleColumns {
+    pub(super) id: Column<'static>,
+    pub(super) x: Column<'static>,
+    pub(super) y: Column<'static>,
+    pub(super) z: Column<'static>,
+    pub(super) i: Column<'static>,
+    pub(super) j: Column<'static>,
+    pub(super) k: Column<'static>,
+    pub(super) angle: Column<'static>,
+    pub(super) radius: Column<'static>,
+    pub(super) depth: Column<'static>,
+    pub(super) diameter: Column<'static>,
+    pub(super) features: Column<'static>,
+    pub(super) through: Column<'static>,
+}
+
+impl HoleColumns {
+    /// Finds them once for all lines.
+    pub(super) fn of(columns: &Columns) -> Self {
+        let [id, x, y, z, i, j, k, angle, radius, depth, diameter, features, through] =
+            COLUMNS.map(|(name, _)| columns.column(name));
+        Self { id, x, y, z, i, j, k, angle, radius, depth, diameter, features, through }
+    }
+}
+
 /// The columns of a list by their names, other names and unused columns among them.
 pub(super) struct Columns {
     pub(super) names: Vec<String>,
@@ -382,7 +416,7 @@ impl Columns {
     }
 
     pub(super) fn has(&self, name: &str) -> bool {
-        self.place(name).is_some()
+        self.column(name).place.is_some()
     }
 
     /// Returns the length of the unit of a column's numbers, mm; 1 for a column without lengths.
@@ -391,8 +425,8 @@ impl Columns {
         if self.unit == Unit::Inch && is_length() { MM_PER_INCH } else { 1.0 }
     }
 
-    pub(super) fn place(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|other| other == name)
+    pub(super) fn column<'n>(&self, name: &'n str) -> Column<'n> {
+        Column { name, place: self.names.iter().position(|other| other == name) }
     }
 
     /// Returns what the reader takes for granted.

@@ -8,7 +8,9 @@ use std::cell::Cell;
 
 pub(super) use columns::is_csv;
 pub(super) use columns::wrong_header;
-use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator, unit};
+use columns::{
+    Column, Columns, FEATURE_COLUMNS, HoleColumns, column_name, example, first_line, separator, unit,
+};
 
 use super::feature::{DepthTo, Feature, FeatureKind};
 use super::hand::Hand;
@@ -89,6 +91,7 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
     };
     let mut cells = Cells {
         columns: &columns,
+        of_hole: HoleColumns::of(&columns),
         record: csv::StringRecord::new(),
         has_comma: Cell::default(),
         has_point: Cell::default(),
@@ -168,6 +171,7 @@ struct CsvHole {
 /// The cells of one line.
 struct Cells<'c> {
     columns: &'c Columns,
+    of_hole: HoleColumns,
     record: csv::StringRecord,
     has_comma: Cell<bool>,
     has_point: Cell<bool>,
@@ -178,14 +182,14 @@ struct Cells<'c> {
 }
 
 impl Cells<'_> {
-    fn text(&self, column: &str) -> &str {
-        self.columns.place(column).and_then(|place| self.record.get(place)).unwrap_or_default().trim()
+    fn text(&self, column: Column<'_>) -> &str {
+        column.place.and_then(|place| self.record.get(place)).unwrap_or_default().trim()
     }
 
     /// Returns a number; `None` for an empty cell.
-    fn number(&self, column: &str) -> Result<Option<f64>, String> {
+    fn number(&self, column: Column<'_>) -> Result<Option<f64>, String> {
         let text = self.text(column);
-        if text.is_empty() { Ok(None) } else { self.parse(column, text).map(Some) }
+        if text.is_empty() { Ok(None) } else { self.parse(column.name, text).map(Some) }
     }
 
     /// Parses a number, which has a decimal comma where commas are no separators.
@@ -209,10 +213,10 @@ impl Cells<'_> {
         number.map_err(|_| format!("column '{column}' is '{text}': a number is required"))
     }
 
-    fn required(&self, column: &str, default: Option<f64>) -> Result<f64, String> {
-        match (self.number(column)?, default.filter(|_| !self.columns.has(column))) {
+    fn required(&self, column: Column<'_>, default: Option<f64>) -> Result<f64, String> {
+        match (self.number(column)?, default.filter(|_| column.place.is_none())) {
             (Some(number), _) | (None, Some(number)) => Ok(number),
-            (None, None) => Err(format!("column '{column}' is empty: a number is required")),
+            (None, None) => Err(format!("column '{}' is empty: a number is required", column.name)),
         }
     }
 
@@ -227,26 +231,27 @@ impl Cells<'_> {
             return Err(format!("{count} columns, the header has {expected}{help}"));
         }
         let (entry, axis) = if self.columns.is_round { self.round_place()? } else { self.place()? };
-        if is_through(self.text("depth")) {
+        let HoleColumns { id, depth, diameter, through, .. } = self.of_hole;
+        if is_through(self.text(depth)) {
             return Err(format!(
                 "column 'depth' is '{}': the thickness of the part is required, and true in a column 'through'",
-                self.text("depth")
+                self.text(depth)
             ));
         }
         let mut hole = Hole {
-            id: Some(self.text("id").to_owned()).filter(|id| !id.is_empty()),
+            id: Some(self.text(id).to_owned()).filter(|id| !id.is_empty()),
             entry,
             axis,
-            diameter: self.number("diameter")?,
+            diameter: self.number(diameter)?,
             features: self.features()?,
-            through: match self.text("through").to_lowercase().as_str() {
+            through: match self.text(through).to_lowercase().as_str() {
                 "" | "false" | "no" | "n" | "0" | "-" | "nein" => false,
                 "true" | "yes" | "y" | "1" | "x" | "ja" | "j" | "thru" | "through" | "durch" => true,
                 other => return Err(format!("column 'through' is '{other}': yes or no is required")),
             },
             ..Hole::default()
         };
-        let depth = self.number("depth")?;
+        let depth = self.number(depth)?;
         if let Some(depth) = depth.filter(|_| !hole.through)
             && hole.features.iter().any(|feature| exceeds(feature.bottom() - depth, 0.0))
         {
@@ -268,20 +273,21 @@ impl Cells<'_> {
 
     /// Returns the entry and the axis of the line.
     fn place(&self) -> Result<([f64; 3], [f64; 3]), String> {
-        let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
-        let axis =
-            [self.required("i", Some(0.0))?, self.required("j", Some(0.0))?, self.required("k", Some(1.0))?];
+        let HoleColumns { x, y, z, i, j, k, .. } = self.of_hole;
+        let entry = [self.required(x, None)?, self.required(y, None)?, self.required(z, Some(0.0))?];
+        let axis = [self.required(i, Some(0.0))?, self.required(j, Some(0.0))?, self.required(k, Some(1.0))?];
         Ok((entry, axis))
     }
 
     /// Returns the entry and the axis of a hole at an angle about x, in degrees from z towards y, that points away from x.
     fn round_place(&self) -> Result<([f64; 3], [f64; 3]), String> {
-        let [x, angle, radius] =
-            [self.required("x", None)?, self.required("angle", None)?, self.required("radius", None)?];
+        let HoleColumns { x, angle, radius: radius_column, .. } = self.of_hole;
+        let [x, angle, radius] = [x, angle, radius_column].map(|column| self.required(column, None));
+        let (x, angle, radius) = (x?, angle?, radius?);
         if radius <= 0.0 {
             return Err(format!(
                 "column 'radius' is '{}': a number above 0 is required",
-                self.text("radius")
+                self.text(radius_column)
             ));
         }
         let (sine, cosine) = (Deg(angle).sin(), Deg(angle).cos());
@@ -290,7 +296,7 @@ impl Cells<'_> {
 
     /// Returns the features of the line: those of the column `features`, then those with columns of their own.
     fn features(&mut self) -> Result<Vec<Feature>, String> {
-        let mut cell = self.text("features").to_owned();
+        let mut cell = self.text(self.of_hole.features).to_owned();
         if self.columns.separator != ',' {
             self.has_comma.set(self.has_comma.get() || cell.contains(','));
             cell = cell.replace(',', ".");
@@ -313,11 +319,14 @@ impl Cells<'_> {
     fn feature(&mut self, kind: FeatureKind) -> Result<Option<Feature>, String> {
         let name = kind.name();
         let own = |value: &str| format!("{name} {value}");
-        let text = self.text(name).to_lowercase();
+        let columns = self.columns;
+        let text = self.text(columns.column(name)).to_lowercase();
         if text.is_empty() {
-            return match FEATURE_COLUMNS.map(own).into_iter().find(|column| !self.text(column).is_empty()) {
+            let given = |column: &String| !self.text(columns.column(column)).is_empty();
+            return match FEATURE_COLUMNS.map(own).into_iter().find(given) {
                 Some(column) => {
-                    Err(format!("column '{column}' is '{}': '{name}' is empty", self.text(&column)))
+                    let text = self.text(columns.column(&column));
+                    Err(format!("column '{column}' is '{text}': '{name}' is empty"))
                 }
                 None => Ok(None),
             };
@@ -330,7 +339,7 @@ impl Cells<'_> {
                 .map_err(|message| format!("{message}, or a thread such as M8, M8x1, 1/4-20 or G1/4"))?,
             (None, _) => self.parse(name, &text)?,
         };
-        let own_pitch = self.number(&own("pitch"))?;
+        let own_pitch = self.number(columns.column(&own("pitch")))?;
         if let (Some(own), Some(thread)) = (own_pitch, thread)
             && exceeds((own - thread.pitch).abs(), SAME_PITCH)
         {
@@ -340,12 +349,12 @@ impl Cells<'_> {
             ));
         }
         let depth = own("depth");
-        let written = self.text(name).to_owned();
-        let of_hole = if kind == FeatureKind::Drill { self.number("depth")? } else { None };
-        let own_depth = self.number(&depth)?;
+        let written = self.text(columns.column(name)).to_owned();
+        let of_hole = if kind == FeatureKind::Drill { self.number(self.of_hole.depth)? } else { None };
+        let own_depth = self.number(columns.column(&depth))?;
         self.has_hole_deep_drill |= own_depth.is_none() && of_hole.is_some();
         let is_deep = own_depth.or(of_hole).is_some() || kind == FeatureKind::Countersink;
-        if !is_deep && self.columns.has(&depth) {
+        if !is_deep && columns.has(&depth) {
             return Err(format!("column '{depth}' is empty: {name} {written} needs a depth of its own"));
         }
         if !is_deep {
@@ -356,14 +365,14 @@ impl Cells<'_> {
         let feature = Feature {
             diameter,
             depth: own_depth.or(of_hole),
-            angle: self.number(&own("angle"))?,
+            angle: self.number(columns.column(&own("angle")))?,
             pitch: own_pitch.or(thread.map(|thread| thread.pitch)),
-            to: match self.text(&to) {
+            to: match self.text(columns.column(&to)) {
                 "" | "point" => DepthTo::Point,
                 "full" => DepthTo::Full,
                 other => return Err(format!("column '{to}' is '{other}': full or point is required")),
             },
-            hand: match self.text(&hand) {
+            hand: match self.text(columns.column(&hand)) {
                 "" => thread.and_then(|thread| thread.hand).unwrap_or_default(),
                 "right" => Hand::Right,
                 "left" => Hand::Left,
