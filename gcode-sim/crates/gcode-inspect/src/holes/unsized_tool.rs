@@ -261,6 +261,7 @@ impl HoleExtractor<'_> {
 
     /// Returns the depth of a tip on the axis of a hole whose diameter the reference doesn't have, mm; `None` beside all of them.
     fn depth_in_open_hole(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<f64> {
+        self.metal.holes.as_ref().filter(|holes| holes.has_open())?;
         self.depth_on_axis(tip, axis, |collar| !collar.has_diameter)
     }
 
