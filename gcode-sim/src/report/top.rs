@@ -16,6 +16,7 @@ use gcode_part::Feature;
 use gcode_part::FeatureKind;
 use gcode_part::Hole;
 use gcode_part::Pattern;
+use gcode_part::PointTree;
 use gcode_part::Reference;
 use gcode_part::Surface;
 use gcode_part::Total;
@@ -170,16 +171,28 @@ pub(super) fn blank_hole(id: String, status: HoleStatus) -> DrawnHole {
 /// Distance below which two strokes make one hole, and a stroke is one of a nominal hole, mm.
 const SAME_PLACE: f64 = 0.5;
 
+/// Length along a stroke within which every hole is, mm.
+const ALL_HEIGHTS: f64 = 1e6;
+
 /// Returns the holes that drilling cycles make beside the stated part, as in other vises: nothing judges them.
 fn holes_beside(simulation: &Simulation, reference: &Reference, machine: &Machine) -> Vec<DrawnHole> {
     let is_on = |stroke: &AirStroke, entry: [f64; 3]| {
         (Point3::from(entry) - stroke.start).cross(&stroke.out).norm() < SAME_PLACE
     };
+    let entries = PointTree::new(reference.holes.iter().map(|hole| Point3::from(hole.entry)));
+    let is_listed = |stroke: &AirStroke| {
+        let ends = [stroke.out, -stroke.out].map(|out| stroke.start + out * ALL_HEIGHTS);
+        let margin = Vector3::repeat(SAME_PLACE);
+        let (low, high) = (ends[0].inf(&ends[1]) - margin, ends[0].sup(&ends[1]) + margin);
+        let mut is_listed = false;
+        entries.in_box(&low, &high, &mut |hole| is_listed |= is_on(stroke, reference.holes[hole].entry));
+        is_listed
+    };
     let diameter =
         |number: Option<u32>| machine.tools.iter().find(|tool| Some(tool.number) == number)?.diameter;
     let mut made: Vec<(Hole, Span)> = Vec::new();
     for stroke in &simulation.extracted.air_strokes {
-        if reference.holes.iter().any(|hole| is_on(stroke, hole.entry)) {
+        if is_listed(stroke) {
             continue;
         }
         let (own, depth) = (diameter(stroke.tool), (stroke.start - stroke.bottom).norm());

@@ -1,4 +1,5 @@
 //! Work on the blocks of a long program, or on the holes of a long list, shared by the cores.
+use std::panic::resume_unwind;
 use std::thread;
 
 /// Number of blocks or holes from which threads share a work: fewer are done sooner than a thread starts.
@@ -25,6 +26,18 @@ pub fn work_on<T: Send>(shares: impl IntoIterator<Item = T>, work: impl Fn(T) + 
     });
 }
 
+/// Returns the results of two works on this many blocks or holes, which are done at the same time if they are many.
+pub fn both<A: Send, B>(count: usize, one: impl FnOnce() -> A + Send, other: impl FnOnce() -> B) -> (A, B) {
+    if count <= share_length(count) {
+        return (one(), other());
+    }
+    thread::scope(|scope| {
+        let one = scope.spawn(one);
+        let other = other();
+        (one.join().unwrap_or_else(|panic| resume_unwind(panic)), other)
+    })
+}
+
 /// Returns the results of each item, in the order of the items.
 pub fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     map_shares(items, |share| share.iter().map(&work).collect())
@@ -38,7 +51,10 @@ pub fn map_shares<T: Sync, R: Send>(items: &[T], work: impl Fn(&[T]) -> Vec<R> +
     }
     let mut shares: Vec<(&[T], Vec<R>)> = items.chunks(length).map(|share| (share, Vec::new())).collect();
     work_on(&mut shares, |(share, results)| *results = work(share));
-    shares.into_iter().flat_map(|(_, results)| results).collect()
+    let mut results = shares.into_iter().map(|(_, results)| results);
+    let mut all = results.next().unwrap_or_default();
+    results.for_each(|mut share| all.append(&mut share));
+    all
 }
 
 #[cfg(test)]

@@ -4,18 +4,40 @@
 //! already one cluster is skipped, so a million coincident points cost O(n log n).
 use std::ops::Range;
 
+use gcode_lang::shares;
 use nalgebra::Point3;
 
 use crate::local_search::LocalSearch;
 use crate::point_tree::{LEAF_SIZE, Node, PointTree};
 
+/// Returns for each point of a tree the lowest index in its cluster: a point is joined with each one in its box that `belongs` to it.
+pub fn clusters(
+    tree: &PointTree,
+    box_about: impl Fn(usize) -> [Point3<f64>; 2] + Sync,
+    belongs: impl Fn(usize, usize) -> bool,
+) -> Vec<usize> {
+    let all: Vec<usize> = (0..tree.nodes().len()).collect();
+    // Most points are alone in their boxes.
+    let crowded = shares::map_shares(&all, |share| {
+        let mut search = LocalSearch::default();
+        let crowded = |index: &usize| {
+            let [low, high] = box_about(*index);
+            let is_other = |node: &Node| node.index as usize != *index && node.is_in(&low, &high);
+            let about = search.nodes_about(tree, &low, &high);
+            about.is_none_or(|nodes| nodes.iter().any(is_other)).then_some((*index, low, high))
+        };
+        share.iter().filter_map(crowded).collect()
+    });
+    let mut clusters = Clusters::new(tree.nodes());
+    for (index, low, high) in crowded {
+        clusters.visit(0..all.len(), index as u32, &low, &high, &|other| belongs(index, other));
+    }
+    clusters.representatives()
+}
+
 /// The clusters of the points of a tree.
-#[derive(Debug)]
-pub struct Clusters<'t> {
-    tree: &'t PointTree,
+struct Clusters<'t> {
     nodes: &'t [Node],
-    /// Most points are alone in their boxes.
-    search: LocalSearch,
     /// For each point, itself or a point of its cluster with a lower index.
     parents: Vec<u32>,
     /// For each node, in the order of the tree: whether all points of its subtree are one cluster.
@@ -24,35 +46,13 @@ pub struct Clusters<'t> {
 
 impl<'t> Clusters<'t> {
     /// Returns the clusters of a tree in which each point is a cluster of its own.
-    pub fn new(tree: &'t PointTree) -> Self {
-        let nodes = tree.nodes();
+    fn new(nodes: &'t [Node]) -> Self {
         let points = nodes.len();
-        Self {
-            tree,
-            nodes,
-            search: LocalSearch::default(),
-            parents: (0..points as u32).collect(),
-            is_uniform: vec![false; points],
-        }
-    }
-
-    /// Joins point `index` with each point of the box from `low` to `high` that satisfies `belongs`.
-    pub fn join(
-        &mut self,
-        index: usize,
-        low: &Point3<f64>,
-        high: &Point3<f64>,
-        belongs: &impl Fn(usize) -> bool,
-    ) {
-        let about = self.search.nodes_about(self.tree, low, high);
-        let is_other = |node: &Node| node.index as usize != index && node.is_in(low, high);
-        if about.is_none_or(|nodes| nodes.iter().any(is_other)) {
-            self.visit(0..self.nodes.len(), index as u32, low, high, belongs);
-        }
+        Self { nodes, parents: (0..points as u32).collect(), is_uniform: vec![false; points] }
     }
 
     /// Returns for each point the lowest index in its cluster.
-    pub fn representatives(mut self) -> Vec<usize> {
+    fn representatives(mut self) -> Vec<usize> {
         (0..self.nodes.len()).map(|index| self.root(index as u32) as usize).collect()
     }
 
@@ -150,16 +150,25 @@ mod tests {
     fn a_hundred_thousand_points_on_one_spot_are_joined_at_once() {
         let spot = Point3::new(1.0, 2.0, 3.0);
         let tree = PointTree::new(std::iter::repeat_n(spot, 100_000));
-        let mut groups = Clusters::new(&tree);
         let asked = std::cell::Cell::new(0u32);
-        for index in 0..100_000 {
-            groups.join(index, &spot, &spot, &|_| {
-                asked.set(asked.get() + 1);
-                true
-            });
-        }
-        assert!(groups.representatives().iter().all(|first| *first == 0));
+        let belongs = |_, _| {
+            asked.set(asked.get() + 1);
+            true
+        };
+        let groups = clusters(&tree, |_| [spot, spot], belongs);
+        assert!(groups.iter().all(|first| *first == 0));
         assert!(asked.get() < 200_000, "{} pairs", asked.get());
+    }
+
+    /// Three points 1 mm apart, the next three 5 mm farther. Threads share 6,001 points, and no share begins with one of three.
+    #[test]
+    fn clusters_of_many_points_are_those_of_one_thread() {
+        let place = |index: usize| (index + 2 * (index / 3) * 2) as f64;
+        let points: Vec<_> = (0..6001).map(|index| Point3::new(place(index), 0.0, 0.0)).collect();
+        let reach = nalgebra::Vector3::repeat(1.0);
+        let tree = PointTree::new(points.iter().copied());
+        let groups = clusters(&tree, |index| [points[index] - reach, points[index] + reach], |_, _| true);
+        assert!(groups.iter().enumerate().all(|(index, first)| *first == index - index % 3));
     }
 
     proptest! {
@@ -172,12 +181,9 @@ mod tests {
                 points.iter().map(|p| Point3::new(f64::from(p.0), f64::from(p.1), f64::from(p.2))).collect();
             let belongs = |i: usize, j: usize| kinds[i] == kinds[j];
             let tree = PointTree::new(points.iter().copied());
-            let mut groups = Clusters::new(&tree);
-            for (index, point) in points.iter().enumerate() {
-                let reach = nalgebra::Vector3::repeat(1.0);
-                groups.join(index, &(point - reach), &(point + reach), &|other| belongs(index, other));
-            }
-            prop_assert_eq!(groups.representatives(), linked(&points, 1.0, &belongs));
+            let reach = nalgebra::Vector3::repeat(1.0);
+            let groups = clusters(&tree, |index| [points[index] - reach, points[index] + reach], belongs);
+            prop_assert_eq!(groups, linked(&points, 1.0, &belongs));
         }
     }
 }

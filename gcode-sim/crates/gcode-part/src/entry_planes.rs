@@ -53,6 +53,8 @@ impl From<Option<Surface>> for Metal {
 pub struct EntryPlanes {
     collars: Vec<Collar>,
     ids: Vec<String>,
+    /// The reference doesn't state the diameter of some hole.
+    has_open: bool,
     /// Middles of the collars.
     pub(super) middles: PointTree,
     /// Largest distance of a collar's point from its middle.
@@ -115,6 +117,7 @@ impl EntryPlanes {
             room: collars.iter().map(|collar| collar.max_depth() - collar.rod.length).fold(WALL, f64::max),
             extent: collars.iter().map(extent).fold(Vector3::zeros(), |a, b| a.sup(&b)),
             top: top(&collars),
+            has_open: collars.iter().any(|collar| !collar.has_diameter),
             ids: holes.iter().map(|hole| hole.id.clone().unwrap_or_default()).collect(),
             collars,
         }
@@ -128,6 +131,11 @@ impl EntryPlanes {
     /// Returns true without a hole.
     pub fn is_empty(&self) -> bool {
         self.collars.is_empty()
+    }
+
+    /// Returns true if the reference doesn't state the diameter of some hole.
+    pub fn has_open(&self) -> bool {
+        self.has_open
     }
 
     /// Returns the metal round a hole.

@@ -72,7 +72,7 @@ mod touch_uncertainty;
 mod travel_shares;
 
 pub use assumption::{Assumption, AssumptionPlace, Total};
-pub use clusters::Clusters;
+pub use clusters::clusters;
 pub use contact::Frustum;
 pub use csv_list::STOPPED;
 pub use entry_planes::{
@@ -89,7 +89,7 @@ pub use limits::{NOISE, exceeds};
 pub use local_search::LocalSearch;
 pub use nominal::NominalPart;
 pub use nominal_axes::{NominalAxes, NominalAxis, NominalThread};
-pub use overlap::overlaps;
+pub use overlap::{Overlap, overlaps};
 pub use part_solid::PartSolid;
 pub use pattern::{Pattern, azimuth};
 pub use point_tree::PointTree;

@@ -55,7 +55,8 @@ pub fn motion_reference(
     }
     let reference = Reference::without_holes();
     let simulation = simulate(request, library, request.metal(&reference))?;
-    let (tolerances, locate) = (Tolerances::of(&reference, None), |span| simulation.run.locate(span));
+    let (tolerances, memory) = (Tolerances::of(&reference, None), simulation.run.control.memory());
+    let locate = |span| memory.locate(span);
     let verdict = verify(&simulation.extracted, &reference, tolerances, &request.machine, &locate);
     Ok(verdict.extra.is_empty().then_some(reference))
 }

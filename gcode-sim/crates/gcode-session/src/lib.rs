@@ -280,7 +280,8 @@ impl Simulation {
 
     /// Verifies the holes against a reference, and completes the verdict by the request of the run.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, request: &Request) -> Verdict {
-        let (machine, locate) = (&request.machine, |span| self.run.locate(span));
+        let (machine, memory) = (&request.machine, self.run.control.memory());
+        let locate = |span| memory.locate(span);
         let judge = || verify(&self.extracted, reference, tolerances, machine, &locate);
         let (mut verdict, dependencies) = assumptions::beside(self, request, judge);
         let likely = causes::of_holes(self, &mut verdict, machine);
@@ -309,12 +310,7 @@ impl Run {
 
     /// Returns program and line of a block: `O8101`, 31.
     pub fn locate(&self, span: Span) -> (String, u32) {
-        let memory = self.control.memory();
-        let line = memory.sources().line_column(span).line;
-        match memory.program_at(span) {
-            Some(program) => (program.label(), line),
-            None => (memory.sources().get(span.source).name.clone(), line),
-        }
+        self.control.memory().locate(span)
     }
 
     /// Returns the notes, then the finding that ended the run before its end.

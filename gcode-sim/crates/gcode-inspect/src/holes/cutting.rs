@@ -1,4 +1,6 @@
 //! Cutting conditions: what is in force while a tool cuts, by block, for comparison with the reference.
+use std::collections::BTreeMap;
+
 use super::clamping::ClampState;
 use super::offset_origin::OffsetOrigin;
 use super::per_block::PerBlock;
@@ -107,9 +109,16 @@ pub(super) struct RecordedCut<'c> {
     pub offset_origin: Option<&'c OffsetOrigin>,
 }
 
-/// Conditions by block and state, in order of first occurrence.
+/// State, tapping and range of feeds of a cut.
+type CutKey = ([u64; 4], bool, [u64; 2]);
+
+/// Conditions by block and key, in order of first occurrence.
 #[derive(Debug, Default)]
-pub(super) struct CutConditionsByBlock(PerBlock<([u64; 4], bool, [u64; 2]), CutConditions>);
+pub(super) struct CutConditionsByBlock {
+    /// A program has few keys, and many blocks.
+    key_numbers: BTreeMap<CutKey, usize>,
+    blocks: PerBlock<usize, CutConditions>,
+}
 
 impl CutConditionsByBlock {
     pub(super) fn add(&mut self, cut: RecordedCut<'_>) {
@@ -117,7 +126,9 @@ impl CutConditionsByBlock {
         let (feed_range, extremes) = feeds;
         let CuttingState { tool, compensation, spindle_direction, speed, .. } = *state;
         let key = (state.key(), is_tapping, feed_range.map(|feed| feed.0.to_bits()));
-        let (_, entry) = self.0.count(backtrace.block, key, || CutConditions {
+        let next = self.key_numbers.len();
+        let number = *self.key_numbers.entry(key).or_insert(next);
+        let (_, entry) = self.blocks.count(backtrace.block, number, || CutConditions {
             backtrace: backtrace.clone(),
             tool,
             compensation,
@@ -140,6 +151,6 @@ impl CutConditionsByBlock {
     }
 
     pub(super) fn finish(self) -> Vec<CutConditions> {
-        self.0.into_entries().map(|entry| CutConditions { count: entry.count, ..entry.value }).collect()
+        self.blocks.into_entries().map(|entry| CutConditions { count: entry.count, ..entry.value }).collect()
     }
 }

@@ -8,7 +8,7 @@ use super::swallowed::swallowing_passes;
 use crate::machine::{Machine, ToolKind};
 use gcode_lang::motion::{Backtrace, Position, UnknownAxes};
 use gcode_lang::source::Span;
-use gcode_part::{Clusters, Hole, NominalAxes, Origin, PARALLEL_COSINE, PointTree};
+use gcode_part::{Hole, NominalAxes, Origin, PARALLEL_COSINE, PointTree, clusters};
 
 /// Largest distance between the lines of two passes of one hole, mm.
 pub(crate) const MAX_LINE_OFFSET: f64 = 0.5;
@@ -156,15 +156,14 @@ pub(super) fn group_holes(
     let place = |index: usize| (hole_of(index), if has_steps { step_of(index) } else { 0 });
     let first: Vec<(usize, usize)> = (0..passes.len()).map(place).collect();
     let is_aside = |index: usize| first[index].0 != on_line[index];
-    // A hole that is widened later is begun by its first pass.
-    let mut begun: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    let numbered = first.iter().enumerate();
-    let begun: Vec<usize> = numbered.map(|(index, place)| *begun.entry(*place).or_insert(index)).collect();
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // The sort is stable: passes of one line keep their order.
-    order.sort_by_key(|index| begun[*index]);
+    order.sort_by_key(|index| first[*index]);
+    let mut lines: Vec<&[usize]> = order.chunk_by(|one, other| first[*one] == first[*other]).collect();
+    // A hole that is widened later is begun by its first pass.
+    lines.sort_unstable_by_key(|line| line[0]);
     let mut holes = Vec::with_capacity(passes.len());
-    for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
+    for line in lines {
         let passes_of_hole = line.iter().map(|index| (&passes[*index], is_aside(*index)));
         push_holes(passes_of_hole, passes[line[0]].axis, machine, &mut holes);
     }
@@ -178,7 +177,6 @@ fn first_on_same_line(
     machine: &Machine,
     nominal_axes: &NominalAxes,
 ) -> Vec<usize> {
-    let mut groups = Clusters::new(tree);
     // Half way to the next nominal hole a pass belongs to that one.
     let half_way = |pass: &DrillPass| {
         let PassCut { start, bottom, .. } = &pass.cut;
@@ -187,22 +185,22 @@ fn first_on_same_line(
     };
     let limits: Option<Vec<f64>> = nominal_axes.has_close().then(|| passes.iter().map(half_way).collect());
     let limit_of = |index: usize| limits.as_ref().map_or(MAX_LINE_OFFSET, |limits| limits[index]);
-    for (index, pass) in passes.iter().enumerate() {
-        let limit = limit_of(index);
+    let box_about = |index: usize| {
+        let (pass, limit) = (&passes[index], limit_of(index));
         let margin = Vector3::repeat(limit);
         // What begins in a nominal hole joins what is cut above it there.
         let entered = nominal_axes.entered([&pass.cut.start, &pass.cut.bottom], &pass.axis, limit);
         let top = entered.unwrap_or(pass.cut.start);
         let low = pass.cut.start.inf(&pass.cut.bottom).inf(&top) - margin;
-        let high = pass.cut.start.sup(&pass.cut.bottom).sup(&top) + margin;
-        groups.join(index, &low, &high, &|other| {
-            let limit = limit.min(limit_of(other));
-            let other = &passes[other];
-            pass.axis.dot(&other.axis) >= PARALLEL_COSINE
-                && pass.offset_of(other) <= limit.min(max_offset(pass, other, machine))
-        });
-    }
-    groups.representatives()
+        [low, pass.cut.start.sup(&pass.cut.bottom).sup(&top) + margin]
+    };
+    let belongs = |index: usize, other: usize| {
+        let limit = limit_of(index).min(limit_of(other));
+        let (pass, other) = (&passes[index], &passes[other]);
+        pass.axis.dot(&other.axis) >= PARALLEL_COSINE
+            && pass.offset_of(other) <= limit.min(max_offset(pass, other, machine))
+    };
+    clusters(tree, box_about, belongs)
 }
 
 /// Returns the largest distance between the axes of two passes of one hole, mm: a tool that drills beside its own hole makes

@@ -72,9 +72,9 @@ pub(super) struct CuttingLine {
     /// Current stroke.
     stroke: Option<PeckStroke>,
     /// Pass that repeats the line, as far as it has come, and its depth.
-    repeated: Option<(f64, DrillPass)>,
+    repeated: Option<(f64, Box<DrillPass>)>,
     /// Last stroke of a tap, with those before it that are like it.
-    tapped: Option<DrillPass>,
+    tapped: Option<Box<DrillPass>>,
     /// Depth by which rapids have moved the tool along the line: a tap turns in feeds alone.
     rapid_depth: f64,
     /// Current depth of the tool.
@@ -335,7 +335,7 @@ impl CuttingLine {
         to: &Point3<f64>,
         backtrace: Backtrace,
         at: &Position,
-    ) -> Option<DrillPass> {
+    ) -> Option<Box<DrillPass>> {
         let depth = self.depth_of(to);
         if depth <= self.depth {
             return self.retract_to(depth);
@@ -363,7 +363,7 @@ impl CuttingLine {
     }
 
     /// Applies a rapid along the line, which deepens the hole if it `cuts`. Returns a repeated pass that ends with it.
-    pub(super) fn rapid_to(&mut self, to: &Point3<f64>, cuts: bool) -> Option<DrillPass> {
+    pub(super) fn rapid_to(&mut self, to: &Point3<f64>, cuts: bool) -> Option<Box<DrillPass>> {
         let depth = self.depth_of(to);
         let by = depth - self.depth;
         let again = if by <= 0.0 { self.retract_to(depth) } else { self.end_stroke() };
@@ -375,7 +375,7 @@ impl CuttingLine {
         again
     }
 
-    fn retract_to(&mut self, depth: f64) -> Option<DrillPass> {
+    fn retract_to(&mut self, depth: f64) -> Option<Box<DrillPass>> {
         let again = if depth < self.depth { self.end_stroke() } else { None };
         self.depth = depth;
         again
@@ -384,7 +384,7 @@ impl CuttingLine {
     /// Ends the current stroke; returns a repeated pass if the stroke begins a further one. A pass that repeats the line begins
     /// with a stroke from its start that cuts no deeper, and goes on with strokes that are deeper than its last. A stroke of a tap
     /// is a pass of its own, unless it goes on with the one before.
-    fn end_stroke(&mut self) -> Option<DrillPass> {
+    fn end_stroke(&mut self) -> Option<Box<DrillPass>> {
         let PeckStroke { from_depth, mut end } = self.stroke.take()?;
         end.rise = if self.is_tapping { -self.rapid_depth } else { (-from_depth).max(0.0) };
         end.rigid_run = self.cutting_state.rigid_run;
@@ -395,7 +395,7 @@ impl CuttingLine {
             self.deepest = end.clone();
         }
         if self.is_tapping {
-            let pass = self.drill_pass(&end);
+            let pass = Box::new(self.drill_pass(&end));
             let goes_on = |before: &DrillPass| is_deeper && pass.goes_on_tapping(before, self.half_increment);
             let before = self.tapped.take().filter(|before| !goes_on(before));
             self.tapped = Some(pass);
@@ -409,22 +409,22 @@ impl CuttingLine {
         match &mut self.repeated {
             Some((last, repeated)) if depth > *last + MIN_DEPTH_GAIN => {
                 *last = depth;
-                *repeated = DrillPass { cut: PassCut { start: repeated.cut.start, ..pass.cut }, ..pass };
+                **repeated = DrillPass { cut: PassCut { start: repeated.cut.start, ..pass.cut }, ..pass };
                 None
             }
             _ if from_depth <= 2.0 * self.half_increment => {
-                self.repeated.replace((depth, pass)).map(|(_, before)| before)
+                self.repeated.replace((depth, Box::new(pass))).map(|(_, before)| before)
             }
             _ => None,
         }
     }
 
     /// Returns the pass of the line, and the repeated ones that end with it.
-    pub(super) fn finish(mut self) -> (DrillPass, impl Iterator<Item = DrillPass>) {
+    pub(super) fn finish(&mut self) -> (DrillPass, impl Iterator<Item = DrillPass> + use<>) {
         let before = self.end_stroke();
         let last = self.repeated.take().map(|(_, pass)| pass);
-        let pass = self.tapped.take().unwrap_or_else(|| self.drill_pass(&self.deepest));
-        (pass, before.into_iter().chain(last))
+        let pass = self.tapped.take().map_or_else(|| self.drill_pass(&self.deepest), |pass| *pass);
+        (pass, before.into_iter().chain(last).map(|pass| *pass))
     }
 
     fn drill_pass(&self, end: &StrokeEnd) -> DrillPass {

@@ -47,7 +47,12 @@ impl HoleExtractor<'_> {
     /// Reports a line that the tool has left, and keeps its passes if it makes a hole.
     ///
     /// `next` is the motion by which the tool has left it; `None` if the tool stands there and is changed, or the run ends.
-    pub(super) fn report_line(&mut self, line: Box<CuttingLine>, exit: ToolExit, next: Option<MotionKind>) {
+    pub(super) fn report_line(
+        &mut self,
+        mut line: Box<CuttingLine>,
+        exit: ToolExit,
+        next: Option<MotionKind>,
+    ) {
         let is_feeding = next == Some(MotionKind::Feed);
         self.record_length_mismatch(&line);
         self.note_cycle_in_air(&line);
@@ -98,7 +103,7 @@ impl HoleExtractor<'_> {
                     if is_in_body {
                         self.report_conditions(&line);
                     }
-                    self.keep_unretracted(*line);
+                    self.keep_unretracted(&mut line);
                     return;
                 }
             }
@@ -327,8 +332,8 @@ impl HoleExtractor<'_> {
     }
 
     /// Keeps the stroke of a line at a nominal hole until it is known whether anything else makes the hole.
-    fn keep_unretracted(&mut self, line: CuttingLine) {
-        if self.makes_nominal(&line) {
+    fn keep_unretracted(&mut self, line: &mut CuttingLine) {
+        if self.makes_nominal(line) {
             let order = line.order;
             let (pass, _) = line.finish();
             self.cut_axes |= !pass.unknown_axes.all();

@@ -81,7 +81,7 @@ impl HoleExtractor<'_> {
                     let next = self.strokes.begin_pass();
                     // An earlier stroke of a tap comes before the last one, a repeated pass after the line.
                     let order = if pass.cut.is_tapping { replace(&mut line.order, next) } else { next };
-                    self.strokes.push(order, pass, self.cut_kind(&line, false));
+                    self.strokes.push(order, *pass, self.cut_kind(&line, false));
                 }
                 self.current_line = Some(line);
                 free_from

@@ -133,6 +133,9 @@ impl Engagement {
 
     /// Ends the current run, of arcs or of chords.
     fn end_run(&mut self) {
+        if self.run.is_none() && self.chords.is_none() {
+            return;
+        }
         let cuts = std::mem::take(&mut self.run_cuts);
         let arcs = self.run.take().and_then(ArcRun::finish);
         let ring = arcs.or(self.chords.take().and_then(ChordRun::finish));

@@ -135,7 +135,7 @@ pub struct HoleExtractor<'m> {
     plunge: Option<Plunge>,
     /// Strokes of a tool of unknown diameter that have not ended.
     unsized_stroke: Option<UnsizedStroke>,
-    /// Strokes in each nominal hole, in the order of the program.
+    /// Strokes in each nominal hole in which a tool of unknown diameter has been, in the order of the program.
     hole_strokes: BTreeMap<usize, Vec<HoleStroke>>,
     /// Number of feeds with a gouge.
     gouge_count: u32,

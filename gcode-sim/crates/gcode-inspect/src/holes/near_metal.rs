@@ -103,14 +103,12 @@ impl KnownMetal {
     /// Returns true if a travel within a radius of the axis of a nominal hole without a diameter, below its entry, leads through what
     /// no feed has removed: how wide the metal round such a hole is removed, only the feeds show.
     pub(super) fn cuts_open_wall(&self, travel: &Line, axis: &Unit<Vector3<f64>>, radius: f64) -> bool {
-        if self.body.is_some() {
-            return false;
-        }
+        let open = self.holes.as_ref().filter(|holes| self.body.is_none() && holes.has_open());
+        let Some(holes) = open else { return false };
         let line = Strip::line(*travel);
         let mut shares = Shares::default();
         let margin = Vector3::repeat(radius);
         let [low, high] = line.bounds();
-        let Some(holes) = self.holes.as_ref() else { return false };
         holes.around(&(low - margin), &(high + margin), &mut |hole| {
             let collar = holes.collar(hole);
             let is_near = |p: &Point3<f64>| collar.from_axis(p) <= radius + MAX_OFFSET;

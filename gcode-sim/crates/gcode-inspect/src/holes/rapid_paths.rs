@@ -89,7 +89,7 @@ impl HoleExtractor<'_> {
             if !is_reported && (self.has_left_start || self.surface.is_none()) {
                 let is_reported = self.check_box(event, &all, (from, to), start);
                 if !is_reported {
-                    self.check_tool_body(event, &all, (from, to), start);
+                    self.check_tool_body(event, || all, (from, to), start);
                 }
             }
             return;
@@ -128,12 +128,15 @@ impl HoleExtractor<'_> {
         if self.check_path(event, (from, to), start) {
             return;
         }
-        let setup = self.setup;
-        let mut line = AxisBox::line(self.machine, &setup, from, to);
-        if let Some(axis) = round {
-            line.leave_out(axis);
-        }
-        self.check_tool_body(event, &line, (from, to), start);
+        let (machine, setup) = (self.machine, self.setup);
+        let line = || {
+            let mut line = AxisBox::line(machine, &setup, from, to);
+            if let Some(axis) = round {
+                line.leave_out(axis);
+            }
+            line
+        };
+        self.check_tool_body(event, line, (from, to), start);
     }
 
     /// Checks the path between two positions along which all axes arrive together; returns true if it cuts.
@@ -210,11 +213,12 @@ impl HoleExtractor<'_> {
         Some(DeepPoint { point, depth, arrived: None })
     }
 
-    /// Reports a rapid during which the flank of the tool, its shank or its holder cuts metal although the tip does not.
-    fn check_tool_body(
+    /// Reports a rapid during which the flank of the tool, its shank or its holder cuts metal although the tip does not. Most rapids
+    /// are far from it, and need no `path`.
+    fn check_tool_body<'p>(
         &mut self,
         event: &Event<'_>,
-        path: &AxisBox<'_>,
+        path: impl FnOnce() -> AxisBox<'p>,
         (from, to): (&Position, &Position),
         start: Option<Point3<f64>>,
     ) {
@@ -231,17 +235,19 @@ impl HoleExtractor<'_> {
         if is_straight && (start.is_none() || is_way_back && !self.cuts_undercut()) {
             return;
         }
+        let mut parts = self.tool_body.iter();
+        let is_searched = self.surface.is_some() || !is_straight;
+        if !is_searched && !parts.any(|part| self.may_cut(part, &[begin, tip], &axis)) {
+            return;
+        }
+        let path = path();
         let sides = match path.len() < 2 {
             true => Some((begin, vec![tip - begin])),
             false => path.sides(),
         };
         let paths =
             sides.filter(|_| is_straight).map(|(start, sides)| TipPaths::in_box(start, &sides, &axis));
-        let mut parts = self.tool_body.iter();
-        let contact = match self.surface.is_none() && is_straight {
-            true if !parts.any(|part| self.may_cut(part, &[begin, tip], &axis)) => Contact::Clear,
-            _ => self.body_contact(path, paths, &axis),
-        };
+        let contact = self.body_contact(&path, paths, &axis);
         let search = match path.len() < 2 {
             true => Search::Rapid(if is_straight { OnPath::Straight } else { OnPath::Turning }),
             false => Search::Paths,

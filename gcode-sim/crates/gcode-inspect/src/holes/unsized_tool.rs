@@ -33,7 +33,6 @@ pub(super) struct UnsizedStroke {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HoleStroke {
     tool: Option<u32>,
-    is_sized: bool,
     /// Depth of the deepest tip below the entry, mm.
     depth: f64,
 }
@@ -154,19 +153,24 @@ impl HoleExtractor<'_> {
         self.radii_on_axis(travel, axis).map(|radii| radii.end.unwrap_or(radii.through))
     }
 
-    /// Records how deep a feed along the tool goes in the nominal holes on whose axis it is.
+    /// Records how deep a feed along the tool goes in the nominal holes on whose axis it is: in each from the first tool of unknown
+    /// diameter on.
     pub(super) fn record_hole_stroke(&mut self, line: &Line, axis: &Unit<Vector3<f64>>) {
         let Some(holes) = &self.metal.holes else { return };
-        let (tool, is_sized) = (self.setup.tool, self.tool_radius().is_some());
+        let tool = self.setup.tool;
+        let is_sized = self.machine.diameter_of(tool).is_some();
+        if is_sized && self.hole_strokes.is_empty() {
+            return;
+        }
         for_each_hole_along(holes, line, axis, |hole, collar| {
             let depth = collar.depth(&line[0]).max(collar.depth(&line[1]));
-            if depth <= 0.0 {
+            if depth <= 0.0 || is_sized && !self.hole_strokes.contains_key(&hole) {
                 return;
             }
             let strokes = self.hole_strokes.entry(hole).or_default();
             match strokes.last_mut().filter(|last| last.tool == tool) {
                 Some(last) => last.depth = last.depth.max(depth),
-                None => strokes.push(HoleStroke { tool, is_sized, depth }),
+                None => strokes.push(HoleStroke { tool, depth }),
             }
         });
     }
@@ -178,14 +182,17 @@ impl HoleExtractor<'_> {
         if matches!(kind, Some(ToolKind::Tap | ToolKind::Probe)) {
             return false;
         }
-        let Some(holes) = self.metal.holes.as_ref() else { return false };
+        let Some(holes) = self.metal.holes.as_ref().filter(|_| !self.hole_strokes.is_empty()) else {
+            return false;
+        };
         let mut is_finishing = false;
         for_each_hole_along(holes, line, axis, |hole, collar| {
             let Some(strokes) = self.hole_strokes.get(&hole) else { return };
             let depth = collar.depth(&line[1]);
             let is_before =
                 |stroke: &&HoleStroke| stroke.tool != tool && collar.is_same_end(stroke.depth, depth);
-            is_finishing |= strokes.iter().rfind(is_before).is_some_and(|stroke| !stroke.is_sized);
+            let before = strokes.iter().rfind(is_before);
+            is_finishing |= before.is_some_and(|stroke| self.machine.diameter_of(stroke.tool).is_none());
         });
         is_finishing
     }
@@ -254,6 +261,7 @@ impl HoleExtractor<'_> {
 
     /// Returns the depth of a tip on the axis of a hole whose diameter the reference doesn't have, mm; `None` beside all of them.
     fn depth_in_open_hole(&self, tip: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<f64> {
+        self.metal.holes.as_ref().filter(|holes| holes.has_open())?;
         self.depth_on_axis(tip, axis, |collar| !collar.has_diameter)
     }
 

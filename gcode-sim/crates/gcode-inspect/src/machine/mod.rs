@@ -261,15 +261,15 @@ impl Machine {
     /// length of the tool, or else the length offset without wear. A touched-off offset counts from machine zero and is negative. An offset
     /// is along the tool, or, in tool centre point control, along the tool with the head at 0.
     fn tip_distance(&self, setup: &Setup, axis: &Unit<Vector3<f64>>) -> f64 {
+        if let Some(length) = self.length_of(setup.tool) {
+            return length;
+        }
         let offset = self.measured_length(setup);
         let is_along = |axis: &Vector3<f64>| offset.dot(axis).abs() > (1.0 - 1e-9) * offset.norm();
         let at_zero = self.head.direction(&Position::default(), setup);
         let basis = at_zero.filter(|zero| !is_along(axis) && is_along(zero)).unwrap_or(*axis);
         let is_touched_off = offset.dot(&basis) < -0.5 * offset.norm();
-        match self.length_of(setup.tool) {
-            None if is_touched_off => -offset.norm(),
-            _ => self.tool_length(setup),
-        }
+        if is_touched_off { -offset.norm() } else { offset.norm() }
     }
 
     /// Returns the tool with this number; `None` if the tool table lacks it.

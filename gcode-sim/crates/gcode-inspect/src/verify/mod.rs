@@ -52,8 +52,9 @@ use crate::holes::HoleExtraction;
 use crate::machine::Machine;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
+use gcode_lang::shares;
 use gcode_lang::source::Span;
-use gcode_part::{Hole, Reference, Stock, Surface};
+use gcode_part::{Hole, Overlap, Reference, Stock, Surface, overlaps};
 use nalgebra::{Point3, Vector3};
 
 /// Tolerance of the diameter of a hole, either way, mm.
@@ -85,6 +86,8 @@ impl Tolerances {
 /// Input of the checks.
 struct HoleInspection<'a> {
     comparison: Comparison<'a>,
+    /// Nominal holes that overlap; none with a pattern, which is checked with its job.
+    overlaps: Vec<Overlap>,
     /// Rows in which the holes were drilled; `None` without a pattern, with too few rows, and if all holes are in place.
     rows: Option<PatternRows<'a>>,
     /// The mirror image of the pattern that was drilled instead of it.
@@ -104,10 +107,15 @@ pub fn verify(
     reference: &Reference,
     tolerances: Tolerances,
     machine: &Machine,
-    locate: &dyn Fn(Span) -> (String, u32),
+    locate: &(dyn Fn(Span) -> (String, u32) + Sync),
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
-    let mut comparison = Comparison::new(&reference.holes, &extraction.holes, tolerances, pattern);
+    let nominal = &reference.holes;
+    let (overlaps, mut comparison) = shares::both(
+        nominal.len(),
+        || if pattern.is_none() { overlaps(nominal) } else { Vec::new() },
+        || Comparison::new(nominal, &extraction.holes, tolerances, pattern),
+    );
     comparison.reject_second_finishing(machine);
     let body = reference.body(machine.stock.as_ref());
     let stock = reference.stock.as_ref().or(machine.stock.as_ref());
@@ -127,6 +135,7 @@ pub fn verify(
     let features = judge_all(&comparison, blank, machine);
     let inspection = HoleInspection {
         comparison,
+        overlaps,
         rows,
         mirror_image,
         transformation,
@@ -157,16 +166,18 @@ pub fn verify(
             false => findings.add(Subject::Motion, finding.clone()),
         }
     }
-    for check in checks::ALL {
-        check(&inspection, &mut findings);
-    }
     let comparison = &inspection.comparison;
-    let rounding = RoundingDeviation::of(comparison, machine);
+    let beside_checks = || {
+        let rounding = RoundingDeviation::of(comparison, machine);
+        (rounding, not_checked::list(&inspection, locate))
+    };
+    let ((rounding, not_checked), ()) = shares::both(comparison.pairs.len(), beside_checks, || {
+        checks::ALL.iter().for_each(|check| check(&inspection, &mut findings));
+    });
     let mut verdict = verdict::verdict(comparison, &rounding, findings.into_list(), locate);
     if let Some(pattern) = pattern {
         verdict.set_neighbours(neighbours::neighbours(comparison, pattern));
     }
-    let not_checked = not_checked::list(&inspection, locate);
     verdict.words.gaps = not_checked::gaps(&not_checked);
     verdict.not_checked = not_checked.iter().map(NotChecked::sentence).collect();
     verdict.parts().update_summary();

@@ -268,6 +268,12 @@ impl Memory {
         self.id_at(span).map(|id| self.get(id))
     }
 
+    /// Returns the label of the program that contains a span, else the name of the text, and the line: `O8101`, 31.
+    pub fn locate(&self, span: Span) -> (String, u32) {
+        let name = || self.sources.get(span.source).name.clone();
+        (self.program_at(span).map_or_else(name, Program::label), self.sources.line_column(span).line)
+    }
+
     /// Returns the id of the program that contains a span.
     pub fn id_at(&self, span: Span) -> Option<ProgramId> {
         // Programs are sorted by text, and by offset within it.

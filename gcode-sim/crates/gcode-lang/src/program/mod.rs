@@ -58,6 +58,8 @@ pub type OpIndex = usize;
 pub struct Program {
     /// O number or name.
     pub name: ProgramName,
+    /// That of the name: the place of each hole has it.
+    label: String,
     /// Folder of a memory dump; `None` in a file without folder lines.
     pub folder: Option<Folder>,
     /// First sequence number other than 0.
@@ -303,7 +305,7 @@ impl Program {
 
     /// Returns the label that a control displays: `O8101`, `<BRACKET-OP1>`; `MAIN` for an unnamed program.
     pub fn label(&self) -> String {
-        self.name.label()
+        self.label.clone()
     }
 
     /// Returns the label with the folder, if the program is in one: `//CNC_MEM/USER/PATH1/O0001`.
@@ -345,6 +347,7 @@ impl Program {
         }));
         Self {
             name: self.name.clone(),
+            label: self.label.clone(),
             folder: self.folder.clone(),
             blocks: self.blocks.renumbered(&new_index),
             numbers: OnceLock::new(),
@@ -358,6 +361,7 @@ impl Program {
     pub fn part(&self, blocks: Range<OpIndex>) -> Self {
         Self {
             name: self.name.clone(),
+            label: self.label.clone(),
             folder: self.folder.clone(),
             blocks: self.blocks.part(blocks.clone()),
             numbers: OnceLock::new(),

@@ -109,6 +109,7 @@ fn finish(
     let OutlineBuilder { end, first_number, loops, separate_trees: apart, .. } = context;
     let end = end_without_spaces(text.content(), end);
     Program {
+        label: name.label(),
         name,
         folder,
         first_number,

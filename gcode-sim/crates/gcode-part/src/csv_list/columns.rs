@@ -288,6 +288,40 @@ fn is_round(names: &[String]) -> bool {
     has("angle") && !has("y")
 }
 
+/// A column by its name, with its place in a line; `None` if the list lacks it.
+#[derive(Clone, Copy)]
+pub(super) struct Column<'n> {
+    pub(super) name: &'n str,
+    pub(super) place: Option<usize>,
+}
+
+/// The columns of a hole, besides those of its features.
+#[derive(Clone, Copy)]
+pub(super) struct HoleColumns {
+    pub(super) id: Column<'static>,
+    pub(super) x: Column<'static>,
+    pub(super) y: Column<'static>,
+    pub(super) z: Column<'static>,
+    pub(super) i: Column<'static>,
+    pub(super) j: Column<'static>,
+    pub(super) k: Column<'static>,
+    pub(super) angle: Column<'static>,
+    pub(super) radius: Column<'static>,
+    pub(super) depth: Column<'static>,
+    pub(super) diameter: Column<'static>,
+    pub(super) features: Column<'static>,
+    pub(super) through: Column<'static>,
+}
+
+impl HoleColumns {
+    /// Finds them once for all lines.
+    pub(super) fn of(columns: &Columns) -> Self {
+        let [id, x, y, z, i, j, k, angle, radius, depth, diameter, features, through] =
+            COLUMNS.map(|(name, _)| columns.column(name));
+        Self { id, x, y, z, i, j, k, angle, radius, depth, diameter, features, through }
+    }
+}
+
 /// The columns of a list by their names, other names and unused columns among them.
 pub(super) struct Columns {
     pub(super) names: Vec<String>,
@@ -297,6 +331,8 @@ pub(super) struct Columns {
     pub(super) separator: char,
     /// Unit of all lengths.
     pub(super) unit: Unit,
+    /// `angle` and `radius` are the places of the holes, round the axis x.
+    pub(super) is_round: bool,
 }
 
 impl Columns {
@@ -361,7 +397,7 @@ impl Columns {
         };
         let has_columns = |kind: &FeatureKind| names.iter().any(|name| is_of(name, *kind));
         let feature_kinds = FeatureKind::ALL.into_iter().filter(has_columns).collect();
-        let columns = Self { names, unused, feature_kinds, separator, unit };
+        let columns = Self { names, unused, feature_kinds, separator, unit, is_round };
         let place: &[&str] = if is_round { &["x", "angle", "radius"] } else { &["x", "y"] };
         if let Some(missing) = place.iter().find(|name| !columns.has(name)) {
             let round = if is_round { ": x, angle and radius are the place of a hole round x" } else { "" };
@@ -380,22 +416,17 @@ impl Columns {
     }
 
     pub(super) fn has(&self, name: &str) -> bool {
-        self.place(name).is_some()
+        self.column(name).place.is_some()
     }
 
     /// Returns the length of the unit of a column's numbers, mm; 1 for a column without lengths.
     pub(super) fn length_of_unit(&self, column: &str) -> f64 {
-        let is_length = !matches!(column, "i" | "j" | "k" | "angle") && !column.ends_with(" angle");
-        if is_length && self.unit == Unit::Inch { MM_PER_INCH } else { 1.0 }
+        let is_length = || !matches!(column, "i" | "j" | "k" | "angle") && !column.ends_with(" angle");
+        if self.unit == Unit::Inch && is_length() { MM_PER_INCH } else { 1.0 }
     }
 
-    /// Returns true if `angle` and `radius` are the places of the holes, round the axis x.
-    pub(super) fn is_round(&self) -> bool {
-        is_round(&self.names)
-    }
-
-    pub(super) fn place(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|other| other == name)
+    pub(super) fn column<'n>(&self, name: &'n str) -> Column<'n> {
+        Column { name, place: self.names.iter().position(|other| other == name) }
     }
 
     /// Returns what the reader takes for granted.
@@ -405,13 +436,13 @@ impl Columns {
         if self.unit == Unit::Inch {
             facts.push("lengths are in inches".to_owned());
         }
-        if self.is_round() {
+        if self.is_round {
             facts.push("angle counts about x, from z towards y, and the axis is along radius".to_owned());
         }
-        if !self.has("z") && !self.is_round() {
+        if !self.has("z") && !self.is_round {
             facts.push("z is 0: no column z".to_owned());
         }
-        if !self.has("i") && !self.is_round() {
+        if !self.has("i") && !self.is_round {
             facts.push("the axis is 0, 0, 1: no columns i, j, k".to_owned());
         }
         if has_open_depths {
@@ -427,7 +458,7 @@ impl Columns {
                 "the depth of hole {first}{others} is less than that of a feature: the feature counts"
             ));
         }
-        if *has_comma {
+        if has_comma.get() {
             facts.push("commas in numbers are decimal commas".to_owned());
         }
         if !self.unused.is_empty() {

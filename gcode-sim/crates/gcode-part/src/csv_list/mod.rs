@@ -4,9 +4,13 @@ mod columns;
 #[cfg(test)]
 mod tests;
 
+use std::cell::Cell;
+
 pub(super) use columns::is_csv;
 pub(super) use columns::wrong_header;
-use columns::{Columns, FEATURE_COLUMNS, column_name, example, first_line, separator, unit};
+use columns::{
+    Column, Columns, FEATURE_COLUMNS, HoleColumns, column_name, example, first_line, separator, unit,
+};
 
 use super::feature::{DepthTo, Feature, FeatureKind};
 use super::hand::Hand;
@@ -27,8 +31,9 @@ const SAME_PITCH: f64 = 0.001;
 
 /// Returns true if a depth says that the hole goes through, as drawings do.
 fn is_through(depth: &str) -> bool {
-    ["thru", "through", "thru all", "through all", "durchgehend", "通孔"]
-        .contains(&depth.to_lowercase().as_str())
+    depth.starts_with(char::is_alphabetic)
+        && ["thru", "through", "thru all", "through all", "durchgehend", "通孔"]
+            .contains(&depth.to_lowercase().as_str())
 }
 
 /// A list with what its reader assumed.
@@ -86,9 +91,10 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
     };
     let mut cells = Cells {
         columns: &columns,
+        of_hole: HoleColumns::of(&columns),
         record: csv::StringRecord::new(),
-        has_comma: false,
-        has_point: false,
+        has_comma: Cell::default(),
+        has_point: Cell::default(),
         has_hole_deep_drill: false,
         shallow: Vec::new(),
     };
@@ -165,9 +171,10 @@ struct CsvHole {
 /// The cells of one line.
 struct Cells<'c> {
     columns: &'c Columns,
+    of_hole: HoleColumns,
     record: csv::StringRecord,
-    has_comma: bool,
-    has_point: bool,
+    has_comma: Cell<bool>,
+    has_point: Cell<bool>,
     /// A drill has no depth of its own, and is as deep as its hole.
     has_hole_deep_drill: bool,
     /// Holes whose depth is less than that of a feature.
@@ -175,28 +182,28 @@ struct Cells<'c> {
 }
 
 impl Cells<'_> {
-    fn text(&self, column: &str) -> &str {
-        self.columns.place(column).and_then(|place| self.record.get(place)).unwrap_or_default().trim()
+    fn text(&self, column: Column<'_>) -> &str {
+        column.place.and_then(|place| self.record.get(place)).unwrap_or_default().trim()
     }
 
     /// Returns a number; `None` for an empty cell.
-    fn number(&mut self, column: &str) -> Result<Option<f64>, String> {
-        let text = self.text(column).to_owned();
-        if text.is_empty() { Ok(None) } else { self.parse(column, &text).map(Some) }
+    fn number(&self, column: Column<'_>) -> Result<Option<f64>, String> {
+        let text = self.text(column);
+        if text.is_empty() { Ok(None) } else { self.parse(column.name, text).map(Some) }
     }
 
     /// Parses a number, which has a decimal comma where commas are no separators.
-    fn parse(&mut self, column: &str, text: &str) -> Result<f64, String> {
+    fn parse(&self, column: &str, text: &str) -> Result<f64, String> {
         let (has_comma, has_point) = (text.contains(','), text.contains('.'));
         if has_comma && self.columns.separator == ',' {
             return Err(format!(
                 "column '{column}' is '{text}': a number with a point is required, because commas are separators"
             ));
         }
-        self.has_comma |= has_comma;
-        self.has_point |= has_point;
+        self.has_comma.set(self.has_comma.get() || has_comma);
+        self.has_point.set(self.has_point.get() || has_point);
         // One of the two could separate thousands.
-        if self.columns.separator != ',' && self.has_comma && self.has_point {
+        if self.columns.separator != ',' && self.has_comma.get() && self.has_point.get() {
             return Err(format!(
                 "column '{column}' is '{text}': the list has commas and points in its numbers"
             ));
@@ -206,43 +213,45 @@ impl Cells<'_> {
         number.map_err(|_| format!("column '{column}' is '{text}': a number is required"))
     }
 
-    fn required(&mut self, column: &str, default: Option<f64>) -> Result<f64, String> {
-        match (self.number(column)?, default.filter(|_| !self.columns.has(column))) {
+    fn required(&self, column: Column<'_>, default: Option<f64>) -> Result<f64, String> {
+        match (self.number(column)?, default.filter(|_| column.place.is_none())) {
             (Some(number), _) | (None, Some(number)) => Ok(number),
-            (None, None) => Err(format!("column '{column}' is empty: a number is required")),
+            (None, None) => Err(format!("column '{}' is empty: a number is required", column.name)),
         }
     }
 
     /// Returns the hole of the line.
     fn hole(&mut self, index: usize) -> Result<CsvHole, String> {
         let (count, expected) = (self.record.len(), self.columns.names.len());
-        let has_more = self.record.iter().skip(expected).any(|cell| !cell.trim().is_empty());
+        let has_more =
+            expected < count && self.record.iter().skip(expected).any(|cell| !cell.trim().is_empty());
         if count < expected || has_more {
             let has_doubt = self.columns.separator == ',' && expected < count;
             let help = if has_doubt { ": decimal commas need semicolons between the columns" } else { "" };
             return Err(format!("{count} columns, the header has {expected}{help}"));
         }
-        let (entry, axis) = if self.columns.is_round() { self.round_place()? } else { self.place()? };
-        if is_through(self.text("depth")) {
+        let (entry, axis) = if self.columns.is_round { self.round_place()? } else { self.place()? };
+        let HoleColumns { id, depth, diameter, through, .. } = self.of_hole;
+        if is_through(self.text(depth)) {
             return Err(format!(
                 "column 'depth' is '{}': the thickness of the part is required, and true in a column 'through'",
-                self.text("depth")
+                self.text(depth)
             ));
         }
         let mut hole = Hole {
-            id: Some(self.text("id").to_owned()).filter(|id| !id.is_empty()),
+            id: Some(self.text(id).to_owned()).filter(|id| !id.is_empty()),
             entry,
             axis,
-            diameter: self.number("diameter")?,
+            diameter: self.number(diameter)?,
             features: self.features()?,
-            through: match self.text("through").to_lowercase().as_str() {
+            through: match self.text(through).to_lowercase().as_str() {
                 "" | "false" | "no" | "n" | "0" | "-" | "nein" => false,
                 "true" | "yes" | "y" | "1" | "x" | "ja" | "j" | "thru" | "through" | "durch" => true,
                 other => return Err(format!("column 'through' is '{other}': yes or no is required")),
             },
             ..Hole::default()
         };
-        let depth = self.number("depth")?;
+        let depth = self.number(depth)?;
         if let Some(depth) = depth.filter(|_| !hole.through)
             && hole.features.iter().any(|feature| exceeds(feature.bottom() - depth, 0.0))
         {
@@ -263,21 +272,22 @@ impl Cells<'_> {
     }
 
     /// Returns the entry and the axis of the line.
-    fn place(&mut self) -> Result<([f64; 3], [f64; 3]), String> {
-        let entry = [self.required("x", None)?, self.required("y", None)?, self.required("z", Some(0.0))?];
-        let axis =
-            [self.required("i", Some(0.0))?, self.required("j", Some(0.0))?, self.required("k", Some(1.0))?];
+    fn place(&self) -> Result<([f64; 3], [f64; 3]), String> {
+        let HoleColumns { x, y, z, i, j, k, .. } = self.of_hole;
+        let entry = [self.required(x, None)?, self.required(y, None)?, self.required(z, Some(0.0))?];
+        let axis = [self.required(i, Some(0.0))?, self.required(j, Some(0.0))?, self.required(k, Some(1.0))?];
         Ok((entry, axis))
     }
 
     /// Returns the entry and the axis of a hole at an angle about x, in degrees from z towards y, that points away from x.
-    fn round_place(&mut self) -> Result<([f64; 3], [f64; 3]), String> {
-        let [x, angle, radius] =
-            [self.required("x", None)?, self.required("angle", None)?, self.required("radius", None)?];
+    fn round_place(&self) -> Result<([f64; 3], [f64; 3]), String> {
+        let HoleColumns { x, angle, radius: radius_column, .. } = self.of_hole;
+        let [x, angle, radius] = [x, angle, radius_column].map(|column| self.required(column, None));
+        let (x, angle, radius) = (x?, angle?, radius?);
         if radius <= 0.0 {
             return Err(format!(
                 "column 'radius' is '{}': a number above 0 is required",
-                self.text("radius")
+                self.text(radius_column)
             ));
         }
         let (sine, cosine) = (Deg(angle).sin(), Deg(angle).cos());
@@ -286,9 +296,9 @@ impl Cells<'_> {
 
     /// Returns the features of the line: those of the column `features`, then those with columns of their own.
     fn features(&mut self) -> Result<Vec<Feature>, String> {
-        let mut cell = self.text("features").to_owned();
+        let mut cell = self.text(self.of_hole.features).to_owned();
         if self.columns.separator != ',' {
-            self.has_comma |= cell.contains(',');
+            self.has_comma.set(self.has_comma.get() || cell.contains(','));
             cell = cell.replace(',', ".");
         }
         let unit = self.columns.length_of_unit("features");
@@ -309,11 +319,14 @@ impl Cells<'_> {
     fn feature(&mut self, kind: FeatureKind) -> Result<Option<Feature>, String> {
         let name = kind.name();
         let own = |value: &str| format!("{name} {value}");
-        let text = self.text(name).to_lowercase();
+        let columns = self.columns;
+        let text = self.text(columns.column(name)).to_lowercase();
         if text.is_empty() {
-            return match FEATURE_COLUMNS.map(own).into_iter().find(|column| !self.text(column).is_empty()) {
+            let given = |column: &String| !self.text(columns.column(column)).is_empty();
+            return match FEATURE_COLUMNS.map(own).into_iter().find(given) {
                 Some(column) => {
-                    Err(format!("column '{column}' is '{}': '{name}' is empty", self.text(&column)))
+                    let text = self.text(columns.column(&column));
+                    Err(format!("column '{column}' is '{text}': '{name}' is empty"))
                 }
                 None => Ok(None),
             };
@@ -326,7 +339,7 @@ impl Cells<'_> {
                 .map_err(|message| format!("{message}, or a thread such as M8, M8x1, 1/4-20 or G1/4"))?,
             (None, _) => self.parse(name, &text)?,
         };
-        let own_pitch = self.number(&own("pitch"))?;
+        let own_pitch = self.number(columns.column(&own("pitch")))?;
         if let (Some(own), Some(thread)) = (own_pitch, thread)
             && exceeds((own - thread.pitch).abs(), SAME_PITCH)
         {
@@ -336,12 +349,12 @@ impl Cells<'_> {
             ));
         }
         let depth = own("depth");
-        let written = self.text(name).to_owned();
-        let of_hole = if kind == FeatureKind::Drill { self.number("depth")? } else { None };
-        let own_depth = self.number(&depth)?;
+        let written = self.text(columns.column(name)).to_owned();
+        let of_hole = if kind == FeatureKind::Drill { self.number(self.of_hole.depth)? } else { None };
+        let own_depth = self.number(columns.column(&depth))?;
         self.has_hole_deep_drill |= own_depth.is_none() && of_hole.is_some();
         let is_deep = own_depth.or(of_hole).is_some() || kind == FeatureKind::Countersink;
-        if !is_deep && self.columns.has(&depth) {
+        if !is_deep && columns.has(&depth) {
             return Err(format!("column '{depth}' is empty: {name} {written} needs a depth of its own"));
         }
         if !is_deep {
@@ -352,14 +365,14 @@ impl Cells<'_> {
         let feature = Feature {
             diameter,
             depth: own_depth.or(of_hole),
-            angle: self.number(&own("angle"))?,
+            angle: self.number(columns.column(&own("angle")))?,
             pitch: own_pitch.or(thread.map(|thread| thread.pitch)),
-            to: match self.text(&to) {
+            to: match self.text(columns.column(&to)) {
                 "" | "point" => DepthTo::Point,
                 "full" => DepthTo::Full,
                 other => return Err(format!("column '{to}' is '{other}': full or point is required")),
             },
-            hand: match self.text(&hand) {
+            hand: match self.text(columns.column(&hand)) {
                 "" => thread.and_then(|thread| thread.hand).unwrap_or_default(),
                 "right" => Hand::Right,
                 "left" => Hand::Left,
