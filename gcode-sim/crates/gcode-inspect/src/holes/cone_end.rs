@@ -60,7 +60,8 @@ impl HoleExtractor<'_> {
             let collar = holes.collar(hole);
             let Some(cone) = collar.steps.iter().find(|step| step.taper.slope < 0.0) else { return };
             let is_in_mouth = |tip| collar.from_axis(tip) <= cone.radius(collar.depth(tip)) + NOISE;
-            if collar.is_parallel(axis) && 0.0 < axis.dot(&collar.rod.axis) && travel.iter().all(is_in_mouth) {
+            if collar.is_parallel(axis) && 0.0 < axis.dot(&collar.rod.axis) && travel.iter().all(is_in_mouth)
+            {
                 let angle = Deg(2.0 * Deg::atan2(-cone.taper.slope, 1.0).0);
                 found = Some(AssumedCone { hole, angle });
             }

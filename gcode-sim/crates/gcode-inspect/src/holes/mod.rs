@@ -452,7 +452,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Rapid { to } => self.motion(event, MotionKind::Rapid, to, None),
             EventKind::Feed { to, .. } => self.motion(event, MotionKind::Feed, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
-            EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
+            EventKind::Skip { to, .. } => self.probe(event, to),
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => self.change_tool(event, *number),
             EventKind::ToolLength { offset, wear, compensation } => {

@@ -5,10 +5,10 @@ use super::metal::PointInMetal;
 use super::near_metal::FeedPart;
 use super::rapids::format_point;
 use super::{HoleExtractor, MotionKind};
-use crate::findings::FEED_BESIDE_HOLE;
+use crate::findings::{FEED_BESIDE_HOLE, PROBE_TURNS};
 use crate::machine::{ToolKind, tool_name};
-use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Event, EventKind, SkipMove, SkipSignal};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{Event, EventKind, Position, SkipMove, SkipSignal, SpindleDirection};
 use gcode_part::PartSolid;
 
 impl HoleExtractor<'_> {
@@ -30,6 +30,23 @@ impl HoleExtractor<'_> {
         let signal = self.machine.probe(probe, feed, &self.setup, part, self.probe_count);
         self.probe_count += 1;
         Some(signal)
+    }
+
+    /// Follows a probing move. A touch probe must not turn in it.
+    pub(super) fn probe(&mut self, event: &Event<'_>, to: &Position) {
+        let state = self.cutting_state;
+        if self.is_probe() && state.spindle_direction != SpindleDirection::Off {
+            let tool = self.setup.tool;
+            self.findings.add_in_program(&PROBE_TURNS, &event.backtrace(), tool.unwrap_or(0), 1, |kind| {
+                let message = format!("{} is a probe and turns in a probing move", tool_name(tool));
+                let finding = Diagnostic::new(kind, message).help("stop the spindle with M05 or M19 before G31");
+                let Some(code) = state.builder_code else { return finding };
+                finding.with_severity(Severity::Warning).note(format!(
+                    "M{code:02} is left to the machine builder's logic, which may have stopped it: this is not simulated"
+                ))
+            });
+        }
+        self.motion(event, MotionKind::Probe, to, None);
     }
 
     /// Returns the kind of a probing move: a feed if a tool of some kind goes through metal, since tools of all kinds cut. Other ones

@@ -85,7 +85,7 @@ impl HoleExtractor<'_> {
     /// Returns true if the axes that draw the tool out of the part stand at machine zero: a tool change moves it no farther out. The
     /// work offsets show where that is, and the length of the next tool where its tip is.
     fn is_retracted_to_zero(&self, next: u32) -> bool {
-        let is_stated = !self.machine.offsets.is_empty() && self.machine.length_of(Some(next)).is_some();
+        let is_stated = !self.machine.offsets.is_empty() && self.machine.has_tip(Some(next));
         let Some(out) = self.tool_direction().filter(|_| is_stated) else { return false };
         let mut axes = self.axes_along(&out).peekable();
         axes.peek().is_some() && axes.all(|axis| self.axis_position[axis] == 0.0)
@@ -103,7 +103,9 @@ impl HoleExtractor<'_> {
     /// Checks a rapid behind a tool change as if the axes along the tool arrive first: the tool then crosses at the level of its end,
     /// wherever the change has left it.
     fn check_crossing(&mut self, event: &Event<'_>, (from, to): (&Position, &Position)) {
-        let Some(out) = self.tool_direction().filter(|_| matches!(self.rapid_path, RapidPath::Any)) else { return };
+        let Some(out) = self.tool_direction().filter(|_| matches!(self.rapid_path, RapidPath::Any)) else {
+            return;
+        };
         let mut level = *from;
         for axis in self.axes_along(&out) {
             level[axis] = to[axis];
