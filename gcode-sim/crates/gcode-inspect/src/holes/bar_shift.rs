@@ -19,6 +19,8 @@ use gcode_lang::source::Span;
 pub(super) struct BarShift {
     /// The bar has cut backwards and is shifted by the current motion.
     pub is_back_bored: bool,
+    /// The tool has been fed into the solid metal of a known stock, as no bar is.
+    pub has_drilled: bool,
     /// Tip before the shift, while the bar is shifted.
     home: Option<Point3<f64>>,
     /// The same after the current motion, if that begins or ends a shift, and its block.
@@ -34,10 +36,12 @@ impl HoleExtractor<'_> {
         self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
     }
 
-    /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be.
+    /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be, unless it
+    /// has drilled.
     pub(super) fn may_be_shifted(&self) -> bool {
         let kind = self.machine.kind_of(self.setup.tool);
-        let may_be_bar = kind.map_or(self.has_tool_turned, |kind| kind == ToolKind::BoringBar);
+        let may_be_bar = kind
+            .map_or(self.has_tool_turned && !self.bar_shift.has_drilled, |kind| kind == ToolKind::BoringBar);
         may_be_bar && self.cutting_state.spindle_direction == SpindleDirection::Off
     }
 

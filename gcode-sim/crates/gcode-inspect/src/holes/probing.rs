@@ -1,8 +1,11 @@
 //! Probing moves: the signal of a probe, and moves that go on through metal.
 use nalgebra::Point3;
 
+use super::feed_law::{Gouge, ToolRegion};
 use super::metal::PointInMetal;
-use super::near_metal::FeedPart;
+
+use super::near_metal::{FeedPart, Judged};
+use super::rapid_paths::OnPath;
 use super::rapids::format_point;
 use super::{HoleExtractor, MotionKind};
 use crate::findings::{FEED_BESIDE_HOLE, PROBE_TURNS};
@@ -53,6 +56,7 @@ impl HoleExtractor<'_> {
     /// through metal are counted.
     pub(super) fn kind_of_probing(&mut self, event: &Event<'_>, from: &Point3<f64>) -> MotionKind {
         let is_cutter = self.machine.kind_of(self.setup.tool).is_some() && !self.is_probe();
+        self.check_probe_body(event, from);
         match self.metal.uncut(&[*from, self.pose.tip]) {
             Some(_) if is_cutter => MotionKind::Feed,
             Some(_) => {
@@ -66,6 +70,20 @@ impl HoleExtractor<'_> {
             }
             None => MotionKind::Probe,
         }
+    }
+
+    /// Reports the shank or the holder of a touch probe that a feed or a probing move leads into what has to stay.
+    fn check_probe_body(&mut self, event: &Event<'_>, from: &Point3<f64>) {
+        let Some(axis) = self.pose.axis.filter(|_| self.is_probe() && self.has_left_start) else { return };
+        let travel = [*from, self.pose.tip];
+        let at = self.tool_body.iter().filter(|part| !part.is_cutter).find_map(|part| {
+            let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
+            self.contact_in_feed(part, &axis, &travel, Judged::Kept(side, u32::MAX))
+        });
+        if let Some(at) = at {
+            self.report_gouge(&event.backtrace(), &travel, Gouge { at, part: ToolRegion::Shank });
+        }
+        self.count_unsearched_feed(event, OnPath::Straight);
     }
 
     /// Returns true for a tool that the machine file gives as a touch probe: it cuts nothing, and its feeds only position it.
@@ -82,6 +100,9 @@ impl HoleExtractor<'_> {
         from: &Point3<f64>,
     ) -> MotionKind {
         let travel = [*from, self.pose.tip];
+        if kind == MotionKind::Feed {
+            self.check_probe_body(event, from);
+        }
         let kept = self.metal.gouge(&travel, FeedPart::Tip);
         match kept.filter(|_| kind == MotionKind::Feed) {
             Some(PointInMetal { point, depth }) => {

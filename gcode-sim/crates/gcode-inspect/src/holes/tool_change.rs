@@ -171,6 +171,7 @@ impl HoleExtractor<'_> {
         self.milled_blocks.end_tool();
         self.update_setup(|setup| setup.tool = Some(number));
         self.leave_offset();
+        self.bar_shift.has_drilled = false;
         self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
     }
 
