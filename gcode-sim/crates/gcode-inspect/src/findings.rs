@@ -58,6 +58,7 @@ gcode_lang::finding_kinds! {
     MIRROR_IMAGE = "mirror-image", Error, "the pattern is mirrored, but not by the table";
     NO_END = "no-end", Error, "the program ends without M02, M30 or M99";
     PATH_NOT_READ = "path-not-read", Error, "the path of an edge finder leaves the surface";
+    PROBE_TURNS = "probe-turns", Error, "a touch probe turns in a probing move";
     RAPID_BEYOND_CUT = "rapid-beyond-cut", Error, "a rapid beyond the cut";
     RAPID_INTO_PART = "rapid-into-part", Error, "a rapid through the part";
     RAPID_NEAR_PART = "rapid-near-part", Warning, "a rapid is too close to the part";

@@ -2,11 +2,14 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::line::MAX_BAR_SHIFT;
+use super::near_metal::{Contact, Judged};
+use super::rapid_paths::{OnPath, Search};
 use super::rapids::format_point;
+use super::swept_tool::{TipPaths, contact};
 use super::{HoleExtractor, MotionKind};
 use crate::findings::RAPID_INTO_PART;
 use crate::machine::{TOUCH_DEPTH, ToolKind};
-use gcode_lang::diag::Diagnostic;
+use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Event, SpindleDirection};
 use gcode_lang::source::Span;
 
@@ -16,6 +19,8 @@ use gcode_lang::source::Span;
 pub(super) struct BarShift {
     /// The bar has cut backwards and is shifted by the current motion.
     pub is_back_bored: bool,
+    /// The tool has been fed into the solid metal of a known stock, as no bar is.
+    pub has_drilled: bool,
     /// Tip before the shift, while the bar is shifted.
     home: Option<Point3<f64>>,
     /// The same after the current motion, if that begins or ends a shift, and its block.
@@ -31,10 +36,12 @@ impl HoleExtractor<'_> {
         self.machine.diameter_of(self.setup.tool).map(|diameter| diameter / 2.0)
     }
 
-    /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be.
+    /// Returns true if the spindle is stopped and the tool may be a boring bar: one of unknown kind that has turned may be, unless it
+    /// has drilled.
     pub(super) fn may_be_shifted(&self) -> bool {
         let kind = self.machine.kind_of(self.setup.tool);
-        let may_be_bar = kind.map_or(self.has_tool_turned, |kind| kind == ToolKind::BoringBar);
+        let may_be_bar = kind
+            .map_or(self.has_tool_turned && !self.bar_shift.has_drilled, |kind| kind == ToolKind::BoringBar);
         may_be_bar && self.cutting_state.spindle_direction == SpindleDirection::Off
     }
 
@@ -59,12 +66,16 @@ impl HoleExtractor<'_> {
         let (along, across) = split(from);
         if across <= TOUCH_DEPTH {
             self.check_shift_in_hole(event, from, &axis);
+            self.check_shifted_body(event, from, &axis);
             return;
         }
         match self.bar_shift.home {
             Some(home) if split(&home).1 <= TOUCH_DEPTH => self.bar_shift.next = Some((None, event.block)),
             Some(_) => self.bar_shift.home = None,
-            None if is_on_line => self.bar_shift.home = Some(*from),
+            None if is_on_line => {
+                self.bar_shift.home = Some(*from);
+                self.check_shifted_body(event, from, &axis);
+            }
             None if along <= TOUCH_DEPTH
                 && across <= MAX_BAR_SHIFT
                 && self.tool_radius().is_none_or(|radius| across < radius) =>
@@ -72,6 +83,20 @@ impl HoleExtractor<'_> {
                 self.bar_shift.next = Some((Some(*from), event.block));
             }
             None => {}
+        }
+    }
+
+    /// Reports the shank or the holder of a shifted bar in metal: the shift takes its edge off one wall, and them towards the other.
+    fn check_shifted_body(&mut self, event: &Event<'_>, from: &Point3<f64>, axis: &Unit<Vector3<f64>>) {
+        if self.bar_shift.home.is_none() || !self.metal.is_known() {
+            return;
+        }
+        let path = TipPaths::line(&[*from, self.pose.tip]);
+        let behind = self.tool_body.iter().filter(|part| !part.is_cutter);
+        let found = behind.map(|part| contact(part, axis, &path, &self.metal, Judged::Uncut(None)));
+        let Some(found) = found.filter(|found| !matches!(found, Contact::Clear)).last() else { return };
+        if let Some(cut) = self.in_rapid(event, found, Search::Rapid(OnPath::Straight)) {
+            self.report_side(event, cut, Severity::Error, (" while the bar is shifted", ""));
         }
     }
 

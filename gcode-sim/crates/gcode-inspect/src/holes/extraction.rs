@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point3, Vector3};
 
 use super::clearance::CloseMotion;
+use super::cone_end::AssumedCone;
 use super::{CutConditions, DrilledHole, LengthMismatch, Search, UnknownRapids, UnsearchedMotions};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
@@ -77,6 +78,8 @@ pub struct HoleExtraction {
     pub(crate) probes_without_signal: UnsearchedMotions,
     /// Tools of unknown diameter that mill a known body: what they remove is unknown.
     pub(crate) unsized_mills: Vec<Option<u32>>,
+    /// Tools of unknown end that count as cones.
+    pub(crate) assumed_cones: BTreeMap<u32, AssumedCone>,
     /// Indices of the nominal holes whose entries are under metal that no feed removes.
     pub(crate) covered_entries: Vec<usize>,
     /// Number of strokes of mills that count as milling.

@@ -68,7 +68,7 @@ pub(super) enum ToolRegion {
 impl HoleExtractor<'_> {
     /// Applies a change of the tool or its length.
     pub(super) fn update_tool_body(&mut self) {
-        self.tool_body = self.machine.tool_body(&self.setup);
+        self.tool_body = self.machine.tool_body(&self.setup, self.assumed_cone().map(|cone| cone.angle));
         self.profile = (!self.tool_body.is_empty()).then(|| Profile::of_tool(&self.tool_body));
     }
 
@@ -169,6 +169,7 @@ impl HoleExtractor<'_> {
                 true if worst.is_some() && !is_deepest_wanted => {}
                 true => {
                     let gouge = self.gouge(&chord, &axis, u32::MAX);
+                    let gouge = gouge.filter(|gouge| !self.becomes_cone(&chord, &axis, gouge));
                     has_scratched = gouge.is_none() && self.scratches(&chord, &axis);
                     worst = Gouge::worse(worst, gouge);
                 }
@@ -256,7 +257,7 @@ impl HoleExtractor<'_> {
         match self.metal.judged_on(travel, Judged::Kept(FeedPart::Tip, sweeps)) {
             Some(at) => Some(Gouge { at, part: ToolRegion::Tip }),
             None => self
-                .side_gouge(travel, axis, sweeps)
+                .side_gouge(&self.tool_body, travel, axis, sweeps)
                 .or_else(|| self.middle_gouge(travel, axis, sweeps))
                 .or_else(|| self.gouge_beyond(travel)),
         }
@@ -282,13 +283,19 @@ impl HoleExtractor<'_> {
         Some(Gouge { at, part: ToolRegion::TipBeyond(hole) })
     }
 
-    /// Returns the gouge that the cutting parts of the tool make beside the path of its tip.
-    fn side_gouge(&self, travel: &Line, axis: &Unit<Vector3<f64>>, sweeps: u32) -> Option<Gouge> {
+    /// Returns the gouge that the cutting parts of a tool make beside the path of its tip.
+    pub(super) fn side_gouge(
+        &self,
+        body: &[ToolPart],
+        travel: &Line,
+        axis: &Unit<Vector3<f64>>,
+        sweeps: u32,
+    ) -> Option<Gouge> {
         self.pose.axis?;
         if sweeps == u32::MAX && self.has_repeated(travel, axis, Covers::Kept) {
             return None;
         }
-        self.tool_body.iter().filter(|part| part.is_cutter).find_map(|part| {
+        body.iter().filter(|part| part.is_cutter).find_map(|part| {
             if !self.may_cut(part, travel, axis) || self.metal.is_allowed(travel, axis, part, TOUCH_DEPTH) {
                 return None;
             }
@@ -418,7 +425,8 @@ impl HoleExtractor<'_> {
         let Plunge { travel, axis, before } =
             self.plunge.filter(|_| line.cutting_state.tool == self.setup.tool)?;
         let is_allowed = self.metal.is_allowed(&travel, &axis, &self.flat_tool(), TOUCH_DEPTH);
-        if is_allowed { None } else { self.gouge(&travel, &axis, before) }
+        let gouge = if is_allowed { None } else { self.gouge(&travel, &axis, before) };
+        gouge.filter(|gouge| self.cone_without_gouge(&travel, &axis, gouge, before).is_none())
     }
 
     /// Returns true if the current line makes a gouge.

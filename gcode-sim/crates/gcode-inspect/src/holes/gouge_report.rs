@@ -69,10 +69,14 @@ impl HoleExtractor<'_> {
                 );
                 let number = self.setup.tool.unwrap_or(0);
                 // The tool is the same in all its feeds.
+                let help = match self.is_probe() {
+                    true => "use a longer stylus, or keep the body of the probe away from the part",
+                    false => {
+                        "use a tool whose flutes are longer than the metal beside them is high, or cut that metal before"
+                    }
+                };
                 self.findings.add_in_program(&FEED_BESIDE_HOLE, backtrace, number, 1, |kind| {
-                    Diagnostic::new(kind, message).help(
-                        "use a tool whose flutes are longer than the metal beside them is high, or cut that metal before",
-                    )
+                    Diagnostic::new(kind, message).help(help)
                 });
                 return;
             }

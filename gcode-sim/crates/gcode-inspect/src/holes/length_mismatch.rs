@@ -68,7 +68,7 @@ impl HoleExtractor<'_> {
     pub(super) fn check_lost_offset(&mut self, event: &Event<'_>) {
         let tool = self.setup.tool;
         let is_lost = self.cutting_state.compensation.number().is_none() && self.offset_tools.contains(&tool);
-        if !is_lost || self.machine.length_of(tool).is_some() {
+        if !is_lost || self.machine.has_tip(tool) {
             return;
         }
         let depth = match self.surface {
@@ -93,7 +93,7 @@ impl HoleExtractor<'_> {
         let [was, is] = self.positions.at_machine();
         if was | is == 0
             || self.cutting_state.compensation.number().is_some()
-            || self.machine.length_of(self.setup.tool).is_some()
+            || self.machine.has_tip(self.setup.tool)
         {
             return false;
         }

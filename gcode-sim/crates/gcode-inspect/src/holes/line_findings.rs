@@ -233,8 +233,8 @@ impl HoleExtractor<'_> {
 
     /// Records a tool of unknown diameter that mills the part: it may cut more than its path shows.
     pub(super) fn note_unsized_mill(&mut self, tool: Option<u32>) {
-        if self.machine.diameter_of(tool).is_none() && !self.unsized_mills.contains(&tool) {
-            self.unsized_mills.push(tool);
+        if self.machine.diameter_of(tool).is_none() && !self.milling.unsized_tools.contains(&tool) {
+            self.milling.unsized_tools.push(tool);
         }
     }
 

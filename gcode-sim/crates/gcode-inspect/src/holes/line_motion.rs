@@ -24,6 +24,7 @@ impl HoleExtractor<'_> {
     ) -> Option<Point3<f64>> {
         let Some(mut line) = self.current_line.take() else { return Some(from) };
         let tip = self.pose.tip;
+        self.bar_shift.has_drilled |= line.enters_solid && self.surface.is_some();
         if kind == MotionKind::Rapid && line.is_overrun(&tip) && !self.is_gap_ahead(&line, &from) {
             if line.is_bar_shifted() {
                 self.report_back_boring(&line);
@@ -142,7 +143,7 @@ impl HoleExtractor<'_> {
         if is_in_air || may_turn_idle && cuts_nothing() {
             return;
         }
-        if !line.enters_solid && self.machine.kind_of(self.setup.tool).is_some_and(ToolKind::needs_hole) {
+        if !line.enters_solid && self.machine.kind_of(self.setup.tool).is_none_or(ToolKind::needs_hole) {
             line.enters_solid = self.metal.cuts(from, &tip) == Some(true);
         }
         let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };

@@ -5,6 +5,7 @@ use nalgebra::{Point3, Unit, Vector3};
 
 use super::HoleExtractor;
 use super::below_part::lowest;
+use super::cone_end::AssumedCone;
 use super::cutting::{CuttingState, PeckExtent, RecordedCut};
 use super::feed_law::is_along;
 use super::strip::Line;
@@ -30,6 +31,10 @@ pub(super) struct Milling {
     idle: BTreeMap<u32, Option<Backtrace>>,
     /// First feed across of each tool that cuts with its end, beside the metal and below its top.
     fed_aside: BTreeMap<u32, Backtrace>,
+    /// Tools of unknown diameter that mill the part.
+    pub(super) unsized_tools: Vec<Option<u32>>,
+    /// Tools of unknown end that count as cones.
+    pub(super) cones: BTreeMap<u32, AssumedCone>,
 }
 
 impl Milling {

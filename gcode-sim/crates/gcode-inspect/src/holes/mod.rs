@@ -8,6 +8,7 @@ mod chord_run;
 mod circles;
 mod clamping;
 mod clearance;
+mod cone_end;
 mod core;
 mod covered_entries;
 mod cut_states;
@@ -65,6 +66,7 @@ mod unsized_tool;
 mod wall_cut;
 
 pub(crate) use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
+pub(crate) use cone_end::AssumedCone;
 pub(crate) use cutting::CutConditions;
 pub(crate) use drill_pass::PITCH_TOLERANCE;
 pub use drill_pass::{Helix, MilledCut, PassCut, TapRetract};
@@ -147,8 +149,6 @@ pub struct HoleExtractor<'m> {
     /// Strokes of these cycles.
     strokes_in_air: u64,
     air_strokes: Vec<AirStroke>,
-    /// Tools of unknown diameter that mill the part.
-    unsized_mills: Vec<Option<u32>>,
     cutting_state: CuttingState,
     process_limits: ProcessLimits,
     /// Dialect of the control: which M codes it executes itself.
@@ -241,7 +241,6 @@ impl<'m> HoleExtractor<'m> {
             cycles_in_air: Findings::default(),
             strokes_in_air: 0,
             air_strokes: Vec::new(),
-            unsized_mills: Vec::new(),
             cutting_state: CuttingState::default(),
             process_limits: ProcessLimits::default(),
             dialect: machine.dialect,
@@ -453,7 +452,7 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Rapid { to } => self.motion(event, MotionKind::Rapid, to, None),
             EventKind::Feed { to, .. } => self.motion(event, MotionKind::Feed, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
-            EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
+            EventKind::Skip { to, .. } => self.probe(event, to),
             EventKind::ToolSelected { number } => self.cutting_state.selected_tool = Some(*number),
             EventKind::ToolChange { number } => self.change_tool(event, *number),
             EventKind::ToolLength { offset, wear, compensation } => {

@@ -1,14 +1,17 @@
 //! Probing moves: the signal of a probe, and moves that go on through metal.
 use nalgebra::Point3;
 
+use super::feed_law::{Gouge, ToolRegion};
 use super::metal::PointInMetal;
-use super::near_metal::FeedPart;
+
+use super::near_metal::{FeedPart, Judged};
+use super::rapid_paths::OnPath;
 use super::rapids::format_point;
 use super::{HoleExtractor, MotionKind};
-use crate::findings::FEED_BESIDE_HOLE;
+use crate::findings::{FEED_BESIDE_HOLE, PROBE_TURNS};
 use crate::machine::{ToolKind, tool_name};
-use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Event, EventKind, SkipMove, SkipSignal};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{Event, EventKind, Position, SkipMove, SkipSignal, SpindleDirection};
 use gcode_part::PartSolid;
 
 impl HoleExtractor<'_> {
@@ -32,10 +35,28 @@ impl HoleExtractor<'_> {
         Some(signal)
     }
 
+    /// Follows a probing move. A touch probe must not turn in it.
+    pub(super) fn probe(&mut self, event: &Event<'_>, to: &Position) {
+        let state = self.cutting_state;
+        if self.is_probe() && state.spindle_direction != SpindleDirection::Off {
+            let tool = self.setup.tool;
+            self.findings.add_in_program(&PROBE_TURNS, &event.backtrace(), tool.unwrap_or(0), 1, |kind| {
+                let message = format!("{} is a probe and turns in a probing move", tool_name(tool));
+                let finding = Diagnostic::new(kind, message).help("stop the spindle with M05 or M19 before G31");
+                let Some(code) = state.builder_code else { return finding };
+                finding.with_severity(Severity::Warning).note(format!(
+                    "M{code:02} is left to the machine builder's logic, which may have stopped it: this is not simulated"
+                ))
+            });
+        }
+        self.motion(event, MotionKind::Probe, to, None);
+    }
+
     /// Returns the kind of a probing move: a feed if a tool of some kind goes through metal, since tools of all kinds cut. Other ones
     /// through metal are counted.
     pub(super) fn kind_of_probing(&mut self, event: &Event<'_>, from: &Point3<f64>) -> MotionKind {
         let is_cutter = self.machine.kind_of(self.setup.tool).is_some() && !self.is_probe();
+        self.check_probe_body(event, from);
         match self.metal.uncut(&[*from, self.pose.tip]) {
             Some(_) if is_cutter => MotionKind::Feed,
             Some(_) => {
@@ -49,6 +70,20 @@ impl HoleExtractor<'_> {
             }
             None => MotionKind::Probe,
         }
+    }
+
+    /// Reports the shank or the holder of a touch probe that a feed or a probing move leads into what has to stay.
+    fn check_probe_body(&mut self, event: &Event<'_>, from: &Point3<f64>) {
+        let Some(axis) = self.pose.axis.filter(|_| self.is_probe() && self.has_left_start) else { return };
+        let travel = [*from, self.pose.tip];
+        let at = self.tool_body.iter().filter(|part| !part.is_cutter).find_map(|part| {
+            let side = FeedPart::Side { radius: part.radius(), slope: part.taper.slope };
+            self.contact_in_feed(part, &axis, &travel, Judged::Kept(side, u32::MAX))
+        });
+        if let Some(at) = at {
+            self.report_gouge(&event.backtrace(), &travel, Gouge { at, part: ToolRegion::Shank });
+        }
+        self.count_unsearched_feed(event, OnPath::Straight);
     }
 
     /// Returns true for a tool that the machine file gives as a touch probe: it cuts nothing, and its feeds only position it.
@@ -65,6 +100,9 @@ impl HoleExtractor<'_> {
         from: &Point3<f64>,
     ) -> MotionKind {
         let travel = [*from, self.pose.tip];
+        if kind == MotionKind::Feed {
+            self.check_probe_body(event, from);
+        }
         let kept = self.metal.gouge(&travel, FeedPart::Tip);
         match kept.filter(|_| kind == MotionKind::Feed) {
             Some(PointInMetal { point, depth }) => {

@@ -314,7 +314,12 @@ impl HoleExtractor<'_> {
     }
 
     /// Returns the metal that a search for a rapid has found; counts the rapid if the search was given up.
-    fn in_rapid(&mut self, event: &Event<'_>, contact: Contact, search: Search) -> Option<PointInMetal> {
+    pub(super) fn in_rapid(
+        &mut self,
+        event: &Event<'_>,
+        contact: Contact,
+        search: Search,
+    ) -> Option<PointInMetal> {
         match contact {
             Contact::Clear => None,
             Contact::Metal(at) => Some(at),
@@ -372,7 +377,7 @@ impl HoleExtractor<'_> {
         }
     }
 
-    fn report_side(
+    pub(super) fn report_side(
         &mut self,
         event: &Event<'_>,
         cut: PointInMetal,

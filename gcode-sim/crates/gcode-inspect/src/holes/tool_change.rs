@@ -6,10 +6,11 @@ use super::metal::PointInMetal;
 use super::rapid_paths::UnsearchedMotions;
 use super::rapids::format_point;
 use super::swept_tool::ring;
+use super::unknown_axes::MAX_SINE;
 use crate::findings::{RAPID_INTO_PART, TOOL_LEFT_IN_HOLE};
-use crate::machine::{Setup, TOUCH_DEPTH};
+use crate::machine::{RapidPath, Setup, TOUCH_DEPTH};
 use gcode_lang::diag::{Diagnostic, FindingKind};
-use gcode_lang::motion::{Event, Position, SpindleDirection};
+use gcode_lang::motion::{AxisIndex, Event, Position, SpindleDirection};
 
 /// Least radius at which metal round a tool is looked for, mm, and its distance from the tool.
 const MIN_RADIUS: f64 = 0.5;
@@ -59,9 +60,9 @@ impl HoleExtractor<'_> {
     }
 
     /// Applies a tool change: in a hole, or between walls, the tool can't be changed.
-    pub(super) fn begin_change(&mut self, event: &Event<'_>) {
+    pub(super) fn begin_change(&mut self, event: &Event<'_>, number: u32) {
         let is_known = self.positions.is_known(self.machine);
-        self.change_retract.is_open = is_known && self.has_left_start;
+        self.change_retract.is_open = is_known && self.has_left_start && !self.is_retracted_to_zero(number);
         let Some(axis) = self.tool_direction().filter(|_| is_known && self.metal.is_known()) else { return };
         let tip = self.pose.tip;
         let radius = self.body_radius().max(MIN_RADIUS) + WALL_DISTANCE;
@@ -79,6 +80,38 @@ impl HoleExtractor<'_> {
             );
             Diagnostic::new(kind, message).help("retract above the surface before the tool change")
         });
+    }
+
+    /// Returns true if the axes that draw the tool out of the part stand at machine zero: a tool change moves it no farther out. The
+    /// work offsets show where that is, and the length of the next tool where its tip is.
+    fn is_retracted_to_zero(&self, next: u32) -> bool {
+        let is_stated = !self.machine.offsets.is_empty() && self.machine.has_tip(Some(next));
+        let Some(out) = self.tool_direction().filter(|_| is_stated) else { return false };
+        let mut axes = self.axes_along(&out).peekable();
+        axes.peek().is_some() && axes.all(|axis| self.axis_position[axis] == 0.0)
+    }
+
+    /// Iterates over the linear axes by which the tool goes out along a direction.
+    fn axes_along(&self, out: &Unit<Vector3<f64>>) -> impl Iterator<Item = AxisIndex> {
+        let axes = (0..self.machine.axes.len()).filter(|axis| !self.machine.axes.is_rotary(*axis));
+        axes.filter(|axis| {
+            let by = self.displacement_by(*axis, &self.axis_position, &self.pose.tip);
+            (by - out.into_inner()).norm() <= MAX_SINE
+        })
+    }
+
+    /// Checks a rapid behind a tool change as if the axes along the tool arrive first: the tool then crosses at the level of its end,
+    /// wherever the change has left it.
+    fn check_crossing(&mut self, event: &Event<'_>, (from, to): (&Position, &Position)) {
+        let Some(out) = self.tool_direction().filter(|_| matches!(self.rapid_path, RapidPath::Any)) else {
+            return;
+        };
+        let mut level = *from;
+        for axis in self.axes_along(&out) {
+            level[axis] = to[axis];
+        }
+        let start = self.machine.forward(&level, &self.setup).tip;
+        self.check_rapid_paths(event, (&level, to), Some(start));
     }
 
     /// Reports a tool change where the part has been, as in a pocket that is milled.
@@ -126,6 +159,7 @@ impl HoleExtractor<'_> {
         self.change_retract.is_open = false;
         if counted < self.change_retract.rapids.number() {
             self.check_known_end(event, &self.pose.tip.clone());
+            self.check_crossing(event, travel);
         }
     }
 
@@ -133,10 +167,11 @@ impl HoleExtractor<'_> {
     pub(super) fn change_tool(&mut self, event: &Event<'_>, number: u32) {
         self.report_low_rapid();
         self.check_tool_known(event, number);
-        self.begin_change(event);
+        self.begin_change(event, number);
         self.milled_blocks.end_tool();
         self.update_setup(|setup| setup.tool = Some(number));
         self.leave_offset();
+        self.bar_shift.has_drilled = false;
         self.has_tool_turned = self.cutting_state.spindle_direction != SpindleDirection::Off;
     }
 

@@ -292,13 +292,18 @@ impl HoleExtractor<'_> {
         is_over.then(|| top - tip.coords.dot(&out))
     }
 
-    /// Reports a rapid to the surface of the body from a place across the tool that nothing has commanded: it may lead through
-    /// the body.
+    /// Reports a rapid to the surface of the body, or into an opening below its top, from a place across the tool that nothing has
+    /// commanded: it may lead through the body.
     fn report_rapid_to_surface(&mut self, event: &Event<'_>, (was, is): (UnknownAxes, UnknownAxes)) {
         let Some((surface, out)) = self.surface.zip(self.tool_direction()) else { return };
         let tip = self.pose.tip;
         let depth = surface.depth(&tip);
-        if !is.is_none() || depth <= -CONTACT_CLEARANCE || TOUCH_DEPTH < depth {
+        let is_inside = TOUCH_DEPTH < depth;
+        // In the metal it has a finding of its own.
+        if !is.is_none()
+            || depth <= -CONTACT_CLEARANCE
+            || is_inside && self.metal.uncut(&[tip, tip]).is_some()
+        {
             return;
         }
         // Along the tool the way from any place is the one that is checked.
@@ -313,9 +318,9 @@ impl HoleExtractor<'_> {
         }
         let letters = self.machine.axes.names(axes);
         self.findings.add_in_program(&START_UNKNOWN, &event.backtrace(), LOW_RAPID_DETAIL, 1, |kind| {
+            let place = if is_inside { "below the top" } else { "to the surface" };
             let message = format!(
-                "a rapid leads to the surface of the part from an unknown position of {letters}: the part may be in \
-                 its way"
+                "a rapid leads {place} of the part from an unknown position of {letters}: the part may be in its way"
             );
             Diagnostic::new(kind, message).help(format!("command {letters} in G90 above the part before it"))
         });

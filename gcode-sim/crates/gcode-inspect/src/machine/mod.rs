@@ -258,8 +258,9 @@ impl Machine {
     }
 
     /// Returns the distance from the gauge line to the tip against `axis`, the tool's direction out of the part, mm: the
-    /// length of the tool, or else the length offset without wear. A touched-off offset counts from machine zero and is negative. An offset
-    /// is along the tool, or, in tool centre point control, along the tool with the head at 0.
+    /// length of the tool, or else the length offset without wear. A touched-off offset counts from machine zero and is negative; the one
+    /// that the file states counts while none is in effect. An offset is along the tool, or, in tool centre point control, along the
+    /// tool with the head at 0.
     fn tip_distance(&self, setup: &Setup, axis: &Unit<Vector3<f64>>) -> f64 {
         if let Some(length) = self.length_of(setup.tool) {
             return length;
@@ -269,7 +270,11 @@ impl Machine {
         let at_zero = self.head.direction(&Position::default(), setup);
         let basis = at_zero.filter(|zero| !is_along(axis) && is_along(zero)).unwrap_or(*axis);
         let is_touched_off = offset.dot(&basis) < -0.5 * offset.norm();
-        if is_touched_off { -offset.norm() } else { offset.norm() }
+        match offset.norm() {
+            0.0 => self.touched_off(setup.tool).unwrap_or(0.0),
+            length if is_touched_off => -length,
+            length => length,
+        }
     }
 
     /// Returns the tool with this number; `None` if the tool table lacks it.
@@ -280,6 +285,16 @@ impl Machine {
     /// Returns the length of the tool in the spindle, mm; `None` if the tool or its length is unknown.
     pub(crate) fn length_of(&self, tool: Option<u32>) -> Option<f64> {
         self.find_tool(tool?)?.length
+    }
+
+    /// Returns true if the file says where the tip of a tool is without a length offset.
+    pub(crate) fn has_tip(&self, tool: Option<u32>) -> bool {
+        self.length_of(tool).is_some() || self.touched_off(tool).is_some()
+    }
+
+    /// Returns the length offset that the file states for a tool touched off at the part, mm, which is negative; `None` for any other.
+    fn touched_off(&self, tool: Option<u32>) -> Option<f64> {
+        self.find_tool(tool?)?.length_offset.filter(|offset| *offset < 0.0)
     }
 
     /// Returns the diameter of the tool in the spindle, mm; `None` if the tool or its diameter is unknown.

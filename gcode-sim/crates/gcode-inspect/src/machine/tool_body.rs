@@ -2,6 +2,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::{Machine, PointShape, Setup, Tool, ToolKind};
+use gcode_lang::units::Deg;
 use gcode_part::{Frustum, Surface, Taper};
 
 /// Cosine of 30°, beyond which a direction is another one.
@@ -61,12 +62,14 @@ impl Machine {
     /// Returns the parts of the tool in the spindle; empty if the tool table lacks it or its diameter.
     ///
     /// The length is that of the tool table, or else that of the length offset. If neither is known, the full diameter
-    /// counts at the upper end of the point alone.
-    pub(crate) fn tool_body(&self, setup: &Setup) -> Vec<ToolPart> {
+    /// counts at the upper end of the point alone. An unknown end is a cone of this full angle, if there is one.
+    pub(crate) fn tool_body(&self, setup: &Setup, unknown_end: Option<Deg>) -> Vec<ToolPart> {
         let Some(tool) = setup.tool.and_then(|number| self.find_tool(number)) else { return Vec::new() };
         let Some(diameter) = tool.diameter else { return Vec::new() };
         let length = self.tool_length(setup);
-        let point = tool.point_length(diameter);
+        let assumed = unknown_end.map(PointShape::Pointed).filter(|_| tool.point() == PointShape::Unknown);
+        let assumed = assumed.and_then(|point| point.length(diameter));
+        let point = assumed.unwrap_or_else(|| tool.point_length(diameter));
         let behind = |from: f64, to: f64, diameter: f64| ToolPart {
             is_cutter: false,
             ..ToolPart::flutes(from, to, diameter / 2.0)

@@ -6,7 +6,7 @@ use super::checks::stock::deeper_than_stock;
 use super::hole_cuts::Cut;
 use super::{Comparison, HoleInspection};
 use crate::findings::BACK_BORED;
-use crate::holes::{DrilledHole, HoleExtraction, OnPath, Search};
+use crate::holes::{AssumedCone, DrilledHole, HoleExtraction, OnPath, Search};
 use crate::machine::{HeadKind, Machine, PointShape, Tool, tool_name};
 use gcode_lang::motion::LengthCompensation;
 use gcode_lang::source::Span;
@@ -79,6 +79,7 @@ pub(super) fn list(
     }
     all.extend(pitches(comparison, machine));
     all.extend(shapes(inspection));
+    all.extend(assumed_cones(inspection));
     all.extend(lengths(extraction, machine));
     for (h, own, stated) in &extraction.reset_lengths {
         let what = format!("the length that the program sets for H{h}");
@@ -393,6 +394,23 @@ fn shapes(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
         }
     };
     ids.into_iter().map(gap).collect()
+}
+
+/// Returns the tools whose unknown ends count as cones, where no countersink that they make says so.
+fn assumed_cones(inspection: &HoleInspection<'_>) -> Vec<NotChecked> {
+    let is_named = |tool| {
+        let mut gaps = inspection.features.iter().flat_map(|hole| &hole.gaps);
+        gaps.any(|gap| *gap == ShapeGap::Angle(Some(tool)))
+    };
+    let open = inspection.extraction.assumed_cones.iter().filter(|(tool, _)| !is_named(**tool));
+    let gap = |(tool, cone): (&u32, &AssumedCone)| {
+        let reason = format!(
+            "the machine file has no kind or point_angle of it; it counts as the cone of the countersink of {}",
+            hole_names(&[inspection.comparison.id(cone.hole)])
+        );
+        NotChecked::gap(format!("the end of T{tool}"), reason)
+    };
+    open.map(gap).collect()
 }
 
 /// Returns the tools of unknown length, and the length taken for each.
