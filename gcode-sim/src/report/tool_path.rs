@@ -88,7 +88,7 @@ pub(crate) fn of_path(
         tools,
         programs: programs.into_iter().map(|(name, _)| name).collect(),
         places: places(&path, simulation),
-        zeros: zeros(machine),
+        zeros: zeros(machine, [run]),
         limits: strokes.map_or_else(Vec::new, |strokes| travel_limits(&path, machine, &strokes)),
         stock,
         notes: notes(&path, simulation),

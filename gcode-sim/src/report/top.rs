@@ -53,7 +53,7 @@ pub fn of_holes(
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
-        zeros: zeros(machine),
+        zeros: zeros(machine, [&simulation.run]),
         ..TopView::default()
     }
 }
@@ -138,7 +138,7 @@ pub fn of_verdict(
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
-        zeros: zeros(machine),
+        zeros: zeros(machine, [&simulation.run]),
         shaft: shaft(reference),
         ..TopView::default()
     }

@@ -1,9 +1,11 @@
 //! The work zeros that a picture and a page draw.
-use gcode_inspect::machine::{HeadKind, Machine, Setup};
+use gcode_inspect::machine::{HeadKind, Machine, Setup, WorkOffset};
 use gcode_lang::motion::Position;
+use gcode_session::Run;
 
-/// Returns the work zeros: those of the machine file, or the origin of the part, from which positions then count.
-pub(crate) fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
+/// Returns the work zeros in whose coordinates one of the runs has placed an axis: those of the machine file, or the origin of the
+/// part, from which positions then count.
+pub(crate) fn zeros<'r>(machine: &Machine, runs: impl IntoIterator<Item = &'r Run>) -> Vec<(String, [f64; 3])> {
     if !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_)) {
         return Vec::new();
     }
@@ -15,5 +17,37 @@ pub(crate) fn zeros(machine: &Machine) -> Vec<(String, [f64; 3])> {
         values.iter().for_each(|(axis, value)| at[*axis] = *value);
         machine.forward(&at, &Setup::default()).tip.coords.into()
     };
-    machine.offsets.iter().map(|offset| (offset.system.name(machine.dialect), zero(&offset.values))).collect()
+    let runs: Vec<&Run> = runs.into_iter().collect();
+    let is_used = |offset: &&WorkOffset| runs.iter().any(|run| run.control.uses_work_system(offset.system));
+    let used = machine.offsets.iter().filter(is_used);
+    used.map(|offset| (offset.system.name(machine.dialect), zero(&offset.values))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_inspect::machine::Head;
+    use gcode_lang::program::NoLibrary;
+    use gcode_lang::program::modes::WorkSystem;
+    use gcode_session::{Request, simulate};
+    use nalgebra::Vector3;
+
+    /// G54 at X300, G55 at X20, G54.1 P2 at X50. G53 moves before any offset is selected, and G28 through the position.
+    #[test]
+    fn an_offset_in_which_nothing_is_placed_has_no_zero() {
+        let offset = |system, x| WorkOffset { system, values: vec![(0, x)] };
+        let systems = [WorkSystem::Standard(1), WorkSystem::Standard(2), WorkSystem::Additional(2)];
+        let offsets = systems.into_iter().zip([300.0, 20.0, 50.0]).map(|(system, x)| offset(system, x)).collect();
+        let head = Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0);
+        let machine = Machine { head, offsets, ..Machine::default() };
+        let zeros_of = |program: &str| {
+            let request = Request::new("O1.nc", program.as_bytes(), machine.clone());
+            let simulation = simulate(&request, &mut NoLibrary, None).unwrap();
+            zeros(&machine, [&simulation.run])
+        };
+        let at = |name: &str, x: f64| (name.to_owned(), [x, 0.0, 0.0]);
+        assert_eq!(zeros_of("O1\nG90 G53 G00 Z0.\nG91 G28 Z0.\nG90 G55 X1. Z5.\nM30"), [at("G55", 20.0)]);
+        assert_eq!(zeros_of("O1\nG90 G00 X1. Z5.\nG54.1 P2 X1.\nM30"), [at("G54", 300.0), at("G54.1 P2", 50.0)]);
+        assert_eq!(zeros_of("O1\nG55\nG55 G53 G00 Z0.\nM30"), []);
+    }
 }

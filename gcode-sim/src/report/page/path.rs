@@ -147,12 +147,13 @@ pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable)
     let drawn =
         sides.iter().enumerate().map(|(side_index, side)| drawn(page, side_index, side, table, sides.len()));
     let stock = page.reference.and_then(|reference| reference.stock.as_ref()).or(page.machine.stock.as_ref());
+    let zeros = zeros(page.machine, sides.iter().map(|side| &side.observed.revision.simulation.run));
     let sides: Vec<SidePath> = drawn.collect();
     Data {
         up,
         heights: heights(&sides, up),
         stock: stock.map(stock_edges::edges).unwrap_or_default(),
-        zeros: zeros(page.machine),
+        zeros,
         sides,
     }
 }
