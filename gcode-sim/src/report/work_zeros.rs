@@ -5,7 +5,10 @@ use gcode_session::Run;
 
 /// Returns the work zeros in whose coordinates one of the runs has placed an axis: those of the machine file, or the origin of the
 /// part, from which positions then count.
-pub(crate) fn zeros<'r>(machine: &Machine, runs: impl IntoIterator<Item = &'r Run>) -> Vec<(String, [f64; 3])> {
+pub(crate) fn zeros<'r>(
+    machine: &Machine,
+    runs: impl IntoIterator<Item = &'r Run>,
+) -> Vec<(String, [f64; 3])> {
     if !matches!(machine.head.kind, HeadKind::Free | HeadKind::Fixed(_)) {
         return Vec::new();
     }
@@ -37,7 +40,8 @@ mod tests {
     fn an_offset_in_which_nothing_is_placed_has_no_zero() {
         let offset = |system, x| WorkOffset { system, values: vec![(0, x)] };
         let systems = [WorkSystem::Standard(1), WorkSystem::Standard(2), WorkSystem::Additional(2)];
-        let offsets = systems.into_iter().zip([300.0, 20.0, 50.0]).map(|(system, x)| offset(system, x)).collect();
+        let offsets =
+            systems.into_iter().zip([300.0, 20.0, 50.0]).map(|(system, x)| offset(system, x)).collect();
         let head = Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0);
         let machine = Machine { head, offsets, ..Machine::default() };
         let zeros_of = |program: &str| {
@@ -47,7 +51,10 @@ mod tests {
         };
         let at = |name: &str, x: f64| (name.to_owned(), [x, 0.0, 0.0]);
         assert_eq!(zeros_of("O1\nG90 G53 G00 Z0.\nG91 G28 Z0.\nG90 G55 X1. Z5.\nM30"), [at("G55", 20.0)]);
-        assert_eq!(zeros_of("O1\nG90 G00 X1. Z5.\nG54.1 P2 X1.\nM30"), [at("G54", 300.0), at("G54.1 P2", 50.0)]);
+        assert_eq!(
+            zeros_of("O1\nG90 G00 X1. Z5.\nG54.1 P2 X1.\nM30"),
+            [at("G54", 300.0), at("G54.1 P2", 50.0)]
+        );
         assert_eq!(zeros_of("O1\nG55\nG55 G53 G00 Z0.\nM30"), []);
     }
 }

@@ -79,6 +79,7 @@ mod raster;
 mod scene;
 mod sheet;
 mod side;
+mod sign_places;
 mod size;
 mod svg;
 mod symbol;

@@ -218,7 +218,8 @@ impl<'m> PathRecorder<'m> {
         if moved == 0 {
             return;
         }
-        self.suppose_axis(kind, arc, moved);
+        // An axis that is commanded for the first time may move from anywhere.
+        self.suppose_axis(kind, arc, moved | was.uncommanded & !is.uncommanded);
         if !is_placed(self.machine, was.union(is), kind, moved) {
             self.path.unplaced_feeds += u64::from(kind == PathKind::Feed);
             return;
@@ -288,7 +289,7 @@ impl<'m> PathRecorder<'m> {
             .push(PathMove { last_point: (path.points.len() - 1) as u32, block_start: event.block.start });
     }
 
-    /// Counts the axis across an arc, or along a rapid of one axis, if the direction of the tool is unknown.
+    /// Counts the axis across an arc, or along a rapid that moves only this axis, if the direction of the tool is unknown.
     fn suppose_axis(&mut self, kind: PathKind, arc: Option<&PlanarArc>, moved: u8) {
         let axis = match arc {
             Some(arc) => (0..3).find(|axis| !is_in_plane(arc, *axis)),
@@ -466,6 +467,19 @@ mod tests {
         let script = EventScript::new().then("rapid Z5; rapid X10; rapid Z1; feed X20; feed X30; feed X40");
         let path = path(&Machine::default(), &script);
         assert_eq!((path.tool_axis(), path.supposed_axis()), (None, Some((2, true))));
+    }
+
+    /// The first rapid places X and Y, and only X changes its number; it is one along X if it places X alone.
+    #[test]
+    fn a_rapid_that_places_several_axes_is_along_none() {
+        let unknown = |axes: u8| EventKind::PositionUnknown {
+            axes: UnknownAxes { uncommanded: axes, ..UnknownAxes::default() },
+        };
+        let supposed = |after: u8| {
+            let script = EventScript::new().with(unknown(3)).with(unknown(after)).then("rapid X10; feed X20");
+            path(&Machine::default(), &script).supposed_axis()
+        };
+        assert_eq!((supposed(0), supposed(2)), (None, Some((0, true))));
     }
 
     /// Events 4, 5 and 6 are the feed to the hole, the feed into it, and the feed out of it; event 7 is a feed across.

@@ -1,6 +1,6 @@
 //! The picture of a tool path: one or several views with frames, the holes on top, and a legend.
 use super::path_places::{MAX_PLACES, limits, places, zeros};
-use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale, stock_outline};
+use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale, class_style, stock_outline};
 use super::path_view::{Arrangement, ColorBy, PathView, RunKind, StandardView};
 use super::top::{DrawnHole, TopView, hole_mark};
 use super::view_frames::{Frames, PlacedView, ViewBox};
@@ -185,16 +185,16 @@ fn legend(
             }
         });
     }
-    items.extend(tool_lines(drawer, is_shown));
-    if arrangement.color_by == ColorBy::Program {
+    if arrangement.color_by != ColorBy::Program {
+        items.extend(tool_lines(drawer, is_shown));
+    } else {
         let mut used: Vec<usize> =
             path.runs.iter().filter(|run| run.kind == RunKind::Feed).map(|run| run.program).collect();
         used.sort_unstable();
         used.dedup();
-        let style = |class: usize| Style { tint: Some(Tint::Class(class)), ..Style::default() };
         let line = |program: usize| {
             let name = path.programs.get(program).map_or("", String::as_str);
-            LegendItem::new(Sample::Line(Pen::Feed, style(program)), name)
+            LegendItem::new(Sample::Line(Pen::Feed, class_style(program)), name)
         };
         items.extend(used.iter().take(MAX_CLASSES).map(|program| line(*program)));
         items.extend(more(used.len(), "program"));
@@ -248,10 +248,7 @@ fn tool_lines(drawer: &PathDrawer<'_>, is_shown: impl Fn(usize) -> bool) -> Vec<
         let run = path.runs.iter().find(|run| run.kind == RunKind::Feed && run.tool == tool)?;
         let mut style = drawer.style(run);
         if drawer.color_by != ColorBy::Tool {
-            style.tint = Some(match drawer.color_by {
-                ColorBy::Program => Tint::Class(4),
-                _ => Tint::Shade(0.25),
-            });
+            style.tint = Some(Tint::Shade(0.25));
         }
         Some(LegendItem::new(Sample::Line(Pen::Feed, style), path.tools[tool].name.clone()))
     };

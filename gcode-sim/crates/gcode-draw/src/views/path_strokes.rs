@@ -83,6 +83,11 @@ impl ShadeScale {
     }
 }
 
+/// Returns the colour and the dashes of a class: the seventh has the first one's colour and the second one's dashes.
+pub(super) fn class_style(class: usize) -> Style {
+    Style { tint: Some(Tint::Class(class)), pattern: ((class + class / 6) % 6) as u8, ..Style::default() }
+}
+
 /// Draws the path in a view.
 pub(super) struct PathDrawer<'a> {
     pub(super) path: &'a PathView,
@@ -97,17 +102,26 @@ pub(super) struct PathDrawer<'a> {
 }
 
 impl PathDrawer<'_> {
+    /// Returns the number of the class that the dashes of a feed stand for: its program if the colours stand for programs, else its
+    /// tool in the order of the first feeds.
+    fn class(&self, run: &PathRun) -> usize {
+        match self.color_by {
+            ColorBy::Program => run.program,
+            ColorBy::Tool | ColorBy::Feed | ColorBy::Depth => {
+                self.tool_order.get(run.tool).copied().flatten().unwrap_or(0)
+            }
+        }
+    }
+
     /// Returns the look of a feed, but for its shade.
     pub(super) fn style(&self, run: &PathRun) -> Style {
-        let order = self.tool_order.get(run.tool).copied().flatten().unwrap_or(0);
+        let of_class = class_style(self.class(run));
         let tint = match self.color_by {
-            ColorBy::Tool => Some(Tint::Class(order)),
-            ColorBy::Program => Some(Tint::Class(run.program)),
+            ColorBy::Tool | ColorBy::Program => of_class.tint,
             ColorBy::Feed => self.shades.map(|scale| scale.tint(scale.level(run.feed))),
             ColorBy::Depth => None,
         };
-        // The seventh tool has the first one's colour and the second one's dashes.
-        Style { tint, pattern: ((order + order / 6) % 6) as u8, ..Style::default() }
+        Style { tint, ..of_class }
     }
 
     /// Draws the areas that the cutters sweep along the feeds, where the tool is along the line of sight.
@@ -193,9 +207,10 @@ impl PathDrawer<'_> {
                 strokes.extend(lines.into_iter().rev());
                 continue;
             }
-            let of_tool =
-                drawn.entry(run.tool).or_insert_with(|| DrawnSegments::new(2.0 * RESOLUTION * self.extent));
-            strokes.extend(lines.into_iter().rev().flat_map(|stroke| of_tool.without_repeats(stroke)));
+            let of_class = drawn
+                .entry(self.class(run))
+                .or_insert_with(|| DrawnSegments::new(2.0 * RESOLUTION * self.extent));
+            strokes.extend(lines.into_iter().rev().flat_map(|stroke| of_class.without_repeats(stroke)));
         }
         strokes.reverse();
         probes_on_top(strokes)
