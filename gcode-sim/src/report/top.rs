@@ -44,12 +44,8 @@ pub fn of_holes(
     TopView {
         name: name.to_owned(),
         side,
-        lines: simulation
-            .run
-            .stop_sentence()
-            .into_iter()
-            .chain(assumption_lines(assumptions, Total::Holes(holes.len())))
-            .collect(),
+        lines: assumption_lines(assumptions, Total::Holes(holes.len())).collect(),
+        verdict: simulation.run.stop_sentence().map(|stop| (HoleStatus::Bad, format!("FAIL: {stop}"))),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,

@@ -62,6 +62,14 @@ pub enum StretchAxis {
     Oblique,
 }
 
+impl StretchAxis {
+    /// Returns the direction of a tool.
+    fn of(out: &Unit<Vector3<f64>>) -> Self {
+        let axis = out.iter().position(|part| MIN_COSINE < part.abs());
+        axis.map_or(Self::Oblique, |axis| Self::Along(axis, 0.0 < out[axis]))
+    }
+}
+
 /// Successive moves of one kind by one tool, at one feed, in one program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stretch {
@@ -231,21 +239,21 @@ impl<'m> PathRecorder<'m> {
         let feed = event.kind.rate().map_or(0.0, |rate| rate.0);
         let path = &mut self.path;
         let first = path.points.len();
-        let mut axes = [None; 2];
+        let (mut out, mut axis): (_, Option<StretchAxis>) = (None, None);
         let tolerance = (travel.radius() * ARC_TOLERANCE).clamp(0.1 * CHORD_TOLERANCE, CHORD_TOLERANCE);
         let tolerance = if arc.is_some() { tolerance } else { CHORD_TOLERANCE };
         for_each_drawn_pose(self.machine, &self.setup, &travel, tolerance, |pose| {
             path.points.push(pose.tip.coords.into());
-            axes = [axes[0].or(pose.axis), pose.axis];
+            out = out.or(pose.axis);
+            let of_pose = pose.axis.map_or(StretchAxis::Unknown, |axis| StretchAxis::of(&axis));
+            axis = Some(if axis.is_none_or(|before| before == of_pose) {
+                of_pose
+            } else {
+                StretchAxis::Oblique
+            });
         });
         path.end = path.points.last().copied();
-        let axis = match axes {
-            [Some(from), Some(to)] if kind == PathKind::Feed => match (axis_of(&from), axis_of(&to)) {
-                (Some(from), Some(to)) if from == to => StretchAxis::Along(to.0, to.1),
-                _ => StretchAxis::Oblique,
-            },
-            _ => StretchAxis::Unknown,
-        };
+        let axis = axis.filter(|_| kind == PathKind::Feed).unwrap_or_default();
         let is_same_program = match (&self.calls, event.calls) {
             (None, None) => true,
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
@@ -270,7 +278,7 @@ impl<'m> PathRecorder<'m> {
             stretch.points.end = path.points.len();
             stretch.moves.end = moves + 1;
         } else {
-            match (axis, axes[0]) {
+            match (axis, out) {
                 (StretchAxis::Along(..), Some(out)) => count_axis(&mut path.tool_axes, &out),
                 (StretchAxis::Oblique, Some(out)) => count_axis(&mut path.oblique_axes, &out),
                 _ => {}
@@ -302,12 +310,6 @@ impl<'m> PathRecorder<'m> {
             *self.path.supposed_axes.entry(axis).or_default() += 1;
         }
     }
-}
-
-/// Returns the axis of the part along a direction, and whether it points to the positive end.
-fn axis_of(direction: &Unit<Vector3<f64>>) -> Option<(usize, bool)> {
-    let axis = direction.iter().position(|part| MIN_COSINE < part.abs())?;
-    Some((axis, 0.0 < direction[axis]))
 }
 
 /// Counts a stretch for the axis of the part that is nearest to a direction, and for its sign.
@@ -403,6 +405,14 @@ mod tests {
         let down = StretchAxis::Along(2, true);
         assert!(axes[..2] == [down, down] && matches!(axes[2..], [StretchAxis::Along(0, _)]), "{axes:?}");
         assert_eq!(path.tool_axis(), Some((2, true)));
+    }
+
+    /// A turn of the table under the cutter is back where it began, and along no axis between.
+    #[test]
+    fn a_feed_with_a_whole_turn_is_oblique() {
+        let path = path(&upright(), &EventScript::new().then("feed X10; feed B360"));
+        let axes: Vec<StretchAxis> = path.stretches.iter().map(|of| of.axis).collect();
+        assert_eq!(axes, [StretchAxis::Along(2, true), StretchAxis::Oblique]);
     }
 
     /// With the table at B30 and B60 the tool is 30° and 60° off z: nearest to z in two stretches, to x in one.

@@ -5,6 +5,7 @@ pub(super) mod flute_view;
 pub(super) mod flutes;
 pub(super) mod helix;
 pub(super) mod hole_picture;
+pub(super) mod path_legend;
 pub(super) mod path_picture;
 pub(super) mod path_places;
 pub(super) mod path_strokes;

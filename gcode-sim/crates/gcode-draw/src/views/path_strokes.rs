@@ -11,6 +11,8 @@ use nalgebra::Vector3;
 
 /// Resolution of a sheet in parts of the extent of its views: less than 0.1 pixels of an ordinary picture.
 const RESOLUTION: f64 = 5e-5;
+/// Largest difference of heights that are one, mm.
+const SAME_HEIGHT: f64 = 1e-6;
 /// Number of shades that are told apart.
 const SHADES: f64 = 64.0;
 /// Largest number of points of feeds under which the swept width is drawn.
@@ -21,6 +23,8 @@ pub(super) const MAX_SWEPT_POINTS: usize = 20_000;
 pub(super) struct ShadeScale {
     pub(super) low: f64,
     pub(super) high: f64,
+    /// Height of the highest plunge above the scale, whose colour there is that of the highest cut.
+    pub(super) plunge: Option<f64>,
 }
 
 impl ShadeScale {
@@ -56,17 +60,18 @@ impl ShadeScale {
                     }
                 }
                 let high = if low <= high { high } else { highest };
-                return (lowest <= high).then_some(Self { low: lowest, high });
+                let plunge = Some(highest).filter(|highest| high + SAME_HEIGHT < *highest);
+                return (lowest <= high).then_some(Self { low: lowest, high, plunge });
             }
             ColorBy::Feed => feeds().for_each(|run| add(run.feed)),
             ColorBy::Tool | ColorBy::Program => return None,
         }
-        (low <= high).then_some(Self { low, high })
+        (low <= high).then_some(Self { low, high, plunge: None })
     }
 
     /// Returns true if all values are the same.
     pub(super) fn is_flat(self) -> bool {
-        self.high - self.low < 1e-6
+        self.high - self.low < SAME_HEIGHT
     }
 
     /// Returns the colour of a shade by its number.
@@ -138,8 +143,7 @@ impl PathDrawer<'_> {
             let points = self.sparse(view, run);
             let style = Style { tint: Some(Tint::Pale), width: Some(width), ..Style::default() };
             // A plunge sweeps no more than its hole, which has a symbol.
-            let has_extent =
-                points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]));
+            let has_extent = points.iter().any(|point| self.is_apart(*point, points[0]));
             has_extent.then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
         });
         swept.collect()
@@ -176,12 +180,17 @@ impl PathDrawer<'_> {
         (strokes, is_cut)
     }
 
+    /// Returns true if a sheet can tell two points from each other.
+    pub(super) fn is_apart(&self, one: Point, other: Point) -> bool {
+        RESOLUTION * self.extent <= distance(one, other)
+    }
+
     /// Returns true if a view shows feeds of a tool as lines.
     pub(super) fn shows_feeds(&self, view: &PlacedView, tool: usize) -> bool {
         let is_of_tool = |run: &&PathRun| run.kind == RunKind::Feed && run.tool == tool;
         self.path.runs.iter().filter(is_of_tool).any(|run| {
             let points = self.sparse(view, run);
-            points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]))
+            points.iter().any(|point| self.is_apart(*point, points[0]))
         })
     }
 
@@ -434,10 +443,10 @@ mod tests {
             };
             let frames = Frames::of(ViewBox::of(Side::Z, &TopView::default(), &path), &arrangement);
             let scale = ShadeScale::of(&path, ColorBy::Depth, &frames, |at| at[2]).unwrap();
-            [scale.low, scale.high]
+            ([scale.low, scale.high], scale.plunge)
         };
-        assert_eq!(scale(StandardView::Top), [-2.0, -2.0]);
-        assert_eq!(scale(StandardView::Front), [-20.0, -2.0]);
+        assert_eq!(scale(StandardView::Top), ([-2.0, -2.0], None));
+        assert_eq!(scale(StandardView::Front), ([-20.0, -2.0], Some(0.0)));
     }
 
     /// From (−10, 5) to (30, 25) the line enters a square of 0 to 20 at (0, 10) and leaves it at (20, 20).
