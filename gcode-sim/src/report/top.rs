@@ -86,9 +86,12 @@ pub fn of_verdict(
     let by_id: BTreeMap<_, _> = reference.holes.iter().map(|hole| (hole.id.as_deref(), hole)).collect();
     let nominal = |id: &str| by_id.get(&Some(id)).copied();
     let judged = verdict.holes.iter().map(|hole| {
-        let remark = hole.error_codes.first().map(|code| match *code {
-            "hole-depth" => format!("depth {}", with_sign(hole.depth_error)),
-            other => other.trim_start_matches("hole-").to_owned(),
+        let difference =
+            hole.actual.diameter.zip(hole.nominal.diameter).map(|(actual, nominal)| actual - nominal);
+        let remark = hole.error_codes.first().map(|code| match (*code, difference) {
+            ("hole-depth", _) => format!("depth {}", with_sign(hole.depth_error)),
+            ("hole-diameter", Some(difference)) => format!("diameter {}", with_sign(difference)),
+            (other, _) => other.trim_start_matches("hole-").to_owned(),
         });
         DrawnHole {
             nominal: nominal(&hole.id).cloned(),

@@ -134,7 +134,11 @@ struct HoleLinks {
 
 impl Data {
     fn has_pen(&self, pen: Pen) -> bool {
-        self.sides.iter().any(|side| side.scene.strokes.iter().any(|stroke| stroke.pen == pen))
+        // A move with an unknown end is a point.
+        let is_line = |stroke: &Stroke<3>| matches!(&stroke.shape, Shape::Line(points) if 1 < points.len());
+        self.sides
+            .iter()
+            .any(|side| side.scene.strokes.iter().any(|stroke| stroke.pen == pen && is_line(stroke)))
     }
 
     fn has_hole(&self, is: impl Fn(HoleStatus) -> bool) -> bool {
@@ -358,7 +362,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
         ("top", "Top", Some("View from above")),
         ("front", "Front", Some("View from the front")),
         ("side", "Side", Some("View from the side")),
-        ("reset", "All", Some("View of the whole path")),
+        ("reset", "All", Some("View of all cuts and holes")),
         ("in", "+", Some("Zoom in")),
         ("out", "\u{2212}", Some("Zoom out")),
     ];

@@ -37,7 +37,11 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     let (mut is_cut, mut labelled) = (false, vec![false; view.holes.len()]);
     for (index, placed) in frames.views.iter().enumerate() {
         if placed.kind == StandardView::Top && is_swept_drawn {
-            scene.strokes.extend(drawer.swept(placed));
+            let swept = drawer.swept(placed);
+            if !swept.is_empty() && drawer.sweeps_across_sight(placed) {
+                notes.push("swept width drawn only where the tool is along the line of sight".to_owned());
+            }
+            scene.strokes.extend(swept);
         }
         if placed.kind == StandardView::Top {
             let outlines = view.outlines().map(|shape| shape.map(|point| placed.moved(point)));

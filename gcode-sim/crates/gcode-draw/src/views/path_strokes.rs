@@ -93,6 +93,15 @@ pub(super) fn class_style(class: usize) -> Style {
     Style { tint: Some(Tint::Class(class)), pattern: ((class + class / 6) % 6) as u8, ..Style::default() }
 }
 
+/// Returns true if the tool is along the line of sight, or in an unknown direction.
+fn is_along_sight(view: &PlacedView, run: &PathRun) -> bool {
+    match run.axis {
+        RunAxis::Unknown => true,
+        RunAxis::Along(axis) => 0.5 < view.side.towards()[axis].abs(),
+        RunAxis::Oblique => false,
+    }
+}
+
 /// Draws the path in a view.
 pub(super) struct PathDrawer<'a> {
     pub(super) path: &'a PathView,
@@ -131,12 +140,7 @@ impl PathDrawer<'_> {
 
     /// Draws the areas that the cutters sweep along the feeds, where the tool is along the line of sight.
     pub(super) fn swept(&self, view: &PlacedView) -> Vec<Stroke> {
-        let towards = view.side.towards();
-        let is_along_sight = |run: &&PathRun| match run.axis {
-            RunAxis::Unknown => true,
-            RunAxis::Along(axis) => 0.5 < towards[axis].abs(),
-            RunAxis::Oblique => false,
-        };
+        let is_along_sight = |run: &&PathRun| is_along_sight(view, run);
         let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed).filter(is_along_sight);
         let swept = feeds.filter_map(|run| {
             let width = self.path.tools.get(run.tool)?.swept_width?;
@@ -147,6 +151,24 @@ impl PathDrawer<'_> {
             has_extent.then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
         });
         swept.collect()
+    }
+
+    /// Returns true if a mill sweeps a width along a feed where it is not along the line of sight.
+    pub(super) fn sweeps_across_sight(&self, view: &PlacedView) -> bool {
+        let has_width =
+            |run: &PathRun| self.path.tools.get(run.tool).is_some_and(|tool| tool.swept_width.is_some());
+        let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed && has_width(run));
+        feeds.filter(|run| !is_along_sight(view, run)).any(|run| {
+            let points = &self.path.points[run.points.clone()];
+            // A plunge sweeps no more than its hole.
+            let is_across = |pair: &[[f64; 3]]| match run.axis {
+                RunAxis::Along(axis) => {
+                    (0..3).any(|other| other != axis && 1e-6 < (pair[1][other] - pair[0][other]).abs())
+                }
+                RunAxis::Unknown | RunAxis::Oblique => true,
+            };
+            points.windows(2).any(is_across)
+        })
     }
 
     /// Draws the rapids, clipped to the frame; returns true with them if any is cut off.

@@ -274,6 +274,12 @@ impl TopView {
             all.dedup();
             all.into_iter().map(|diameter| signed(diameter, 3)).collect::<Vec<_>>().join("/")
         };
+        // The other columns have the nominal hole.
+        let fault = |drawn: &DrawnHole| match drawn.status {
+            HoleStatus::Bad => drawn.remarks.join(", "),
+            HoleStatus::Missing | HoleStatus::Extra => self.purpose.status_word(drawn.status).to_owned(),
+            HoleStatus::Good | HoleStatus::Unjudged => String::new(),
+        };
         let has_diameter = shown().any(|(_, hole)| !diameters(hole).is_empty());
         let has_position = shown().any(|(hole, _)| hole.position_deviation.is_some());
         // Without a nominal hole the depth counts from where a feed begins to the deepest point of any tool.
@@ -286,12 +292,13 @@ impl TopView {
             (has_diameter, "Φ", 3),
             (true, if is_fed { "deepest" } else { "depth" }, 2),
             (has_position, "position", 5),
+            (shown().any(|(hole, _)| !fault(hole).is_empty()), "fault", 6),
         ];
         let row = |(drawn, hole): (&DrawnHole, &Hole)| {
             let [x, y, z] = hole.entry.map(|mm| signed(mm, 3));
             let depth = if hole.through { "through".to_owned() } else { signed(hole.depth, 3) };
             let position = drawn.position_deviation.map_or_else(String::new, |phi| format!("Φ{phi:.3}"));
-            let cells = [drawn.id.clone(), x, y, z, diameters(hole), depth, position];
+            let cells = [drawn.id.clone(), x, y, z, diameters(hole), depth, position, fault(drawn)];
             let cells = cells.into_iter().zip(&columns).filter(|(_, (is_shown, ..))| *is_shown);
             (drawn.status, cells.map(|(cell, _)| cell).collect())
         };
