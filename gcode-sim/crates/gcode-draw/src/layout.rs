@@ -6,7 +6,7 @@ use super::ink::{DrawCommand, Rect, px};
 use super::label_layout::{LabelLayout, caption_strokes};
 use super::labels::LabelArea;
 use super::lines::{are_arrows_hidden, axes, block_stroke, scale_bar, shape_commands};
-use super::marks::draw_marks;
+use super::marks::{draw_marks, has_axis_arrow};
 use super::measure::{Frame, Scale};
 use super::panel::Panel;
 use super::picture::{LegendUse, Picture};
@@ -145,9 +145,9 @@ impl Plan {
         }
         notes.extend(lettering.notes(scene));
         if !bare.is_empty() {
-            notes.push(format!("No room on the line for {}.", bare.join(", ")));
+            notes.push(format!("No room for {}.", bare.join(", ")));
         }
-        if detail == Detail::SignsWithoutAxes {
+        if detail == Detail::SignsWithoutAxes && scene.marks.iter().any(has_axis_arrow) {
             notes.push("Axes of the holes not drawn: no room.".to_owned());
         }
         let legend_use = LegendUse {

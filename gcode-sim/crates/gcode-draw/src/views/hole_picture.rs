@@ -21,7 +21,7 @@ const PATHS: [(Pen, &str); 5] = [
 ];
 
 /// Number of holes beyond which good ones have no number.
-const MAX_LABELLED: usize = 200;
+pub(super) const MAX_LABELLED: usize = 200;
 
 /// Largest number of construction circles; more would hide the holes.
 const MAX_CIRCLES: usize = 12;

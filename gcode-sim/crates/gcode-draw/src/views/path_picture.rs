@@ -1,4 +1,5 @@
 //! The picture of a tool path: one or several views with frames, the holes on top, and a legend.
+use super::hole_picture::MAX_LABELLED;
 use super::path_legend::legend;
 use super::path_places::{MAX_PLACES, limits, places, zeros};
 use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale, stock_outline};
@@ -63,6 +64,11 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
         scene.strokes.extend(zeros(path, placed, index == 0));
         scene.strokes.extend(places(path, placed, frames.extent, index == 0));
         scene.marks.extend(marks(view, placed, 1 < frames.views.len(), &mut labelled));
+    }
+    // Of hundreds of holes those out of tolerance keep their numbers.
+    if MAX_LABELLED < view.holes.len() {
+        let good = scene.marks.iter_mut().filter(|mark| mark.status.is_good());
+        good.for_each(|mark| mark.label.clear());
     }
     if is_cut {
         notes.push("rapids beyond the frame are cut off".to_owned());
@@ -165,9 +171,9 @@ fn faces_view(hole: &DrawnHole, placed: &PlacedView) -> bool {
 mod tests {
     use super::super::path_view::{ColorBy, DrawnTool, PathPlace, PathRun, RunAxis, TravelLimit};
     use super::*;
-    use crate::scene::{Point, Shape, Sign, Tint};
+    use crate::scene::{HoleStatus, Point, Shape, Sign, Tint};
     use crate::side::{Projection, Side};
-    use gcode_part::{Stock, StockAxis};
+    use gcode_part::{Hole, Stock, StockAxis};
 
     /// A slot of 10 mm along x at z −2 from (0, 0) to (100, 40), reached by a rapid from z 300.
     fn slot() -> PathView {
@@ -387,5 +393,32 @@ mod tests {
         let shades: Vec<f64> = shades.collect();
         assert!(shades.len() == 5 && shades.windows(2).all(|pair| pair[1] < pair[0]), "{shades:?}");
         assert_eq!((shades[0], shades[4]), (1.0, 0.0));
+    }
+
+    /// Of 201 holes one is out of tolerance: it alone has a number. Of 200 all have one.
+    #[test]
+    fn beyond_200_holes_those_out_of_tolerance_have_numbers() {
+        let numbered = |count: usize| {
+            let hole = |index: usize| DrawnHole {
+                id: index.to_string(),
+                status: if index == 7 { HoleStatus::Bad } else { HoleStatus::Good },
+                actual: Some(Hole {
+                    entry: [index as f64, 0.0, 0.0],
+                    axis: [0.0, 0.0, 1.0],
+                    ..Hole::default()
+                }),
+                ..DrawnHole::default()
+            };
+            let view = TopView { side: Side::Z, holes: (0..count).map(hole).collect(), ..TopView::default() };
+            let arrangement = Arrangement {
+                top: Side::Z,
+                views: vec![StandardView::Top],
+                projection: Projection::Third,
+                color_by: ColorBy::Depth,
+            };
+            let marks = path_picture(&view, &slot(), &arrangement).scene.marks;
+            marks.iter().filter(|mark| !mark.label.is_empty()).count()
+        };
+        assert_eq!((numbered(200), numbered(201)), (200, 1));
     }
 }
