@@ -183,7 +183,7 @@ mod tests {
         let difference = |one: Rgb, other: Rgb| {
             let least = |vision| {
                 let (one, other) = (seen(one, vision), seen(other, vision));
-                (0..3).map(|n| (one[n] - other[n]).powi(2)).sum::<f64>().sqrt()
+                (0..3).map(|n| (one[n] - other[n]) * (one[n] - other[n])).sum::<f64>().sqrt()
             };
             visions.iter().map(least).fold(f64::INFINITY, f64::min)
         };
