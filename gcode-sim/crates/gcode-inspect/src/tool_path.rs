@@ -370,6 +370,10 @@ mod tests {
         recorder.finish()
     }
 
+    fn unknown(axes: u8) -> EventKind {
+        EventKind::PositionUnknown { axes: UnknownAxes { uncommanded: axes, ..UnknownAxes::default() } }
+    }
+
     fn upright() -> Machine {
         Machine { head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0), ..Machine::default() }
     }
@@ -407,20 +411,15 @@ mod tests {
         assert_eq!(path.tool_axis(), Some((2, true)));
     }
 
-    /// A turn of the table under the cutter is back where it began, and along no axis between.
-    #[test]
-    fn a_feed_with_a_whole_turn_is_oblique() {
-        let path = path(&upright(), &EventScript::new().then("feed X10; feed B360"));
-        let axes: Vec<StretchAxis> = path.stretches.iter().map(|of| of.axis).collect();
-        assert_eq!(axes, [StretchAxis::Along(2, true), StretchAxis::Oblique]);
-    }
-
-    /// With the table at B30 and B60 the tool is 30° and 60° off z: nearest to z in two stretches, to x in one.
+    /// With the table at B30 and B60 the tool is 30° and 60° off z: nearest to z in two stretches, to x in one. In a whole turn it is
+    /// along z at both ends, and along no axis between.
     #[test]
     fn an_oblique_tool_counts_for_the_nearest_axis() {
-        let script = "rapid B30; feed X10; rapid Z5; feed X20; rapid Z9; rapid B60; feed X30";
-        let path = path(&upright(), &EventScript::new().then(script));
-        assert_eq!((path.tool_axes.len(), path.tool_axis()), (0, Some((2, true))));
+        let path = |script: &str| path(&upright(), &EventScript::new().then(script));
+        let two_angles = path("rapid B30; feed X10; rapid Z5; feed X20; rapid Z9; rapid B60; feed X30");
+        assert_eq!((two_angles.tool_axes.len(), two_angles.tool_axis()), (0, Some((2, true))));
+        let axes: Vec<StretchAxis> = path("feed X10; feed B360").stretches.iter().map(|of| of.axis).collect();
+        assert_eq!(axes, [StretchAxis::Along(2, true), StretchAxis::Oblique]);
     }
 
     /// Chords of a quarter of radius 10 deviate by at most 0.005: each spans at most 2·acos(1 − 0.0005) = 3.62°, so that
@@ -445,9 +444,6 @@ mod tests {
     /// X is unknown until its first move has ended; Y and Z are known.
     #[test]
     fn a_move_from_an_unknown_position_is_not_recorded() {
-        let unknown = |axes: u8| EventKind::PositionUnknown {
-            axes: UnknownAxes { uncommanded: axes, ..UnknownAxes::default() },
-        };
         let script = EventScript::new().with(unknown(1)).with(unknown(0)).then("feed X10; feed X20; feed Y5");
         let path = path(&upright(), &script);
         assert_eq!((path.unplaced_feeds, path.moves.len(), path.points[0]), (1, 2, [10.0, 0.0, 0.0]));
@@ -482,9 +478,6 @@ mod tests {
     /// The first rapid places X and Y, and only X changes its number; it is one along X if it places X alone.
     #[test]
     fn a_rapid_that_places_several_axes_is_along_none() {
-        let unknown = |axes: u8| EventKind::PositionUnknown {
-            axes: UnknownAxes { uncommanded: axes, ..UnknownAxes::default() },
-        };
         let supposed = |after: u8| {
             let script = EventScript::new().with(unknown(3)).with(unknown(after)).then("rapid X10; feed X20");
             path(&Machine::default(), &script).supposed_axis()
