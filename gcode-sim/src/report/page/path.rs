@@ -141,6 +141,11 @@ impl Data {
             .any(|side| side.scene.strokes.iter().any(|stroke| stroke.pen == pen && is_line(stroke)))
     }
 
+    /// Returns true if a side makes a cut, or a move of any kind, that the other does not make.
+    fn has_changed(&self, is: impl Fn(Pen) -> bool) -> bool {
+        self.sides.iter().any(|side| side.changed.iter().any(|stroke| is(side.scene.strokes[*stroke].pen)))
+    }
+
     fn has_hole(&self, is: impl Fn(HoleStatus) -> bool) -> bool {
         self.sides.iter().any(|side| side.scene.marks.iter().any(|mark| is(mark.status)))
     }
@@ -397,10 +402,10 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                     li.feed { "feed, arc" }
                 }
                 @if data.has_pen(Pen::Probe) { li.probe { "probing move" } }
-                @if sides.len() == 2 {
+                @if data.has_changed(|_| true) {
                     li.changed { "different from the other program" }
-                    li.other { "the other program\u{2019}s cut" }
                 }
+                @if data.has_changed(|pen| pen != Pen::Rapid) { li.other { "the other program\u{2019}s cut" } }
                 @if data.has_hole(|status| matches!(status, HoleStatus::Good | HoleStatus::Unjudged)) { li.hole { "hole, and its depth as a line" } }
                 @if data.has_hole(|status| matches!(status, HoleStatus::Bad | HoleStatus::Extra)) {
                     li.wrong { "hole that differs or has a fault" }

@@ -454,12 +454,17 @@ class Side {
     context.stroke();
   }
 
-  // Marks the end of the path by a cross.
+  // Marks the end of the path by a cross; one at the edge of the canvas says that the place is beyond it.
   drawAlarm(colours) {
     if (this.moves.length === 0) return;
     const at = 2 * (this.starts[this.moves.length] - 1);
     const [x, y] = this.inside(at);
     const context = this.context;
+    if (x !== this.screen[at] || y !== this.screen[at + 1]) {
+      Object.assign(context, { font: "12px system-ui, sans-serif", fillStyle: colours.wrong });
+      const words = "stopped (outside)";
+      this.write(words, x < this.view.width / 2 ? x + 13 : x - 13 - context.measureText(words).width, y + 4, colours);
+    }
     for (const [strokeStyle, lineWidth] of [[colours.paper, 6], [colours.wrong, 3]]) {
       Object.assign(context, { strokeStyle, lineWidth });
       context.beginPath();
@@ -689,8 +694,7 @@ class Viewer {
   constructor(data, sides) {
     sides.forEach((side) => Object.assign(side, { stock: data.stock, zeros: data.zeros, heights: data.heights, up: data.up }));
     Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false, upTo: null } });
-    // A change is seen larger without the stock.
-    this.extents = [...sides.flatMap((side) => side.extent()), ...(sides.length === 1 ? data.stock.flat(2) : [])];
+    this.extents = [...sides.flatMap((side) => side.extent()), ...data.stock.flat(2)];
     if (sides.length === 2) sides.forEach((side) => (side.overview = (...box) => this.whole(...box)));
     this.middle = [0, 1, 2].map((axis) => {
       let [low, high] = [Infinity, -Infinity];

@@ -7,7 +7,7 @@ use super::purpose::PicturePurpose;
 use super::top::{DrawnHole, TopView, hole_mark, number_few, signed};
 use super::view_frames::Frames;
 use crate::picture::{LegendItem, Picture, Sample};
-use crate::scene::{Axis, Mark, Pen, Point, Scene, Shape, Stroke};
+use crate::scene::{Axis, Mark, Pen, Point, Scene, Shape, Sign, Stroke};
 use crate::side::Side;
 use gcode_part::Hole;
 
@@ -112,6 +112,8 @@ fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
     let has_axis = |mark: &Mark| mark.direction.is_some_and(|d| 0.02 < libm::hypot(d[0], d[1]));
     let has_pen = |pen: Pen| scene.strokes.iter().any(|stroke| stroke.pen == pen);
     let has_zero = scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Zero(_)));
+    let is_alarm = |stroke: &Stroke| matches!(stroke.shape, Shape::Sign { sign: Sign::Alarm, .. });
+    let has_alarm = scene.strokes.iter().any(is_alarm);
     let is_nominal = view.holes.iter().any(|hole| hole.nominal.is_some());
     let radius = if is_nominal { "radius r, mm" } else { "radius r where the feed begins, mm" };
     let others = [
@@ -124,6 +126,7 @@ fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
         (has_pen(Pen::Thread), Sample::Pen(Pen::Thread), "thread"),
         (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), "part outline"),
         (has_zero, Sample::Zero, "work zero"),
+        (has_alarm, Sample::Sign(Sign::Alarm), "where a run stopped"),
         (has_pen(Pen::Construction), Sample::Pen(Pen::Construction), radius),
     ];
     let paths = PATHS.map(|(pen, text)| (has_pen(pen), Sample::Pen(pen), text));
