@@ -215,10 +215,10 @@ pub(super) fn round_up(value: f64) -> f64 {
     step.unwrap_or(10.0) * decade
 }
 
-/// Returns the radius of the part's outline seen along y; `None` if it is not a circle.
-pub(super) fn outline(surface: Surface) -> Option<f64> {
+/// Returns the equatorial and the polar radius of an ellipsoid.
+pub(super) fn outline(surface: Surface) -> Option<[f64; 2]> {
     match surface {
-        Surface::Ellipsoid { a, .. } => Some(a),
+        Surface::Ellipsoid { a, b } => Some([a, b]),
         Surface::Cylinder { .. } | Surface::Block { .. } | Surface::Rod(_) => None,
     }
 }

@@ -74,6 +74,9 @@ pub(super) fn legend(
     let has_zero = scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Zero(_)));
     let pale = Style { tint: Some(Tint::Pale), width: Some(0.6), ..Style::default() };
     let outline = if path.stock.is_some() { "stock" } else { "part outline" };
+    let has_void = path.stock.as_ref().is_some_and(|stock| !stock.voids().is_empty());
+    let has_hidden = arrangement.views.contains(&StandardView::Isometric);
+    let void = if has_hidden { "void of the stock, hidden edge" } else { "void of the stock" };
     let is_limit = path.places.iter().any(|place| place.sign == Sign::Alarm && place.label == "limit");
     let stopped = if is_limit { "limit of the run" } else { "alarm" };
     let others = [
@@ -82,6 +85,7 @@ pub(super) fn legend(
         (has_tint(Tint::Pale), Sample::Line(Pen::Feed, pale), "swept by the cutter"),
         (has_pen(Pen::Thread), Sample::Pen(Pen::Thread), "thread"),
         (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), outline),
+        (has_void, Sample::Pen(Pen::Construction), void),
         (has_pen(Pen::Limit), Sample::Pen(Pen::Limit), "travel limit of the tip"),
         (has_zero, Sample::Zero, "work zero"),
         (has_sign(Sign::Start), Sample::Sign(Sign::Start), "start"),

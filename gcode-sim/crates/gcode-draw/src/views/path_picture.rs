@@ -2,8 +2,9 @@
 use super::hole_picture::MAX_LABELLED;
 use super::path_legend::legend;
 use super::path_places::{MAX_PLACES, limits, places, zeros};
-use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale, stock_outline};
+use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale};
 use super::path_view::{Arrangement, PathView, RunKind, StandardView};
+use super::stock_outline::stock_outline;
 use super::top::{DrawnHole, TopView, hole_mark};
 use super::view_frames::{Frames, PlacedView, ViewBox};
 use crate::picture::Picture;
@@ -44,10 +45,9 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
             }
             scene.strokes.extend(swept);
         }
-        if placed.kind == StandardView::Top {
-            let outlines = view.outlines().map(|shape| shape.map(|point| placed.moved(point)));
-            scene.strokes.extend(outlines.map(|shape| Stroke::new(Pen::Outline, shape)));
-        }
+        let outlines = view.outlines(placed.side).into_iter();
+        let outlines = outlines.map(|shape| shape.map(|point| placed.moved(point)));
+        scene.strokes.extend(outlines.map(|shape| Stroke::new(Pen::Outline, shape)));
         scene.strokes.extend(path.stock.iter().flat_map(|stock| stock_outline(stock, placed)));
         scene.strokes.extend(frames.strokes(placed));
         let (rapids, cut) = drawer.rapids(placed);

@@ -2,11 +2,9 @@
 use std::collections::BTreeMap;
 
 use super::drawn_lines::{DrawnCells, DrawnSegments, SAME_LINE, distance};
-use super::path_view::{ColorBy, PathRun, PathView, RunAxis, RunKind, StandardView};
-use super::view_frames::{Frames, PlacedView, axis_index};
-use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint, arc};
-use gcode_lang::units::Deg;
-use gcode_part::Stock;
+use super::path_view::{ColorBy, PathRun, PathView, RunAxis, RunKind};
+use super::view_frames::{Frames, PlacedView};
+use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint};
 use nalgebra::Vector3;
 
 /// Resolution of a sheet in parts of the extent of its views: less than 0.1 pixels of an ordinary picture.
@@ -371,73 +369,9 @@ pub(super) fn clipped([from, to]: [Point; 2], [low, high]: [Point; 2]) -> Option
     (first < last).then(|| [at(first), at(last)])
 }
 
-/// Draws the outline of the stock.
-pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
-    let line = |pen: Pen, points: &[[f64; 3]]| {
-        let points: Vec<Point> = points.iter().map(|point| view.project(*point)).collect();
-        Stroke::new(pen, Shape::Line(points))
-    };
-    let edge = |points: &[[f64; 3]]| line(Pen::Outline, points);
-    match stock {
-        Stock::Box { min, max, .. } => {
-            let corner =
-                |ends: usize| [0, 1, 2].map(|axis| if ends >> axis & 1 == 1 { max[axis] } else { min[axis] });
-            let edges = (0..8usize).flat_map(|from| (0..3).map(move |axis| (from, from | 1 << axis)));
-            // The corner farthest from the reader, at which three hidden edges meet.
-            let towards = view.side.towards();
-            let hidden = (0..3).filter(|axis| towards[*axis] < 0.0).fold(0, |ends, axis| ends | 1 << axis);
-            let is_hidden = |ends: [usize; 2]| view.kind == StandardView::Isometric && ends.contains(&hidden);
-            edges
-                .filter(|(from, to)| from != to)
-                .map(|(from, to)| {
-                    let pen = if is_hidden([from, to]) { Pen::Construction } else { Pen::Outline };
-                    line(pen, &[corner(from), corner(to)])
-                })
-                .collect()
-        }
-        Stock::Cylinder { axis, diameter, from, to, .. } => {
-            let (along, radius) = (axis_index(*axis), diameter / 2.0);
-            let (first, second) = ((along + 1) % 3, (along + 2) % 3);
-            let rim = |end: f64, angles: [f64; 2]| -> Vec<[f64; 3]> {
-                let place = |[a, b]: Point| {
-                    let mut point = [end; 3];
-                    (point[first], point[second]) = (a, b);
-                    point
-                };
-                arc([0.0, 0.0], [radius, radius], angles).into_iter().map(place).collect()
-            };
-            let towards = view.side.towards();
-            let (near, far) = if towards[along] < 0.0 { (*from, *to) } else { (*to, *from) };
-            let facing = Deg::atan2(towards[second], towards[first]).0;
-            // The wall hides the half of the far rim that is turned away from the reader.
-            let is_half_hidden = view.kind == StandardView::Isometric;
-            let far_rims = match is_half_hidden {
-                true => vec![
-                    edge(&rim(far, [facing - 90.0, facing + 90.0])),
-                    line(Pen::Construction, &rim(far, [facing + 90.0, facing + 270.0])),
-                ],
-                false => vec![edge(&rim(far, [0.0, 360.0]))],
-            };
-            // The outline runs along the generators that are farthest apart across the line of sight.
-            let across = libm::hypot(towards[first], towards[second]);
-            let sides = [1.0, -1.0].into_iter().filter(|_| 1e-6 < across).map(|sign| {
-                let end = |end: f64| {
-                    let mut point = [end; 3];
-                    point[first] = -towards[second] / across * radius * sign;
-                    point[second] = towards[first] / across * radius * sign;
-                    point
-                };
-                edge(&[end(*from), end(*to)])
-            });
-            far_rims.into_iter().chain([edge(&rim(near, [0.0, 360.0]))]).chain(sides).collect()
-        }
-        Stock::Surface { .. } => Vec::new(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::path_view::Arrangement;
+    use super::super::path_view::{Arrangement, StandardView};
     use super::super::top::TopView;
     use super::super::view_frames::ViewBox;
     use super::*;

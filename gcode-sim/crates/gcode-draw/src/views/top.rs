@@ -16,8 +16,8 @@ pub struct TopView {
     pub name: String,
     /// Viewing direction.
     pub side: Side,
-    /// Radius of the part's outline seen along y, mm.
-    pub outline: Option<f64>,
+    /// Equatorial and polar radius of a part that is an ellipsoid of revolution about y, mm.
+    pub outline: Option<[f64; 2]>,
     /// Dimensions of a part that is a cylinder about x.
     pub cylinder: Option<Cylinder>,
     /// Diameter of the position tolerance zone, mm.
@@ -148,29 +148,6 @@ fn widest(hole: &Hole) -> Option<f64> {
 }
 
 impl TopView {
-    /// Returns the outline of the part as it is seen.
-    pub(super) fn outlines(&self) -> impl Iterator<Item = Shape> {
-        let outline = self.outline.map(|radius| Shape::Circle { centre: [0.0, 0.0], radius });
-        let sides = self.cylinder.into_iter().flat_map(|Cylinder { outer, length, .. }| {
-            [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
-        });
-        outline.into_iter().chain(sides).chain(self.shaft_sides())
-    }
-
-    /// Returns the sides of a shaft, a little longer than the pattern of its holes, where x runs across the sheet.
-    fn shaft_sides(&self) -> impl Iterator<Item = Shape> {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for hole in self.holes.iter().filter_map(DrawnHole::shown) {
-            let radius = hole.diameter.unwrap_or(0.0) / 2.0;
-            (low, high) = (low.min(hole.entry[0] - radius), high.max(hole.entry[0] + radius));
-        }
-        let is_seen = low < high && self.side.axis_of_coordinate(0) == Some(('x', 1.0));
-        self.shaft.filter(|_| is_seen).into_iter().flat_map(move |radius| {
-            let beyond = 0.25 * radius;
-            [radius, -radius].map(|up| Shape::Line(vec![[low - beyond, up], [high + beyond, up]]))
-        })
-    }
-
     /// Draws the diameters of the features of holes along the line of sight, those of threads broken.
     pub(super) fn feature_circles(&self, side: Side) -> impl Iterator<Item = Stroke> {
         let along = move |hole: &&Hole| ALONG < Vector3::from(hole.axis).dot(&side.towards());

@@ -64,9 +64,13 @@ impl ViewBox {
             }
             Some(Stock::Surface { .. }) | None => {}
         }
-        for [right, up] in view.outlines().flat_map(|shape| shape.points()) {
-            (all.low[0], all.high[0]) = (all.low[0].min(right), all.high[0].max(right));
-            (all.low[1], all.high[1]) = (all.low[1].min(up), all.high[1].max(up));
+        // The front view has the first and the third coordinate of the top view, the right view the second and the third.
+        for (side, axes) in [(top, [0, 1]), (top.front(), [0, 2]), (top.from_right(), [1, 2])] {
+            for point in view.outlines(side).iter().flat_map(Shape::points) {
+                for (axis, mm) in axes.into_iter().zip(point) {
+                    (all.low[axis], all.high[axis]) = (all.low[axis].min(mm), all.high[axis].max(mm));
+                }
+            }
         }
         if all.high[2] < all.low[2] {
             path.points.iter().for_each(|point| all.add(*point, 0.0));
