@@ -91,7 +91,7 @@ mod tests {
     }
 
     /// The shaft's sides are 60 mm above and below its axis, and 15 mm longer than its holes at each end; seen along its axis it is a
-    /// circle. Its isometric view has the edges of its own box: 60·√2 off the axis, of which √(2/3)·√(3/2) is seen.
+    /// circle. In the isometric view, which is enlarged by √1.5, its sides are 120·√1.5 apart.
     #[test]
     fn a_shaft_has_its_sides_in_every_view() {
         let holes = vec![drawn([10.0, 0.0, 60.0]), drawn([40.0, 0.0, 60.0])];
@@ -103,7 +103,7 @@ mod tests {
         assert_eq!(view.outlines(Side::X), [Shape::Circle { centre: [0.0, 0.0], radius: 60.0 }]);
         let isometric = view.outlines(Side::Z.isometric());
         let [Shape::Line(upper), Shape::Line(lower)] = &isometric[..] else { panic!("{isometric:?}") };
-        // Both lines run along the projected x axis, as far apart as the diameter, enlarged by √1.5 as all lengths.
+        // Both lines run along the projected x axis.
         let way = [upper[1][0] - upper[0][0], upper[1][1] - upper[0][1]];
         let apart = [upper[0][0] - lower[0][0], upper[0][1] - lower[0][1]];
         let distance = (way[0] * apart[1] - way[1] * apart[0]).abs() / libm::hypot(way[0], way[1]);
