@@ -178,7 +178,7 @@ fn described(text: &str) -> (gcode_draw::Picture, String, [u32; 4]) {
     });
     let view = TopView {
         name: form.name,
-        outline: form.outline,
+        outline: form.outline.map(|radius| [radius; 2]),
         side: if cylinder.is_some() { Side::Z } else { Side::Y },
         cylinder,
         tolerance: form.tolerance,

@@ -5,11 +5,11 @@ use super::figures::{count, rounded};
 use super::hole_changes::remarks;
 use super::tool_path::top_side;
 use super::top::{Rotary, blank_hole, hide_constant_rotary, outline, round_up, side};
-use gcode_draw::{DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Side, Stroke, TopView};
+use gcode_draw::{DrawnHole, HoleStatus, Pen, PicturePurpose, Shape, Side, Sign, Stroke, TopView};
 use gcode_inspect::machine::Machine;
 use gcode_inspect::tool_path::ToolPath;
 use gcode_part::Reference;
-use gcode_review::{Change, Leg, Paired, Record, Revision, RevisionDiff};
+use gcode_review::{Change, Leg, Paired, Record, Revision, RevisionDiff, UnplacedEnd};
 
 /// Largest numbers of moves and points drawn of each revision.
 const MAX_MOVES: usize = 20_000;
@@ -150,7 +150,7 @@ fn is_of_one_hole(code: &str) -> bool {
 }
 
 struct Path {
-    /// Cuts that make no hole: unchanged, new and old ones.
+    /// Cuts that make no hole: unchanged, new and old ones; where a run stops.
     cuts: Vec<Stroke<3>>,
     has_other_rapids: bool,
 }
@@ -158,6 +158,7 @@ struct Path {
 fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Path {
     let mut has_other_rapids = false;
     let mut pieces: BTreeMap<Pen, Vec<Vec<[f64; 3]>>> = BTreeMap::new();
+    let mut stops: Vec<([f64; 3], String)> = Vec::new();
     for (side_index, side) in sides.into_iter().enumerate() {
         let different: BTreeSet<usize> = compared.steps[side_index].iter().copied().collect();
         let legs = side.record.path(machine, MAX_MOVES, MAX_POINTS);
@@ -172,11 +173,29 @@ fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Pa
             };
             append_leg(pieces.entry(pen).or_default(), leg);
         }
+        stops.extend(stop(side, &legs).map(|at| (at, format!("{} stops", ["old", "new"][side_index]))));
+    }
+    if let [(was, _), (is, words)] = stops.as_mut_slice()
+        && was == is
+    {
+        "both stop".clone_into(words);
+        stops.remove(0);
     }
     let strokes = |(pen, lines): (Pen, Vec<Vec<[f64; 3]>>)| {
         lines.into_iter().map(move |points| Stroke::new(pen, Shape::Line(points)))
     };
-    Path { cuts: pieces.into_iter().flat_map(strokes).collect(), has_other_rapids }
+    let signs = stops.into_iter().map(|(at, words)| Stroke {
+        caption: Some(words),
+        ..Stroke::new(Pen::Edge, Shape::Sign { at, sign: Sign::Alarm })
+    });
+    Path { cuts: pieces.into_iter().flat_map(strokes).chain(signs).collect(), has_other_rapids }
+}
+
+/// Returns where a run that does not reach its end stops; `None` if that is unknown on the part, or not drawn.
+fn stop(side: &Revision, legs: &[Leg]) -> Option<[f64; 3]> {
+    let last = legs.last().filter(|_| legs.len() == side.record.moves() && side.record.outcome() != "end")?;
+    let is_placed = matches!(last.unplaced, None | Some(UnplacedEnd::Start));
+    last.points.last().filter(|_| is_placed).map(|point| point.coords.into())
 }
 
 /// Joins consecutive cuts to one line, so that their dashes continue.

@@ -88,7 +88,7 @@ pub(crate) fn of_path(
         tools,
         programs: programs.into_iter().map(|(name, _)| name).collect(),
         places: places(&path, simulation),
-        zeros: zeros(machine),
+        zeros: zeros(machine, [run]),
         limits: strokes.map_or_else(Vec::new, |strokes| travel_limits(&path, machine, &strokes)),
         stock,
         notes: notes(&path, simulation),
@@ -175,7 +175,12 @@ fn notes(path: &ToolPath, simulation: &Simulation) -> Vec<String> {
         let values = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
         format!("stop {}: {text}{values}", stop.kind.name())
     };
-    notes.extend(texts.filter(|(_, text, _)| !text.is_empty()).take(MAX_STOP_TEXTS).map(line));
+    let texts: Vec<_> = texts.filter(|(_, text, _)| !text.is_empty()).collect();
+    let more = texts.len().saturating_sub(MAX_STOP_TEXTS);
+    notes.extend(texts.into_iter().take(MAX_STOP_TEXTS).map(line));
+    if 0 < more {
+        notes.push(format!("and {}", count(more, "more stop")));
+    }
     if 0 < path.unplaced_feeds {
         let feeds = count(path.unplaced_feeds, "feed");
         notes.push(format!("{feeds} from or to an unknown position not drawn"));
@@ -195,7 +200,9 @@ pub(crate) fn finding_line<'a>(
 ) -> Option<String> {
     let mut of_severity = findings.into_iter().filter(|finding| finding.severity == severity);
     let first = of_severity.next()?;
-    Some(format!("{}: {}", count(of_severity.count() + 1, what), first.message))
+    let all = of_severity.count() + 1;
+    let which = if all == 1 { "" } else { ", first" };
+    Some(format!("{}{which}: {}", count(all, what), first.message))
 }
 
 /// Returns true if there is something to draw: a move or a hole.

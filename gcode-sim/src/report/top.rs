@@ -45,16 +45,12 @@ pub fn of_holes(
     TopView {
         name: name.to_owned(),
         side,
-        lines: simulation
-            .run
-            .stop_sentence()
-            .into_iter()
-            .chain(assumption_lines(assumptions, Total::Holes(holes.len())))
-            .collect(),
+        lines: assumption_lines(assumptions, Total::Holes(holes.len())).collect(),
+        verdict: simulation.run.stop_sentence().map(|stop| (HoleStatus::Bad, format!("FAIL: {stop}"))),
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
-        zeros: zeros(machine),
+        zeros: zeros(machine, [&simulation.run]),
         ..TopView::default()
     }
 }
@@ -91,9 +87,12 @@ pub fn of_verdict(
     let by_id: BTreeMap<_, _> = reference.holes.iter().map(|hole| (hole.id.as_deref(), hole)).collect();
     let nominal = |id: &str| by_id.get(&Some(id)).copied();
     let judged = verdict.holes.iter().map(|hole| {
-        let remark = hole.error_codes.first().map(|code| match *code {
-            "hole-depth" => format!("depth {}", with_sign(hole.depth_error)),
-            other => other.trim_start_matches("hole-").to_owned(),
+        let difference =
+            hole.actual.diameter.zip(hole.nominal.diameter).map(|(actual, nominal)| actual - nominal);
+        let remark = hole.error_codes.first().map(|code| match (*code, difference) {
+            ("hole-depth", _) => format!("depth {}", with_sign(hole.depth_error)),
+            ("hole-diameter", Some(difference)) => format!("diameter {}", with_sign(difference)),
+            (other, _) => other.trim_start_matches("hole-").to_owned(),
         });
         DrawnHole {
             nominal: nominal(&hole.id).cloned(),
@@ -139,7 +138,7 @@ pub fn of_verdict(
         rotary: rotary.letter(),
         is_rotary_reversed: rotary.is_reversed(),
         holes,
-        zeros: zeros(machine),
+        zeros: zeros(machine, [&simulation.run]),
         shaft: shaft(reference),
         ..TopView::default()
     }
@@ -229,10 +228,10 @@ pub(super) fn round_up(value: f64) -> f64 {
     step.unwrap_or(10.0) * decade
 }
 
-/// Returns the radius of the part's outline seen along y; `None` if it is not a circle.
-pub(super) fn outline(surface: Surface) -> Option<f64> {
+/// Returns the equatorial and the polar radius of an ellipsoid.
+pub(super) fn outline(surface: Surface) -> Option<[f64; 2]> {
     match surface {
-        Surface::Ellipsoid { a, .. } => Some(a),
+        Surface::Ellipsoid { a, b } => Some([a, b]),
         Surface::Cylinder { .. } | Surface::Block { .. } | Surface::Rod(_) => None,
     }
 }

@@ -1,4 +1,5 @@
 //! The review page in a browser: what a person does with it, on a screen, on a telephone and on paper.
+mod comparison;
 mod player;
 
 use std::path::{Path, PathBuf};

@@ -1,5 +1,6 @@
 //! Use of the axis words of a block: by one code in place of a move, or by two whose meaning together is known.
 use gcode_lang::program::g_codes::OneShot;
+use gcode_lang::program::modes::Distance;
 
 /// Use of the axis words of a block by a code instead of a move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,16 @@ impl AxisWordUse {
     pub(super) fn is_plane_and_tool_axis(self, other: Self) -> bool {
         let points = |other| matches!(other, Self::OneShot(OneShot::ToolAxis { .. }));
         self == Self::Tilt && points(other) || other == Self::Tilt && points(self)
+    }
+
+    /// Returns true if axis words in this mode are coordinates of the work coordinate system, and not of the machine or distances of
+    /// the point through which an axis goes to a reference position.
+    pub(super) fn takes_work_coordinates(self, distance: Distance) -> bool {
+        match self {
+            Self::OneShot(OneShot::MachineCoordinateSystem) => false,
+            Self::OneShot(OneShot::Reference | OneShot::SecondReference) => distance == Distance::Absolute,
+            _ => true,
+        }
     }
 
     /// Returns true if the block's P can be that of a work coordinate system.

@@ -220,7 +220,11 @@ impl Planner<'_> {
         if plan.commands_axes {
             plan.state.end_before_transform = None;
             let drilling = plan.cycle_plan.as_ref().map(|cycle_plan| cycle_plan.axis);
-            plan.placed_axes = self.named_axes().chain(drilling).fold(0, |axes, axis| axes | 1 << axis);
+            let is_in_work_coordinates = axis_word_use
+                .is_none_or(|axis_use| axis_use.takes_work_coordinates(plan.state.modal.distance));
+            if is_in_work_coordinates {
+                plan.placed_axes = self.named_axes().chain(drilling).fold(0, |axes, axis| axes | 1 << axis);
+            }
             let states = [&self.registers.state, &plan.state];
             if !states.iter().any(|state| state.modal.cycle.is_some_and(|cycle| cycle.taps())) {
                 if states.iter().all(|state| self.checks_rigid_tapping(state)) {

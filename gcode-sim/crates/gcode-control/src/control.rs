@@ -16,7 +16,7 @@ use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::motion::{AxisIndex, Backtrace, EventSink, Position};
-use gcode_lang::program::modes::{ModalGroup, Unit};
+use gcode_lang::program::modes::{ModalGroup, Unit, WorkSystem};
 use gcode_lang::program::{Library, Memory, Slot};
 use gcode_lang::source::Span;
 use gcode_lang::units::Seconds;
@@ -383,7 +383,17 @@ impl Control {
 
     /// Returns the axes that blocks have placed in work coordinates, as bits.
     pub fn placed_axes(&self) -> u8 {
-        self.executor.log.placed_axes
+        let log = &self.executor.log;
+        log.other_placed_axes.values().fold(log.first_placed_axes, |all, axes| all | axes)
+    }
+
+    /// Returns true if a block has placed an axis in this work coordinate system.
+    pub fn uses_work_system(&self, system: WorkSystem) -> bool {
+        let log = &self.executor.log;
+        match system == WorkSystem::default() {
+            true => log.first_placed_axes != 0,
+            false => log.other_placed_axes.get(&system).is_some_and(|axes| *axes != 0),
+        }
     }
 
     /// Returns true if a length offset counts behind G53 although a parameter may have cancelled it.

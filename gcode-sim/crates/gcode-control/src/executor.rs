@@ -249,8 +249,9 @@ impl Executor {
     #[inline]
     pub(super) fn record_work_use(&mut self, before: WorkSystem, axes: u8) {
         let work = self.registers.state.modal.work;
-        self.log.placed_axes |= axes;
-        if work != WorkSystem::default() {
+        if work == WorkSystem::default() {
+            self.log.first_placed_axes |= axes;
+        } else {
             self.record_other_work(work, before, axes);
         }
     }
@@ -273,6 +274,10 @@ impl Executor {
         if work != before {
             self.log.work_selected = self.flow.backtrace();
         }
+        if axes == 0 {
+            return;
+        }
+        *self.log.other_placed_axes.entry(work).or_default() |= axes;
         let set_axes = self.registers.data.set_offsets.axes(system_index(work));
         let axes = axes & !set_axes;
         if axes == 0 {

@@ -169,8 +169,10 @@ pub(super) struct RunLog {
     /// Block that selected the active work coordinate system.
     pub(super) work_selected: Backtrace,
     pub(super) unset_systems: Vec<UnsetWorkOffset>,
-    /// Axes that blocks have placed in work coordinates, as bits.
-    pub(super) placed_axes: u8,
+    /// Axes that blocks have placed in the coordinates of G54, as bits.
+    pub(super) first_placed_axes: u8,
+    /// The same of the other work coordinate systems.
+    pub(super) other_placed_axes: BTreeMap<WorkSystem, u8>,
     /// A length offset counts behind G53 although a parameter may have cancelled it.
     pub(super) restores_length: bool,
     /// Modal groups that a block has commanded, without group 01.
@@ -186,7 +188,16 @@ pub(super) struct RunLog {
 impl RunLog {
     /// Returns a copy without stops and printed lines.
     pub(super) fn without_lists(&self) -> Self {
-        let Self { stops: _, printed: _, builder_m_codes, notes, work_selected, unset_systems, .. } = self;
+        let Self {
+            stops: _,
+            printed: _,
+            builder_m_codes,
+            notes,
+            work_selected,
+            unset_systems,
+            other_placed_axes,
+            ..
+        } = self;
         Self {
             stops: Vec::new(),
             printed: Vec::new(),
@@ -194,6 +205,7 @@ impl RunLog {
             notes: notes.clone(),
             work_selected: work_selected.clone(),
             unset_systems: unset_systems.clone(),
+            other_placed_axes: other_placed_axes.clone(),
             ..*self
         }
     }

@@ -3,7 +3,7 @@ use ab_glyph::{Font as _, FontRef, Glyph, PxScale, ScaleFont, point};
 
 use super::ink::Px;
 
-/// Latin, Greek and drawing symbols. A missing character is shown as a box.
+/// Latin, Greek, Cyrillic and drawing symbols.
 static TTF: &[u8] = include_bytes!("../assets/DejaVuSans-subset.ttf");
 
 /// Heights in parts of the em, for placing lines of text.
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn every_sign_of_a_drawing_is_in_the_font() {
         let font = Font::embedded();
-        for c in "ABCxyz0123456789 Φ°±−×·…αβγφ⌀→≤µ".chars() {
+        for c in "ABCxyz0123456789 Φ°±−×·…αβγφ⌀→≤µ‹›Жя".chars() {
             assert_ne!(font.0.glyph_id(c).0, 0, "{c}");
         }
     }

@@ -136,6 +136,9 @@ impl Ink {
     }
 }
 
+/// Depth of letters below the base line, in sizes of the text.
+const DESCENT: f64 = 0.22;
+
 /// One drawing command; later ones cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum DrawCommand {
@@ -186,6 +189,17 @@ impl DrawCommand {
 
     pub(super) fn outline(points: Vec<Px>, ink: Ink) -> Self {
         Self::Line { points, closed: true, ink }
+    }
+
+    /// Returns the ordinate of the lowest point.
+    pub(super) fn bottom(&self) -> f64 {
+        match self {
+            Self::Line { points, .. } | Self::Area { points, .. } => {
+                points.iter().map(|point| point.y).fold(f64::NEG_INFINITY, f64::max)
+            }
+            Self::Ring { centre, radius, .. } | Self::Disc { centre, radius, .. } => centre.y + radius,
+            Self::Text { at, size, .. } | Self::Halo { at, size, .. } => at.y + DESCENT * size,
+        }
     }
 
     /// Returns the width of the rim of a halo about text of this size.

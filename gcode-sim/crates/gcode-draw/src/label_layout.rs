@@ -133,13 +133,15 @@ impl LabelLayout {
 
 /// Captions the lines that satisfy a predicate, such as radii, and returns the captions without room. A circle's
 /// caption lies anywhere on it, from the lower left on; a straight line's on its middle; a scale's at the end
-/// of the tick; a path's on the path or on a leader to its middle. A scale may lose numbers without a note.
+/// of the tick; a path's on the path or on a leader to its middle; a place's beside its symbol, whose position `sign_place`
+/// returns. A scale may lose numbers without a note.
 pub(super) fn caption_strokes(
     scene: &Scene,
     has_caption: impl Fn(&Stroke) -> bool,
     frame: &Frame,
     field: &mut LabelArea,
     sheet: &mut Sheet,
+    sign_place: impl Fn(&Stroke) -> Option<Px>,
 ) -> Vec<String> {
     let mut left = Vec::new();
     let paths: Vec<Path<'_>> = scene.strokes.iter().filter_map(|stroke| Path::of(stroke, frame)).collect();
@@ -179,13 +181,13 @@ pub(super) fn caption_strokes(
                 .collect(),
         };
         let place = match stroke.shape {
-            Shape::Zero(at) => Some((at, ZERO)),
-            Shape::Sign { at, .. } => Some((at, SIGN)),
+            Shape::Zero(at) => Some((frame.scale.px(at), ZERO)),
+            Shape::Sign { .. } => sign_place(stroke).map(|at| (at, SIGN)),
             Shape::Line(_) | Shape::Circle { .. } | Shape::Arrow(_) | Shape::Text { .. } => None,
         };
         let spot = field.place_on(points, size).or_else(|| {
-            if let Some((at, radius)) = place {
-                let (position, clearance) = (frame.scale.px(at), (radius + 0.1) * frame.text_size);
+            if let Some((position, radius)) = place {
+                let clearance = (radius + 0.1) * frame.text_size;
                 let rules = [LeaderRule::Clear, LeaderRule::ThroughAll];
                 return rules.into_iter().find_map(|leader_rule| {
                     field.place(Symbol { position, clearance, leader_rule }, size, frame.text_size * LEADING)

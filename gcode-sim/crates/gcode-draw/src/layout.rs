@@ -6,12 +6,13 @@ use super::ink::{DrawCommand, Rect, px};
 use super::label_layout::{LabelLayout, caption_strokes};
 use super::labels::LabelArea;
 use super::lines::{are_arrows_hidden, axes, block_stroke, scale_bar, shape_commands};
-use super::marks::draw_marks;
+use super::marks::{draw_marks, has_axis_arrow};
 use super::measure::{Frame, Scale};
 use super::panel::Panel;
 use super::picture::{LegendUse, Picture};
 use super::scene::{HoleStatus, Pen, Point, Scene, Shape, Stroke};
 use super::sheet::Sheet;
+use super::sign_places::SignPlaces;
 use super::size::Size;
 use super::words::Words;
 
@@ -78,7 +79,8 @@ pub fn lay_out(picture: &Picture, size: Size) -> Result<Sheet, PictureError> {
         }
     }
     let Plan { mut sheet, legend_use, .. } = best;
-    sheet.commands.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
+    let bar = scale_bar(&frame, &sheet.commands, extent, panel.drawing);
+    sheet.commands.extend(bar);
     let texts = panel.commands(picture, &frame, legend_use, &sheet.notes);
     sheet.commands.extend(texts);
     Ok(Sheet { page: size.page(), magnification: legend_use.magnification, ..sheet })
@@ -96,19 +98,17 @@ impl Plan {
     fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
         let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text_size), frame.text_size);
         let mut sheet = Sheet::empty(drawing);
-        // The symbols of places lie above those of good holes, and below those of others, which nothing covers.
-        let (places, strokes): (Vec<&Stroke>, Vec<&Stroke>) =
-            scene.strokes.iter().partition(|stroke| matches!(stroke.shape, Shape::Sign { .. }));
         let draw = |stroke: &Stroke| shape_commands(stroke, &frame.scale, frame.text_size);
+        let strokes = scene.strokes.iter().filter(|stroke| !matches!(stroke.shape, Shape::Sign { .. }));
         let (ticks, strokes): (Vec<&Stroke>, Vec<&Stroke>) =
-            strokes.into_iter().partition(|stroke| stroke.pen == Pen::Ruler);
+            strokes.partition(|stroke| stroke.pen == Pen::Ruler);
         sheet.commands.extend(strokes.into_iter().flat_map(draw));
         scene.strokes.iter().for_each(|stroke| block_stroke(&mut field, stroke, frame));
         sheet.commands.extend(axes(scene, frame, extent, drawing, &mut field));
         // A straight line's caption has one position, a hole's label many, the caption of a circle or path
         // any.
         let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !stroke.pen.is_path();
-        let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut sheet);
+        let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut sheet, |_| None);
         // A tick whose number has no room says nothing.
         let has_number = |stroke: &&Stroke| {
             let (Shape::Line(points), Some(number)) = (&stroke.shape, &stroke.caption) else { return true };
@@ -123,16 +123,21 @@ impl Plan {
         sheet.commands.extend(ticks);
         let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
+        let places = SignPlaces::of(scene, &drawn, frame, drawing);
+        places.block(&mut field);
         let holes = |is_good: bool| {
             let holes =
                 scene.marks.iter().zip(&drawn).filter(move |(mark, _)| mark.status.is_good() == is_good);
             holes.flat_map(|(_, hole)| hole.commands.iter().cloned())
         };
-        sheet.commands.extend(holes(true).chain(places.into_iter().flat_map(draw)).chain(holes(false)));
+        // Without room beside a hole, its place is above the symbol of a good one, and below that of another, which nothing covers.
+        sheet.commands.extend(holes(true).chain(places.commands()).chain(holes(false)));
         let mut lettering = LabelLayout::of(scene, &drawn, frame, &field);
         lettering.write(scene, frame, &mut sheet);
         let is_other = |stroke: &Stroke| !is_line(stroke);
-        bare.extend(caption_strokes(scene, is_other, frame, &mut lettering.field, &mut sheet));
+        bare.extend(caption_strokes(scene, is_other, frame, &mut lettering.field, &mut sheet, |stroke| {
+            places.of_stroke(stroke)
+        }));
         let notes = &mut sheet.notes;
         notes.extend(dials.note(scene));
         if drawn.iter().any(|d| d.is_truncated) {
@@ -140,9 +145,9 @@ impl Plan {
         }
         notes.extend(lettering.notes(scene));
         if !bare.is_empty() {
-            notes.push(format!("No room on the line for {}.", bare.join(", ")));
+            notes.push(format!("No room for {}.", bare.join(", ")));
         }
-        if detail == Detail::SignsWithoutAxes {
+        if detail == Detail::SignsWithoutAxes && scene.marks.iter().any(has_axis_arrow) {
             notes.push("Axes of the holes not drawn: no room.".to_owned());
         }
         let legend_use = LegendUse {
@@ -344,6 +349,32 @@ mod tests {
         let sheet = lay_out(&picture(marks.collect()), Size::new(480, 360).unwrap()).unwrap();
         let note = format!("{} of 900 holes without a number: no room.", 900 - numbered(&sheet));
         assert!(sheet.notes.contains(&note), "{note} {:?}", sheet.notes);
+    }
+
+    /// A wide and a tall part: the bar begins at the left edge of what is drawn and lies one or two lines below it.
+    #[test]
+    fn the_scale_bar_is_beside_the_part() {
+        for (corner, size) in
+            [([100.0, 10.0], (1600, 1200)), ([10.0, 100.0], (1600, 1200)), ([10.0, 100.0], (480, 360))]
+        {
+            let outline =
+                Shape::Line(vec![[0.0, 0.0], [corner[0], 0.0], corner, [0.0, corner[1]], [0.0, 0.0]]);
+            let scene = Scene { strokes: vec![Stroke::new(Pen::Outline, outline)], ..Scene::default() };
+            let size = Size::new(size.0, size.1).unwrap();
+            let sheet = lay_out(&Picture { scene, ..Picture::default() }, size).unwrap();
+            let lines = sheet.commands.iter().filter_map(|command| match command {
+                DrawCommand::Line { points, ink, .. } if 0.05 * size.text() < ink.width => Some(points),
+                _ => None,
+            });
+            let [outline, bar, ..] = lines.collect::<Vec<_>>()[..] else { panic!("an outline and a bar") };
+            let [outline, bar] = [outline, bar].map(|points| Rect::enclosing(points[0], points));
+            let below = (bar.bottom - outline.bottom) / size.text();
+            assert!(1.0 < below && below < 2.0, "{below} {outline:?} {bar:?}");
+            assert!(
+                (bar.left - outline.left).abs() < 1.0 && 0.1 * outline.width() < bar.width(),
+                "{outline:?} {bar:?}"
+            );
+        }
     }
 
     /// A cut that two revisions share, farther out than the holes and the part.

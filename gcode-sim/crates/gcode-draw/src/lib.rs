@@ -55,6 +55,8 @@
 //! # Ok::<(), gcode_draw::PictureError>(())
 //! ```
 #![warn(missing_docs)]
+use std::borrow::Cow;
+
 mod chart;
 mod compare;
 mod deviation_dials;
@@ -68,6 +70,7 @@ mod layout;
 mod lines;
 mod marks;
 mod measure;
+mod missing_glyphs;
 mod obstacle;
 mod palette;
 mod panel;
@@ -79,6 +82,7 @@ mod raster;
 mod scene;
 mod sheet;
 mod side;
+mod sign_places;
 mod size;
 mod svg;
 mod symbol;
@@ -150,10 +154,15 @@ pub fn main_view(view: &TopView) -> Picture {
     development(view).unwrap_or_else(|| top_view(view))
 }
 
-/// Draws a picture as a file of exactly this size; in SVG and PDF 96 pixels are an inch.
+/// Draws a picture as a file of exactly this size; in SVG and PDF 96 pixels are an inch. A reader of an SVG has fonts of its own,
+/// the other formats have the embedded one alone: letters that it lacks are numbers there.
 ///
 /// # Errors
 /// [`PictureError::OffTheSheet`] if a coordinate cannot be drawn, see [`lay_out`].
 pub fn draw(picture: &Picture, size: Size, format: FileFormat) -> Result<Vec<u8>, PictureError> {
-    format.encode(&lay_out(picture, size)?, &picture.title.name)
+    let drawn = match format {
+        FileFormat::Svg => Cow::Borrowed(picture),
+        FileFormat::Png | FileFormat::Pdf => missing_glyphs::spelt_out(picture),
+    };
+    format.encode(&lay_out(&drawn, size)?, &picture.title.name)
 }

@@ -159,18 +159,27 @@ fn leave(from: Px, along: [f64; 2], rect: Rect) -> Px {
     from.toward(along, x.min(y).max(0.0))
 }
 
-/// Draws a bar of a round length, at most a third of the drawing.
-pub(super) fn scale_bar(frame: &Frame, area: Rect) -> Vec<DrawCommand> {
+/// Draws a bar of a round length, at most a third of the drawing, below what is drawn and from its left edge.
+pub(super) fn scale_bar(
+    frame: &Frame,
+    drawn: &[DrawCommand],
+    extent: (Point, Point),
+    area: Rect,
+) -> Vec<DrawCommand> {
     let text = frame.text_size;
     let length = bar_length(0.3 * area.width() / frame.scale.factor);
-    let (left, wide) = (area.left + 0.8 * text, length * frame.scale.factor);
-    let y = area.bottom - 0.9 * text;
+    let wide = length * frame.scale.factor;
+    let name = format!("{} mm", plain(length));
+    let behind = wide + 0.7 * text + frame.font.width(&name, text);
+    let left = part(frame, extent).left.min(area.right - text - behind).max(area.left + 0.8 * text);
+    let lowest = drawn.iter().map(DrawCommand::bottom).fold(area.top, f64::max);
+    let y = (lowest + 1.5 * text).min(area.bottom - 0.9 * text);
     let ink = Ink::solid(0.1 * text, palette::TEXT);
     let tick = 0.4 * text;
     let mut inks = vec![DrawCommand::line(px(left, y), px(left + wide, y), ink)];
     let ticks = [left, left + wide / 2.0, left + wide];
     inks.extend(ticks.map(|x| DrawCommand::line(px(x, y - tick), px(x, y + tick), ink)));
     let at = px(left + wide + 0.7 * text, y + 0.36 * text);
-    inks.push(DrawCommand::text(at, text, format!("{} mm", plain(length)), palette::TEXT));
+    inks.push(DrawCommand::text(at, text, name, palette::TEXT));
     inks
 }

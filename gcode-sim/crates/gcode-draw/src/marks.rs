@@ -243,6 +243,11 @@ fn projected_axis(mark: &Mark) -> Option<([f64; 2], f64)> {
     (0.02 < projected).then(|| ([right / projected, -up / projected], projected))
 }
 
+/// Returns true if the axis of a hole does not point at the reader.
+pub(super) fn has_axis_arrow(mark: &Mark) -> bool {
+    projected_axis(mark).is_some()
+}
+
 /// Draws the projected hole axis; the arrow is longer, the more the hole lies across the view.
 fn axis_arrow(
     centre: Px,

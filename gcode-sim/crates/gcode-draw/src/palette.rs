@@ -67,10 +67,10 @@ pub(super) fn shade(value: f64) -> Rgb {
     Rgb(mixed(r, r2), mixed(g, g2), mixed(b, b2))
 }
 
-/// Colours of classes: those of Okabe and Ito's that are dark enough for thin lines, black and violet. Rapids alone are
-/// blue.
+/// Colours of classes: dark enough for thin lines on white, and apart for colour-blind readers too, of whom Okabe and Ito's orange and
+/// vermilion are not. Rapids alone are light blue.
 const CLASSES: [Rgb; 6] =
-    [Rgb(0, 158, 115), VERMILION, Rgb(204, 121, 167), Rgb(190, 132, 0), Rgb(0, 0, 0), Rgb(88, 44, 140)];
+    [Rgb(0, 158, 115), VERMILION, Rgb(175, 100, 150), Rgb(75, 50, 200), Rgb(0, 0, 0), Rgb(150, 0, 25)];
 
 /// Length of a line in the legend, in text heights.
 pub(super) const SAMPLE: f64 = 1.75;
@@ -82,7 +82,7 @@ pub(super) const PATTERNS: u8 = 6;
 const DASHES: [[f64; 4]; PATTERNS as usize - 1] = [
     [0.6, 0.3, 0.6, 0.3],
     [0.7, 0.18, 0.14, 0.18],
-    [0.12, 0.15, 0.12, 0.15],
+    [0.18, 0.18, 0.18, 0.18],
     [1.0, 0.35, 1.0, 0.35],
     [0.34, 0.14, 0.34, 0.14],
 ];
@@ -146,6 +146,54 @@ mod tests {
             assert!(pattern[0] + pattern[1] + 0.12 <= SAMPLE, "{pattern:?}");
             assert!(DASHES[..index].iter().all(|other| other != pattern), "{pattern:?}");
         }
+    }
+
+    /// Returns lightness and chromaticities (CIELAB, D65) of a colour as seen with linear RGB mixed by a matrix.
+    fn seen(Rgb(r, g, b): Rgb, vision: &[[f64; 3]; 3]) -> [f64; 3] {
+        let linear = [r, g, b].map(|part| match f64::from(part) / 255.0 {
+            low if low <= 0.04045 => low / 12.92,
+            part => libm::pow((part + 0.055) / 1.055, 2.4),
+        });
+        let times = |rows: &[[f64; 3]; 3], of: [f64; 3]| {
+            rows.map(|row| (0..3).map(|n| row[n] * of[n]).sum::<f64>().clamp(0.0, 1.0))
+        };
+        // Rows of the sRGB primaries, divided by the white point.
+        let xyz = [[0.43395, 0.37622, 0.18983], [0.21267, 0.71515, 0.07218], [0.01776, 0.10947, 0.87276]];
+        let [x, y, z] = times(&xyz, times(vision, linear)).map(|part| match part {
+            part if 0.008856 < part => libm::cbrt(part),
+            part => 7.787 * part + 16.0 / 116.0,
+        });
+        [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+    }
+
+    /// The eyes of readers without red, green and blue cones (Machado, Oliveira and Fernandes 2009, severity 1), and those of others.
+    /// A difference of 2.3 is just noticeable side by side; thin lines apart need several times that.
+    #[test]
+    fn classes_look_different_to_colour_blind_readers() {
+        let visions = [
+            [
+                [0.152286, 1.052583, -0.204868],
+                [0.114503, 0.786281, 0.099216],
+                [-0.003882, -0.048116, 1.051998],
+            ],
+            [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+            [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]],
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        ];
+        let difference = |one: Rgb, other: Rgb| {
+            let least = |vision| {
+                let (one, other) = (seen(one, vision), seen(other, vision));
+                (0..3).map(|n| (one[n] - other[n]) * (one[n] - other[n])).sum::<f64>().sqrt()
+            };
+            visions.iter().map(least).fold(f64::INFINITY, f64::min)
+        };
+        for (index, one) in CLASSES.iter().enumerate() {
+            for other in &CLASSES[..index] {
+                assert!(15.0 < difference(*one, *other), "{one:?} {other:?} {}", difference(*one, *other));
+            }
+        }
+        let orange = Rgb(190, 132, 0);
+        assert!(difference(orange, VERMILION) < 12.0, "{}", difference(orange, VERMILION));
     }
 
     /// Rapids are blue, with blue as the strongest part of their colour by far.

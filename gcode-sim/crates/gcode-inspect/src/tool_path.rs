@@ -62,6 +62,14 @@ pub enum StretchAxis {
     Oblique,
 }
 
+impl StretchAxis {
+    /// Returns the direction of a tool.
+    fn of(out: &Unit<Vector3<f64>>) -> Self {
+        let axis = out.iter().position(|part| MIN_COSINE < part.abs());
+        axis.map_or(Self::Oblique, |axis| Self::Along(axis, 0.0 < out[axis]))
+    }
+}
+
 /// Successive moves of one kind by one tool, at one feed, in one program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stretch {
@@ -218,7 +226,8 @@ impl<'m> PathRecorder<'m> {
         if moved == 0 {
             return;
         }
-        self.suppose_axis(kind, arc, moved);
+        // An axis that is commanded for the first time may move from anywhere.
+        self.suppose_axis(kind, arc, moved | was.uncommanded & !is.uncommanded);
         if !is_placed(self.machine, was.union(is), kind, moved) {
             self.path.unplaced_feeds += u64::from(kind == PathKind::Feed);
             return;
@@ -230,21 +239,21 @@ impl<'m> PathRecorder<'m> {
         let feed = event.kind.rate().map_or(0.0, |rate| rate.0);
         let path = &mut self.path;
         let first = path.points.len();
-        let mut axes = [None; 2];
+        let (mut out, mut axis): (_, Option<StretchAxis>) = (None, None);
         let tolerance = (travel.radius() * ARC_TOLERANCE).clamp(0.1 * CHORD_TOLERANCE, CHORD_TOLERANCE);
         let tolerance = if arc.is_some() { tolerance } else { CHORD_TOLERANCE };
         for_each_drawn_pose(self.machine, &self.setup, &travel, tolerance, |pose| {
             path.points.push(pose.tip.coords.into());
-            axes = [axes[0].or(pose.axis), pose.axis];
+            out = out.or(pose.axis);
+            let of_pose = pose.axis.map_or(StretchAxis::Unknown, |axis| StretchAxis::of(&axis));
+            axis = Some(if axis.is_none_or(|before| before == of_pose) {
+                of_pose
+            } else {
+                StretchAxis::Oblique
+            });
         });
         path.end = path.points.last().copied();
-        let axis = match axes {
-            [Some(from), Some(to)] if kind == PathKind::Feed => match (axis_of(&from), axis_of(&to)) {
-                (Some(from), Some(to)) if from == to => StretchAxis::Along(to.0, to.1),
-                _ => StretchAxis::Oblique,
-            },
-            _ => StretchAxis::Unknown,
-        };
+        let axis = axis.filter(|_| kind == PathKind::Feed).unwrap_or_default();
         let is_same_program = match (&self.calls, event.calls) {
             (None, None) => true,
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
@@ -269,7 +278,7 @@ impl<'m> PathRecorder<'m> {
             stretch.points.end = path.points.len();
             stretch.moves.end = moves + 1;
         } else {
-            match (axis, axes[0]) {
+            match (axis, out) {
                 (StretchAxis::Along(..), Some(out)) => count_axis(&mut path.tool_axes, &out),
                 (StretchAxis::Oblique, Some(out)) => count_axis(&mut path.oblique_axes, &out),
                 _ => {}
@@ -288,7 +297,7 @@ impl<'m> PathRecorder<'m> {
             .push(PathMove { last_point: (path.points.len() - 1) as u32, block_start: event.block.start });
     }
 
-    /// Counts the axis across an arc, or along a rapid of one axis, if the direction of the tool is unknown.
+    /// Counts the axis across an arc, or along a rapid that moves only this axis, if the direction of the tool is unknown.
     fn suppose_axis(&mut self, kind: PathKind, arc: Option<&PlanarArc>, moved: u8) {
         let axis = match arc {
             Some(arc) => (0..3).find(|axis| !is_in_plane(arc, *axis)),
@@ -301,12 +310,6 @@ impl<'m> PathRecorder<'m> {
             *self.path.supposed_axes.entry(axis).or_default() += 1;
         }
     }
-}
-
-/// Returns the axis of the part along a direction, and whether it points to the positive end.
-fn axis_of(direction: &Unit<Vector3<f64>>) -> Option<(usize, bool)> {
-    let axis = direction.iter().position(|part| MIN_COSINE < part.abs())?;
-    Some((axis, 0.0 < direction[axis]))
 }
 
 /// Counts a stretch for the axis of the part that is nearest to a direction, and for its sign.
@@ -367,6 +370,10 @@ mod tests {
         recorder.finish()
     }
 
+    fn unknown(axes: u8) -> EventKind {
+        EventKind::PositionUnknown { axes: UnknownAxes { uncommanded: axes, ..UnknownAxes::default() } }
+    }
+
     fn upright() -> Machine {
         Machine { head: Head::new(HeadKind::Fixed(Vector3::z_axis()), 0.0), ..Machine::default() }
     }
@@ -404,12 +411,15 @@ mod tests {
         assert_eq!(path.tool_axis(), Some((2, true)));
     }
 
-    /// With the table at B30 and B60 the tool is 30° and 60° off z: nearest to z in two stretches, to x in one.
+    /// With the table at B30 and B60 the tool is 30° and 60° off z: nearest to z in two stretches, to x in one. In a whole turn it is
+    /// along z at both ends, and along no axis between.
     #[test]
     fn an_oblique_tool_counts_for_the_nearest_axis() {
-        let script = "rapid B30; feed X10; rapid Z5; feed X20; rapid Z9; rapid B60; feed X30";
-        let path = path(&upright(), &EventScript::new().then(script));
-        assert_eq!((path.tool_axes.len(), path.tool_axis()), (0, Some((2, true))));
+        let path = |script: &str| path(&upright(), &EventScript::new().then(script));
+        let two_angles = path("rapid B30; feed X10; rapid Z5; feed X20; rapid Z9; rapid B60; feed X30");
+        assert_eq!((two_angles.tool_axes.len(), two_angles.tool_axis()), (0, Some((2, true))));
+        let axes: Vec<StretchAxis> = path("feed X10; feed B360").stretches.iter().map(|of| of.axis).collect();
+        assert_eq!(axes, [StretchAxis::Along(2, true), StretchAxis::Oblique]);
     }
 
     /// Chords of a quarter of radius 10 deviate by at most 0.005: each spans at most 2·acos(1 − 0.0005) = 3.62°, so that
@@ -434,9 +444,6 @@ mod tests {
     /// X is unknown until its first move has ended; Y and Z are known.
     #[test]
     fn a_move_from_an_unknown_position_is_not_recorded() {
-        let unknown = |axes: u8| EventKind::PositionUnknown {
-            axes: UnknownAxes { uncommanded: axes, ..UnknownAxes::default() },
-        };
         let script = EventScript::new().with(unknown(1)).with(unknown(0)).then("feed X10; feed X20; feed Y5");
         let path = path(&upright(), &script);
         assert_eq!((path.unplaced_feeds, path.moves.len(), path.points[0]), (1, 2, [10.0, 0.0, 0.0]));
@@ -466,6 +473,16 @@ mod tests {
         let script = EventScript::new().then("rapid Z5; rapid X10; rapid Z1; feed X20; feed X30; feed X40");
         let path = path(&Machine::default(), &script);
         assert_eq!((path.tool_axis(), path.supposed_axis()), (None, Some((2, true))));
+    }
+
+    /// The first rapid places X and Y, and only X changes its number; it is one along X if it places X alone.
+    #[test]
+    fn a_rapid_that_places_several_axes_is_along_none() {
+        let supposed = |after: u8| {
+            let script = EventScript::new().with(unknown(3)).with(unknown(after)).then("rapid X10; feed X20");
+            path(&Machine::default(), &script).supposed_axis()
+        };
+        assert_eq!((supposed(0), supposed(2)), (None, Some((0, true))));
     }
 
     /// Events 4, 5 and 6 are the feed to the hole, the feed into it, and the feed out of it; event 7 is a feed across.

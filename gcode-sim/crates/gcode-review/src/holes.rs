@@ -39,6 +39,13 @@ pub struct Paired {
     pub deeper: f64,
 }
 
+impl Paired {
+    /// Returns a hole without a partner.
+    pub(super) fn alone(old: Option<usize>, new: Option<usize>) -> Self {
+        Self { old, new, changed: true, moved: 0.0, tilted: Deg::ZERO, deeper: 0.0 }
+    }
+}
+
 /// Returns the effects on holes, and all holes with their partners. With `by_motion` the partner of a hole is the
 /// one that the same feed makes, at any position; else the nearest hole comes first.
 pub(super) fn compare(alignment: &Alignment<'_>, by_motion: bool) -> (Vec<HoleEffect>, Vec<Paired>) {
@@ -162,8 +169,6 @@ impl HoleComparer<'_> {
 
     /// Returns every hole with its partner; those of the old revision first.
     fn all(&self, mut partner: Vec<Option<usize>>) -> Vec<Paired> {
-        let alone =
-            Paired { old: None, new: None, changed: true, moved: 0.0, tilted: Deg::ZERO, deeper: 0.0 };
         let [old, new] = self.alignment.records;
         for first in self.passes[0].firsts() {
             let Some(other) = partner[first] else { continue };
@@ -171,7 +176,7 @@ impl HoleComparer<'_> {
             repeats.for_each(|(old, new)| partner[*old] = Some(*new));
         }
         let pair = |(hole, other): (usize, &Option<usize>)| {
-            let Some(other) = *other else { return Paired { old: Some(hole), ..alone } };
+            let Some(other) = *other else { return Paired::alone(Some(hole), None) };
             let offset = HoleOffset::new(&old.holes[hole], &new.holes[other]);
             Paired {
                 old: Some(hole),
@@ -184,7 +189,7 @@ impl HoleComparer<'_> {
         };
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
         let added = (0..new.holes.len()).filter(|hole| !known.contains(hole));
-        let added = added.map(|hole| Paired { new: Some(hole), ..alone });
+        let added = added.map(|hole| Paired::alone(None, Some(hole)));
         partner.iter().enumerate().map(pair).chain(added).collect()
     }
 

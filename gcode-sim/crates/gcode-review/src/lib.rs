@@ -95,7 +95,7 @@ pub struct RevisionDiff {
     pub changes: Vec<Change>,
     /// All holes of both revisions.
     pub holes: Vec<Paired>,
-    /// Numbers of the steps that differ, old and new.
+    /// Numbers of the steps that differ, old and new, those behind the stop of the other revision included.
     pub steps: [Vec<usize>; 2],
     /// Those of them that have no counterpart in the other revision.
     pub unpaired_steps: [Vec<usize>; 2],
@@ -106,6 +106,7 @@ impl RevisionDiff {
     pub fn new(old: &Record, new: &Record, tolerance: f64) -> Self {
         let stop = (stops(old), stops(new));
         let mut links = align::align_until_stop(&old.steps, &new.steps, stop, tolerance);
+        let whole_records = [old, new];
         let [old_steps, new_steps] = truncate_at_stop(old, new, &mut links);
         let (old, new) = (&*old.up_to(old_steps), &*new.up_to(new_steps));
         let records = [old, new];
@@ -114,7 +115,10 @@ impl RevisionDiff {
         links = whole.unwrap_or(links);
         let runs = reordered_cuts::reordered_runs(&mut links, old, new, tolerance);
         let alignment = Alignment { records, links: &links, tolerance };
-        let (holes, pairs) = holes::compare(&alignment, is_whole);
+        let (holes, mut pairs) = holes::compare(&alignment, is_whole);
+        let unreached = |side: usize| records[side].holes.len()..whole_records[side].holes.len();
+        pairs.extend(unreached(0).map(|hole| Paired::alone(Some(hole), None)));
+        pairs.extend(unreached(1).map(|hole| Paired::alone(None, Some(hole))));
         let cuts = reordered_cuts::ReorderedCuts::new(&runs, alignment);
         let edits = Edits::new(old, new);
         let mut effects = Effects::new(alignment, &edits);
@@ -122,11 +126,14 @@ impl RevisionDiff {
         let mut changes = entries(effects.finish(), &edits);
         anchor::set_anchors(&mut changes, &alignment);
         let sides = |side: usize| move |(_, link): (usize, StepPair)| link.sides()[side];
+        let unreached = |side: usize| [old_steps, new_steps][side]..whole_records[side].steps.len();
+        let differences = |side: usize| links.differences().filter_map(sides(side)).chain(unreached(side));
+        let unpaired = |side: usize| links.unpaired().filter_map(sides(side)).chain(unreached(side));
         Self {
             changes,
             holes: pairs,
-            steps: [0, 1].map(|side| links.differences().filter_map(sides(side)).collect()),
-            unpaired_steps: [0, 1].map(|side| links.unpaired().filter_map(sides(side)).collect()),
+            steps: [0, 1].map(|side| differences(side).collect()),
+            unpaired_steps: [0, 1].map(|side| unpaired(side).collect()),
         }
     }
 }
@@ -156,4 +163,41 @@ fn truncate_at_stop(old: &Record, new: &Record, links: &mut Links) -> [usize; 2]
 /// that differ too much.
 pub fn common_lines(old: &[String], new: &[String]) -> Vec<(usize, usize)> {
     common_sequence::common(old.len(), new.len(), |i, j| old[i] == new[j])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::program::NoLibrary;
+    use gcode_session::Request;
+
+    /// Three holes, of which the old program makes two before its alarm: the third is added, and so is every move behind the stop. The
+    /// other way round it is lost.
+    #[test]
+    fn what_a_stopped_run_does_not_reach_is_no_unchanged_hole_and_no_unchanged_move() {
+        let program = |alarm: &str| {
+            format!(
+                "O1\nS1000 M03\nG90 G00 X0 Y0 Z5.\nG81 X10. Z-5. R2. F100.\nX20.\n{alarm}X30.\nG80\nG01 X50.\nM30\n"
+            )
+        };
+        let [stops, ends] = ["#3000=1(STOP)\n", ""].map(|alarm| {
+            let request = Request::new("O1.nc", program(alarm).into_bytes(), Machine::default());
+            Revision::of(&request, &mut NoLibrary, None).unwrap()
+        });
+        for (old, new, ending) in [(&stops, &ends, 1), (&ends, &stops, 0)] {
+            let compared = RevisionDiff::new(&old.record, &new.record, 1e-4);
+            let holes: Vec<_> = compared.holes.iter().map(|pair| [pair.old, pair.new]).collect();
+            let alone = if ending == 1 { [None, Some(2)] } else { [Some(2), None] };
+            assert_eq!(holes, [[Some(0), Some(0)], [Some(1), Some(1)], alone]);
+            let (all, reached) = ([old, new].map(|side| side.record.steps.len()), stops.record.steps.len());
+            for steps in [&compared.steps, &compared.unpaired_steps] {
+                assert!(
+                    (reached..all[ending]).all(|step| steps[ending].contains(&step)),
+                    "{steps:?} {all:?}"
+                );
+                assert!(!steps[ending].contains(&0) && steps[1 - ending].len() < 2, "{steps:?}");
+            }
+        }
+    }
 }

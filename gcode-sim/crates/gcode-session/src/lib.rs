@@ -259,9 +259,11 @@ pub fn simulate_observed<S: EventSink>(
 /// Returns the extractor of a run's holes, to which the events of a run can be given.
 pub fn extractor(request: &Request, metal: Metal) -> HoleExtractor<'_> {
     let part = request.part.as_ref().map(PartSolid::body);
+    // A reference states the part that is there while the program runs, before the stock of the machine file.
+    let probed = if metal.body.is_none() { request.probed() } else { request.part.clone() };
     HoleExtractor::new(&request.machine)
         .with_metal(Metal { body: metal.body.or(part), ..metal })
-        .with_probed(request.part.clone())
+        .with_probed(probed)
         .with_straight_rapids(request.settings.rapids_are_straight)
         .with_dialect(request.settings.codes)
         .with_process_limits(&request.process_limits)

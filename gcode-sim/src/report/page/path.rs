@@ -134,7 +134,16 @@ struct HoleLinks {
 
 impl Data {
     fn has_pen(&self, pen: Pen) -> bool {
-        self.sides.iter().any(|side| side.scene.strokes.iter().any(|stroke| stroke.pen == pen))
+        // A move with an unknown end is a point.
+        let is_line = |stroke: &Stroke<3>| matches!(&stroke.shape, Shape::Line(points) if 1 < points.len());
+        self.sides
+            .iter()
+            .any(|side| side.scene.strokes.iter().any(|stroke| stroke.pen == pen && is_line(stroke)))
+    }
+
+    /// Returns true if a side makes a cut, or a move of any kind, that the other does not make.
+    fn has_changed(&self, is: impl Fn(Pen) -> bool) -> bool {
+        self.sides.iter().any(|side| side.changed.iter().any(|stroke| is(side.scene.strokes[*stroke].pen)))
     }
 
     fn has_hole(&self, is: impl Fn(HoleStatus) -> bool) -> bool {
@@ -147,12 +156,13 @@ pub(super) fn data(page: &Page<'_>, sides: &[ReviewSide<'_>], table: &HoleTable)
     let drawn =
         sides.iter().enumerate().map(|(side_index, side)| drawn(page, side_index, side, table, sides.len()));
     let stock = page.reference.and_then(|reference| reference.stock.as_ref()).or(page.machine.stock.as_ref());
+    let zeros = zeros(page.machine, sides.iter().map(|side| &side.observed.revision.simulation.run));
     let sides: Vec<SidePath> = drawn.collect();
     Data {
         up,
         heights: heights(&sides, up),
         stock: stock.map(stock_edges::edges).unwrap_or_default(),
-        zeros: zeros(page.machine),
+        zeros,
         sides,
     }
 }
@@ -357,7 +367,7 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
         ("top", "Top", Some("View from above")),
         ("front", "Front", Some("View from the front")),
         ("side", "Side", Some("View from the side")),
-        ("reset", "All", Some("View of the whole path")),
+        ("reset", "All", Some("View of all cuts and holes")),
         ("in", "+", Some("Zoom in")),
         ("out", "\u{2212}", Some("Zoom out")),
     ];
@@ -392,10 +402,10 @@ pub(super) fn viewer(sides: &[ReviewSide<'_>], data: &Data) -> Markup {
                     li.feed { "feed, arc" }
                 }
                 @if data.has_pen(Pen::Probe) { li.probe { "probing move" } }
-                @if sides.len() == 2 {
+                @if data.has_changed(|_| true) {
                     li.changed { "different from the other program" }
-                    li.other { "the other program\u{2019}s cut" }
                 }
+                @if data.has_changed(|pen| pen != Pen::Rapid) { li.other { "the other program\u{2019}s cut" } }
                 @if data.has_hole(|status| matches!(status, HoleStatus::Good | HoleStatus::Unjudged)) { li.hole { "hole, and its depth as a line" } }
                 @if data.has_hole(|status| matches!(status, HoleStatus::Bad | HoleStatus::Extra)) {
                     li.wrong { "hole that differs or has a fault" }

@@ -11,6 +11,8 @@ const CROSS = 10;
 const PAPER_WIDTH = 703;
 // Half the width of a ring that has room for names inside, pixels.
 const BIG = 60;
+// Distances of a name from its hole beyond the closest, pixels; farther off it is on a line.
+const LEADERS = [0, 10, 22, 36];
 // Number of shades of the feeds by their height.
 const SHADES = 6;
 
@@ -326,15 +328,35 @@ class Side {
     return [x, x > width - 145 && y > height - 36 ? height - 46 : y];
   }
 
+  // Returns where start and end of the path are marked: beside a ring, a work zero or each other, so that both are seen.
+  ends() {
+    if (this.moves.length === 0) return [];
+    const points = [2 * this.first, 2 * (this.starts[this.moves.length] - 1)];
+    const rings = this.holes.length > 500 ? [] : this.holes.filter((hole) => !this.isBeyond(hole));
+    const taken = rings.map((hole) => [...this.point(hole.entry), Math.max(...this.reach(hole))]).filter(([, , reach]) => reach < BIG);
+    for (const { x, y } of this.zeroPlaces()) taken.push([x, y, 8]);
+    return points.map((at) => {
+      const [x, y] = this.inside(at);
+      const isOutside = x !== this.screen[at] || y !== this.screen[at + 1];
+      const over = taken.find(([a, b, reach]) => Math.hypot(x - a, y - b) < reach + 4);
+      const beside = ([dx, dy]) => [over[0] + dx * (over[2] + 8), over[1] + dy * (over[2] + 8)];
+      const isFree = ([a, b]) => taken.every(([c, d, reach]) => Math.hypot(a - c, b - d) > reach + 7);
+      // Beyond the canvas, start and end are beside each other on its edge.
+      const ways = isOutside ? [[1, 0], [-1, 0], [0, 1], [0, -1]] : [[-0.7, 0.7], [0.7, 0.7], [-0.7, -0.7], [0.7, -0.7]];
+      const isInside = ([a, b]) => a > 9 && b > 9 && a < this.view.width - 9 && b < this.view.height - 9;
+      const place = (over ? ways.map(beside).find((at) => isFree(at) && isInside(at)) : null) ?? [x, y];
+      taken.push([...place, 7]);
+      return [...place, isOutside];
+    });
+  }
+
   // Marks the start of the path by a triangle and, unless an alarm ends it or its place is unknown, its end by a square: holes
   // are rings.
   drawEnds(colours, hasNoEnd) {
     if (this.moves.length === 0) return;
     const context = this.context;
-    const last = 2 * (this.starts[this.moves.length] - 1);
     Object.assign(context, { strokeStyle: colours.paper, fillStyle: colours.ink, lineWidth: 1.5 });
-    const [endX, endY] = this.inside(last);
-    const [startX, startY] = this.inside(2 * this.first);
+    const [[startX, startY, isStartOutside], [endX, endY, isEndOutside]] = this.ends();
     context.beginPath();
     if (!hasNoEnd) context.rect(endX - 5, endY - 5, 10, 10);
     context.stroke();
@@ -350,6 +372,21 @@ class Side {
       Object.assign(context, { strokeStyle, lineWidth });
       context.stroke();
       context.fill();
+    }
+    Object.assign(context, { font: "12px system-ui, sans-serif", fillStyle: colours.ink });
+    const outside = [];
+    if (isStartOutside) outside.push(["start", startX, startY]);
+    if (isEndOutside && !hasNoEnd) outside.push(["end", endX, endY]);
+    // Side by side they have one line.
+    const [first, second] = outside;
+    const isOneLine = second && Math.abs(first[1] - second[1]) < 130 && Math.abs(first[2] - second[2]) < 14;
+    const texts = isOneLine ? [["start, end", Math.max(first[1], second[1]), first[2], Math.min(first[1], second[1])]] : outside;
+    for (const [name, x, y, left = x] of texts) {
+      const words = `${name} (outside)`;
+      const isRight = x + 14 + context.measureText(words).width > this.view.width;
+      context.textAlign = isRight ? "right" : "left";
+      this.write(words, isRight ? left - 12 : x + 12, y + 4, colours);
+      context.textAlign = "left";
     }
   }
 
@@ -417,12 +454,17 @@ class Side {
     context.stroke();
   }
 
-  // Marks the end of the path by a cross.
+  // Marks the end of the path by a cross; one at the edge of the canvas says that the place is beyond it.
   drawAlarm(colours) {
     if (this.moves.length === 0) return;
     const at = 2 * (this.starts[this.moves.length] - 1);
     const [x, y] = this.inside(at);
     const context = this.context;
+    if (x !== this.screen[at] || y !== this.screen[at + 1]) {
+      Object.assign(context, { font: "12px system-ui, sans-serif", fillStyle: colours.wrong });
+      const words = "stopped (outside)";
+      this.write(words, x < this.view.width / 2 ? x + 13 : x - 13 - context.measureText(words).width, y + 4, colours);
+    }
     for (const [strokeStyle, lineWidth] of [[colours.paper, 6], [colours.wrong, 3]]) {
       Object.assign(context, { strokeStyle, lineWidth });
       context.beginPath();
@@ -497,8 +539,8 @@ class Side {
 
   // Returns the boxes of start, end and work zeros on the canvas: left, top, right, bottom.
   marked() {
-    const ends = this.moves.length === 0 ? [] : [2 * this.first, ...(this.isLost ? [] : [2 * (this.starts[this.moves.length] - 1)])];
-    const places = [...ends.map((at) => this.inside(at)), ...this.zeros.map(([, at]) => this.point(at))];
+    const ends = this.ends().slice(0, this.isLost ? 1 : 2);
+    const places = [...ends, ...this.zeros.map(([, at]) => this.point(at))];
     return places.map(([x, y]) => [x - 9, y - 9, x + 9, y + 9]);
   }
 
@@ -509,15 +551,19 @@ class Side {
     return [half(Math.cos(angle), Math.sin(angle)), half(Math.sin(angle), Math.cos(angle))];
   }
 
-  // Writes the name of a hole or a work zero close to it at the first free position; without one, a click on the hole shows it.
+  // Writes the name of a hole or a work zero at the first free position: close to it, else farther off on a line. Without one, a click
+  // on the hole shows it.
   label(name, [x, y], [along, rise], taken, colours, always) {
     const [wide, high] = [this.context.measureText(name).width, 12];
-    const [right, left, middle] = [x + along + 4, x - along - 4 - wide, x - wide / 2];
     // Above to the right and the left, beside, below, and centred above and below.
-    const places = [
-      [right, y - rise + 2], [left, y - rise + 2], [right, y + high / 2 - 2], [left, y + high / 2 - 2],
-      [right, y + rise + high - 4], [left, y + rise + high - 4], [middle, y - rise - 4], [middle, y + rise + high + 2],
-    ];
+    const around = (off) => {
+      const [right, left, middle] = [x + along + 4 + off, x - along - 4 - wide - off, x - wide / 2];
+      return [
+        [right, y - rise + 2 - off], [left, y - rise + 2 - off], [right, y + high / 2 - 2], [left, y + high / 2 - 2],
+        [right, y + rise + high - 4 + off], [left, y + rise + high - 4 + off], [middle, y - rise - 4 - off], [middle, y + rise + high + 2 + off],
+      ];
+    };
+    const places = LEADERS.flatMap(around);
     const box = ([at, bottom]) => [at, bottom - high + 2, at + wide, bottom + 2];
     const isFree = (place) => {
       const [from, top, to, bottom] = box(place);
@@ -527,6 +573,15 @@ class Side {
     const place = places.find(isFree) ?? (always ? places[0] : null);
     if (!place) return;
     taken.push(box(place));
+    if (places.indexOf(place) >= 8) {
+      const [from, top, to, bottom] = box(place);
+      const end = [Math.max(from, Math.min(to, x)), Math.max(top, Math.min(bottom, y))];
+      Object.assign(this.context, { strokeStyle: colours.soft, lineWidth: 0.8 });
+      this.context.beginPath();
+      this.context.moveTo(x, y);
+      this.context.lineTo(...end);
+      this.context.stroke();
+    }
     this.write(name, ...place, colours);
   }
 
@@ -639,8 +694,7 @@ class Viewer {
   constructor(data, sides) {
     sides.forEach((side) => Object.assign(side, { stock: data.stock, zeros: data.zeros, heights: data.heights, up: data.up }));
     Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false, upTo: null } });
-    // A change is seen larger without the stock.
-    this.extents = [...sides.flatMap((side) => side.extent()), ...(sides.length === 1 ? data.stock.flat(2) : [])];
+    this.extents = [...sides.flatMap((side) => side.extent()), ...data.stock.flat(2)];
     if (sides.length === 2) sides.forEach((side) => (side.overview = (...box) => this.whole(...box)));
     this.middle = [0, 1, 2].map((axis) => {
       let [low, high] = [Infinity, -Infinity];

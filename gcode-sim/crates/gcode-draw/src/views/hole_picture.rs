@@ -7,7 +7,7 @@ use super::purpose::PicturePurpose;
 use super::top::{DrawnHole, TopView, hole_mark, number_few, signed};
 use super::view_frames::Frames;
 use crate::picture::{LegendItem, Picture, Sample};
-use crate::scene::{Axis, Mark, Pen, Point, Scene, Shape, Stroke};
+use crate::scene::{Axis, Mark, Pen, Point, Scene, Shape, Sign, Stroke};
 use crate::side::Side;
 use gcode_part::Hole;
 
@@ -21,7 +21,7 @@ const PATHS: [(Pen, &str); 5] = [
 ];
 
 /// Number of holes beyond which good ones have no number.
-const MAX_LABELLED: usize = 200;
+pub(super) const MAX_LABELLED: usize = 200;
 
 /// Largest number of construction circles; more would hide the holes.
 const MAX_CIRCLES: usize = 12;
@@ -51,7 +51,8 @@ pub fn top_view(view: &TopView) -> Picture {
     if view.side == Side::Y {
         scene.strokes.extend(circles(&view.holes));
     }
-    scene.strokes.extend(view.outlines().map(|shape| Stroke::new(Pen::Outline, shape)));
+    let outlines = view.outlines(view.side).into_iter();
+    scene.strokes.extend(outlines.map(|shape| Stroke::new(Pen::Outline, shape)));
     if is_framed {
         let construction = scene.strokes.iter().filter(|stroke| stroke.pen == Pen::Construction);
         let corners: Vec<Point> = construction.flat_map(|stroke| stroke.shape.points()).collect();
@@ -112,6 +113,8 @@ fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
     let has_axis = |mark: &Mark| mark.direction.is_some_and(|d| 0.02 < libm::hypot(d[0], d[1]));
     let has_pen = |pen: Pen| scene.strokes.iter().any(|stroke| stroke.pen == pen);
     let has_zero = scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Zero(_)));
+    let is_alarm = |stroke: &Stroke| matches!(stroke.shape, Shape::Sign { sign: Sign::Alarm, .. });
+    let has_alarm = scene.strokes.iter().any(is_alarm);
     let is_nominal = view.holes.iter().any(|hole| hole.nominal.is_some());
     let radius = if is_nominal { "radius r, mm" } else { "radius r where the feed begins, mm" };
     let others = [
@@ -124,6 +127,7 @@ fn legend(view: &TopView, scene: &Scene) -> Vec<LegendItem> {
         (has_pen(Pen::Thread), Sample::Pen(Pen::Thread), "thread"),
         (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), "part outline"),
         (has_zero, Sample::Zero, "work zero"),
+        (has_alarm, Sample::Sign(Sign::Alarm), "where a run stopped"),
         (has_pen(Pen::Construction), Sample::Pen(Pen::Construction), radius),
     ];
     let paths = PATHS.map(|(pen, text)| (has_pen(pen), Sample::Pen(pen), text));
@@ -158,7 +162,7 @@ mod tests {
             rotary_angle: Some(-72.0),
             ..DrawnHole::default()
         }];
-        let view = TopView { holes, rotary: "B".to_owned(), outline: Some(10.0), ..TopView::default() };
+        let view = TopView { holes, rotary: "B".to_owned(), outline: Some([10.0; 2]), ..TopView::default() };
         let scene = top_view(&view).scene;
         assert_eq!(scene.marks[0].position, [0.0, -5.0]);
         assert_eq!(scene.marks[0].label, ["1", "B −72°", "Φ0.020"]);
@@ -194,27 +198,8 @@ mod tests {
                 && ["x", "y", "0", "20", "100"].iter().all(|name| names.contains(&(*name).to_owned())),
             "{names:?}"
         );
-        let (frame, _, has_zero, axes) = of(&TopView { outline: Some(200.0), ..view });
+        let (frame, _, has_zero, axes) = of(&TopView { outline: Some([200.0; 2]), ..view });
         assert_eq!((frame, has_zero, axes), (None, false, 2));
-    }
-
-    /// The shaft's sides are 60 mm above and below its axis, and 15 mm longer than its holes at each end; seen along its axis it
-    /// has none.
-    #[test]
-    fn a_shaft_has_its_sides() {
-        let drawn = |x: f64| DrawnHole {
-            nominal: Some(hole([x, 0.0, 60.0], [0.0, 0.0, 1.0])),
-            ..DrawnHole::default()
-        };
-        let view = TopView {
-            holes: vec![drawn(10.0), drawn(40.0)],
-            shaft: Some(60.0),
-            side: Side::Z,
-            ..TopView::default()
-        };
-        let outlines = |view: &TopView| view.outlines().flat_map(|shape| shape.points()).collect::<Vec<_>>();
-        assert_eq!(outlines(&view), [[-8.0, 60.0], [58.0, 60.0], [-8.0, -60.0], [58.0, -60.0]]);
-        assert!(outlines(&TopView { side: Side::X, ..view }).is_empty());
     }
 
     #[test]

@@ -1,17 +1,16 @@
 //! The picture of a tool path: one or several views with frames, the holes on top, and a legend.
+use super::hole_picture::MAX_LABELLED;
+use super::path_legend::legend;
 use super::path_places::{MAX_PLACES, limits, places, zeros};
-use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale, stock_outline};
-use super::path_view::{Arrangement, ColorBy, PathView, RunKind, StandardView};
+use super::path_strokes::{MAX_SWEPT_POINTS, PathDrawer, ShadeScale};
+use super::path_view::{Arrangement, PathView, RunKind, StandardView};
+use super::stock_outline::stock_outline;
 use super::top::{DrawnHole, TopView, hole_mark};
 use super::view_frames::{Frames, PlacedView, ViewBox};
-use crate::measure::plain;
-use crate::picture::{LegendItem, Picture, Sample};
-use crate::scene::{Mark, Pen, Scene, Shape, Sign, Stroke, Style, Tint};
-use crate::side::Projection;
+use crate::picture::Picture;
+use crate::scene::{Mark, Pen, Scene, Stroke};
 use nalgebra::Vector3;
 
-/// Largest number of tools or programs in the legend.
-const MAX_CLASSES: usize = 12;
 /// Cosine of the largest angle between a hole and the line of sight at which the hole is drawn: 60°.
 const FACING: f64 = 0.5;
 
@@ -40,12 +39,15 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
     let (mut is_cut, mut labelled) = (false, vec![false; view.holes.len()]);
     for (index, placed) in frames.views.iter().enumerate() {
         if placed.kind == StandardView::Top && is_swept_drawn {
-            scene.strokes.extend(drawer.swept(placed));
+            let swept = drawer.swept(placed);
+            if !swept.is_empty() && drawer.sweeps_across_sight(placed) {
+                notes.push("swept width drawn only where the tool is along the line of sight".to_owned());
+            }
+            scene.strokes.extend(swept);
         }
-        if placed.kind == StandardView::Top {
-            let outlines = view.outlines().map(|shape| shape.map(|point| placed.moved(point)));
-            scene.strokes.extend(outlines.map(|shape| Stroke::new(Pen::Outline, shape)));
-        }
+        let outlines = view.outlines(placed.side).into_iter();
+        let outlines = outlines.map(|shape| shape.map(|point| placed.moved(point)));
+        scene.strokes.extend(outlines.map(|shape| Stroke::new(Pen::Outline, shape)));
         scene.strokes.extend(path.stock.iter().flat_map(|stock| stock_outline(stock, placed)));
         scene.strokes.extend(frames.strokes(placed));
         let (rapids, cut) = drawer.rapids(placed);
@@ -63,6 +65,11 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
         scene.strokes.extend(places(path, placed, frames.extent, index == 0));
         scene.marks.extend(marks(view, placed, 1 < frames.views.len(), &mut labelled));
     }
+    // Of hundreds of holes those out of tolerance keep their numbers.
+    if MAX_LABELLED < view.holes.len() {
+        let good = scene.marks.iter_mut().filter(|mark| mark.status.is_good());
+        good.for_each(|mark| mark.label.clear());
+    }
     if is_cut {
         notes.push("rapids beyond the frame are cut off".to_owned());
     }
@@ -75,6 +82,10 @@ pub fn path_picture(view: &TopView, path: &PathView, arrangement: &Arrangement) 
         notes.push(format!("{} of {all} holes have no symbol: they do not face a view", all - faced));
     }
     let is_shown = |tool: usize| frames.views.iter().any(|placed| drawer.shows_feeds(placed, tool));
+    let mut cutting = (0..tools.len()).filter(|tool| tools[*tool].is_some()).peekable();
+    if view.holes.is_empty() && cutting.peek().is_some() && !cutting.any(&is_shown) {
+        notes.push("all feeds run along the line of sight: another --view shows them".to_owned());
+    }
     let legend = legend(view, &drawer, &scene, arrangement, (letter, sign), is_shown);
     let mut title = view.title(title_of(arrangement), view.tolerance, None);
     title.lines.extend(notes);
@@ -156,127 +167,13 @@ fn faces_view(hole: &DrawnHole, placed: &PlacedView) -> bool {
     }
 }
 
-fn legend(
-    view: &TopView,
-    drawer: &PathDrawer<'_>,
-    scene: &Scene,
-    arrangement: &Arrangement,
-    (letter, sign): (char, f64),
-    is_shown: impl Fn(usize) -> bool,
-) -> Vec<LegendItem> {
-    let path = drawer.path;
-    let mut items = view.status_legend(&scene.marks);
-    let is_shaded = |stroke: &Stroke| matches!(stroke.style, Some(Style { tint: Some(Tint::Shade(_)), .. }));
-    if let Some(scale) = drawer.shades.filter(|_| scene.strokes.iter().any(is_shaded)) {
-        items.push(match (arrangement.color_by, scale.is_flat()) {
-            (ColorBy::Feed, false) => {
-                LegendItem::new(Sample::Shades(scale.low, scale.high), "feed rate, mm/min")
-            }
-            (ColorBy::Feed, true) => {
-                LegendItem::new(Sample::Nothing, format!("all feeds: F{}", plain(scale.low)))
-            }
-            (_, false) => LegendItem::new(
-                Sample::Shades(sign * scale.low, sign * scale.high),
-                format!("{letter} of the feeds, mm"),
-            ),
-            (_, true) => {
-                let at = number(sign * scale.low);
-                LegendItem::new(Sample::Nothing, format!("all feeds at {letter} = {at} mm"))
-            }
-        });
-    }
-    items.extend(tool_lines(drawer, is_shown));
-    if arrangement.color_by == ColorBy::Program {
-        let mut used: Vec<usize> =
-            path.runs.iter().filter(|run| run.kind == RunKind::Feed).map(|run| run.program).collect();
-        used.sort_unstable();
-        used.dedup();
-        let style = |class: usize| Style { tint: Some(Tint::Class(class)), ..Style::default() };
-        let line = |program: usize| {
-            let name = path.programs.get(program).map_or("", String::as_str);
-            LegendItem::new(Sample::Line(Pen::Feed, style(program)), name)
-        };
-        items.extend(used.iter().take(MAX_CLASSES).map(|program| line(*program)));
-        items.extend(more(used.len(), "program"));
-    }
-    let has_pen = |pen: Pen| scene.strokes.iter().any(|stroke| stroke.pen == pen);
-    let has_tint = |tint: Tint| {
-        scene.strokes.iter().any(|stroke| stroke.style.is_some_and(|style| style.tint == Some(tint)))
-    };
-    let has_sign = |of: Sign| {
-        scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Sign { sign, .. } if sign == of))
-    };
-    let has_zero = scene.strokes.iter().any(|stroke| matches!(stroke.shape, Shape::Zero(_)));
-    let pale = Style { tint: Some(Tint::Pale), width: Some(0.6), ..Style::default() };
-    let outline = if path.stock.is_some() { "stock" } else { "part outline" };
-    let is_limit = path.places.iter().any(|place| place.sign == Sign::Alarm && place.label == "limit");
-    let stopped = if is_limit { "limit of the run" } else { "alarm" };
-    let others = [
-        (has_pen(Pen::Rapid), Sample::Pen(Pen::Rapid), "rapid"),
-        (has_pen(Pen::Probe), Sample::Pen(Pen::Probe), "probing move"),
-        (has_tint(Tint::Pale), Sample::Line(Pen::Feed, pale), "swept by the cutter"),
-        (has_pen(Pen::Thread), Sample::Pen(Pen::Thread), "thread"),
-        (has_pen(Pen::Outline), Sample::Pen(Pen::Outline), outline),
-        (has_pen(Pen::Limit), Sample::Pen(Pen::Limit), "travel limit of the tip"),
-        (has_zero, Sample::Zero, "work zero"),
-        (has_sign(Sign::Start), Sample::Sign(Sign::Start), "start"),
-        (has_sign(Sign::End), Sample::Sign(Sign::End), "end"),
-        (has_sign(Sign::Stop), Sample::Sign(Sign::Stop), "stop"),
-        (has_sign(Sign::Alarm), Sample::Sign(Sign::Alarm), stopped),
-    ];
-    let drawn = others.into_iter().filter(|(is_drawn, ..)| *is_drawn);
-    items.extend(drawn.map(|(_, sample, text)| LegendItem::new(sample, text)));
-    let plane_views = arrangement.views.iter().filter(|view| **view != StandardView::Isometric).count();
-    if 1 < plane_views {
-        let words = match arrangement.projection {
-            Projection::Third => "third-angle projection",
-            Projection::First => "first-angle projection",
-        };
-        items.push(LegendItem::new(Sample::Projection(arrangement.projection), words));
-    }
-    items
-}
-
-/// Returns a line for each tool whose feeds are drawn as lines.
-fn tool_lines(drawer: &PathDrawer<'_>, is_shown: impl Fn(usize) -> bool) -> Vec<LegendItem> {
-    let path = drawer.path;
-    let mut cutting: Vec<(usize, usize)> =
-        drawer.tool_order.iter().enumerate().filter_map(|(tool, order)| Some(((*order)?, tool))).collect();
-    cutting.retain(|(_, tool)| is_shown(*tool));
-    cutting.sort_unstable();
-    let line = |tool: usize| {
-        let run = path.runs.iter().find(|run| run.kind == RunKind::Feed && run.tool == tool)?;
-        let mut style = drawer.style(run);
-        if drawer.color_by != ColorBy::Tool {
-            style.tint = Some(match drawer.color_by {
-                ColorBy::Program => Tint::Class(4),
-                _ => Tint::Shade(0.25),
-            });
-        }
-        Some(LegendItem::new(Sample::Line(Pen::Feed, style), path.tools[tool].name.clone()))
-    };
-    let lines = cutting.iter().take(MAX_CLASSES).filter_map(|(_, tool)| line(*tool));
-    lines.chain(more(cutting.len(), "tool")).collect()
-}
-
-fn more(count: usize, what: &str) -> Option<LegendItem> {
-    let more = count.checked_sub(MAX_CLASSES).filter(|more| 0 < *more)?;
-    let plural = if more == 1 { "" } else { "s" };
-    Some(LegendItem::new(Sample::Nothing, format!("and {more} more {what}{plural}")))
-}
-
-/// Formats a number with a true minus sign.
-fn number(value: f64) -> String {
-    plain(value).replace('-', "−")
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::path_view::{DrawnTool, PathPlace, PathRun, RunAxis, TravelLimit};
+    use super::super::path_view::{ColorBy, DrawnTool, PathPlace, PathRun, RunAxis, TravelLimit};
     use super::*;
-    use crate::scene::Point;
-    use crate::side::Side;
-    use gcode_part::{Stock, StockAxis};
+    use crate::scene::{HoleStatus, Point, Shape, Sign, Tint};
+    use crate::side::{Projection, Side};
+    use gcode_part::{Hole, Stock, StockAxis};
 
     /// A slot of 10 mm along x at z −2 from (0, 0) to (100, 40), reached by a rapid from z 300.
     fn slot() -> PathView {
@@ -496,5 +393,32 @@ mod tests {
         let shades: Vec<f64> = shades.collect();
         assert!(shades.len() == 5 && shades.windows(2).all(|pair| pair[1] < pair[0]), "{shades:?}");
         assert_eq!((shades[0], shades[4]), (1.0, 0.0));
+    }
+
+    /// Of 201 holes one is out of tolerance: it alone has a number. Of 200 all have one.
+    #[test]
+    fn beyond_200_holes_those_out_of_tolerance_have_numbers() {
+        let numbered = |count: usize| {
+            let hole = |index: usize| DrawnHole {
+                id: index.to_string(),
+                status: if index == 7 { HoleStatus::Bad } else { HoleStatus::Good },
+                actual: Some(Hole {
+                    entry: [index as f64, 0.0, 0.0],
+                    axis: [0.0, 0.0, 1.0],
+                    ..Hole::default()
+                }),
+                ..DrawnHole::default()
+            };
+            let view = TopView { side: Side::Z, holes: (0..count).map(hole).collect(), ..TopView::default() };
+            let arrangement = Arrangement {
+                top: Side::Z,
+                views: vec![StandardView::Top],
+                projection: Projection::Third,
+                color_by: ColorBy::Depth,
+            };
+            let marks = path_picture(&view, &slot(), &arrangement).scene.marks;
+            marks.iter().filter(|mark| !mark.label.is_empty()).count()
+        };
+        assert_eq!((numbered(200), numbered(201)), (200, 1));
     }
 }

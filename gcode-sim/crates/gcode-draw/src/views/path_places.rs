@@ -81,9 +81,12 @@ pub(super) fn places(path: &PathView, view: &PlacedView, extent: f64, is_named: 
         }
         let at = if is_inside { seen } else { edge_point(path, view, place) };
         let label = if is_inside { label.clone() } else { format!("{label} (outside)") };
-        let near =
-            |group: &&mut Group| libm::hypot(group.at[0] - at[0], group.at[1] - at[1]) < SAME_PLACE * extent;
-        match groups.iter_mut().find(near) {
+        // Start, end and alarm have symbols of their own in one place, and stand for a stop there.
+        let is_same = |group: &&mut Group| {
+            libm::hypot(group.at[0] - at[0], group.at[1] - at[1]) < SAME_PLACE * extent
+                && (group.sign == *sign || [group.sign, *sign].contains(&Sign::Stop))
+        };
+        match groups.iter_mut().find(is_same) {
             Some(group) => {
                 if group.sign < *sign {
                     (group.sign, group.at) = (*sign, at);

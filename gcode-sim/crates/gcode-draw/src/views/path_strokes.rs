@@ -2,15 +2,15 @@
 use std::collections::BTreeMap;
 
 use super::drawn_lines::{DrawnCells, DrawnSegments, SAME_LINE, distance};
-use super::path_view::{ColorBy, PathRun, PathView, RunAxis, RunKind, StandardView};
-use super::view_frames::{Frames, PlacedView, axis_index};
-use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint, arc};
-use gcode_lang::units::Deg;
-use gcode_part::Stock;
+use super::path_view::{ColorBy, PathRun, PathView, RunAxis, RunKind};
+use super::view_frames::{Frames, PlacedView};
+use crate::scene::{Pen, Point, Shape, Stroke, Style, Tint};
 use nalgebra::Vector3;
 
 /// Resolution of a sheet in parts of the extent of its views: less than 0.1 pixels of an ordinary picture.
 const RESOLUTION: f64 = 5e-5;
+/// Largest difference of heights that are one, mm.
+const SAME_HEIGHT: f64 = 1e-6;
 /// Number of shades that are told apart.
 const SHADES: f64 = 64.0;
 /// Largest number of points of feeds under which the swept width is drawn.
@@ -21,6 +21,8 @@ pub(super) const MAX_SWEPT_POINTS: usize = 20_000;
 pub(super) struct ShadeScale {
     pub(super) low: f64,
     pub(super) high: f64,
+    /// Height of the highest plunge above the scale, whose colour there is that of the highest cut.
+    pub(super) plunge: Option<f64>,
 }
 
 impl ShadeScale {
@@ -56,17 +58,18 @@ impl ShadeScale {
                     }
                 }
                 let high = if low <= high { high } else { highest };
-                return (lowest <= high).then_some(Self { low: lowest, high });
+                let plunge = Some(highest).filter(|highest| high + SAME_HEIGHT < *highest);
+                return (lowest <= high).then_some(Self { low: lowest, high, plunge });
             }
             ColorBy::Feed => feeds().for_each(|run| add(run.feed)),
             ColorBy::Tool | ColorBy::Program => return None,
         }
-        (low <= high).then_some(Self { low, high })
+        (low <= high).then_some(Self { low, high, plunge: None })
     }
 
     /// Returns true if all values are the same.
     pub(super) fn is_flat(self) -> bool {
-        self.high - self.low < 1e-6
+        self.high - self.low < SAME_HEIGHT
     }
 
     /// Returns the colour of a shade by its number.
@@ -80,6 +83,20 @@ impl ShadeScale {
             return (SHADES / 4.0).floor();
         }
         ((value - self.low) / (self.high - self.low) * SHADES).floor().clamp(0.0, SHADES - 1.0)
+    }
+}
+
+/// Returns the colour and the dashes of a class: the seventh has the first one's colour and the second one's dashes.
+pub(super) fn class_style(class: usize) -> Style {
+    Style { tint: Some(Tint::Class(class)), pattern: ((class + class / 6) % 6) as u8, ..Style::default() }
+}
+
+/// Returns true if the tool is along the line of sight, or in an unknown direction.
+fn is_along_sight(view: &PlacedView, run: &PathRun) -> bool {
+    match run.axis {
+        RunAxis::Unknown => true,
+        RunAxis::Along(axis) => 0.5 < view.side.towards()[axis].abs(),
+        RunAxis::Oblique => false,
     }
 }
 
@@ -97,38 +114,59 @@ pub(super) struct PathDrawer<'a> {
 }
 
 impl PathDrawer<'_> {
+    /// Returns the number of the class that the dashes of a feed stand for: its program if the colours stand for programs, else its
+    /// tool in the order of the first feeds.
+    fn class(&self, run: &PathRun) -> usize {
+        match self.color_by {
+            ColorBy::Program => run.program,
+            ColorBy::Tool | ColorBy::Feed | ColorBy::Depth => {
+                self.tool_order.get(run.tool).copied().flatten().unwrap_or(0)
+            }
+        }
+    }
+
     /// Returns the look of a feed, but for its shade.
     pub(super) fn style(&self, run: &PathRun) -> Style {
-        let order = self.tool_order.get(run.tool).copied().flatten().unwrap_or(0);
+        let of_class = class_style(self.class(run));
         let tint = match self.color_by {
-            ColorBy::Tool => Some(Tint::Class(order)),
-            ColorBy::Program => Some(Tint::Class(run.program)),
+            ColorBy::Tool | ColorBy::Program => of_class.tint,
             ColorBy::Feed => self.shades.map(|scale| scale.tint(scale.level(run.feed))),
             ColorBy::Depth => None,
         };
-        // The seventh tool has the first one's colour and the second one's dashes.
-        Style { tint, pattern: ((order + order / 6) % 6) as u8, ..Style::default() }
+        Style { tint, ..of_class }
     }
 
     /// Draws the areas that the cutters sweep along the feeds, where the tool is along the line of sight.
     pub(super) fn swept(&self, view: &PlacedView) -> Vec<Stroke> {
-        let towards = view.side.towards();
-        let is_along_sight = |run: &&PathRun| match run.axis {
-            RunAxis::Unknown => true,
-            RunAxis::Along(axis) => 0.5 < towards[axis].abs(),
-            RunAxis::Oblique => false,
-        };
+        let is_along_sight = |run: &&PathRun| is_along_sight(view, run);
         let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed).filter(is_along_sight);
         let swept = feeds.filter_map(|run| {
             let width = self.path.tools.get(run.tool)?.swept_width?;
             let points = self.sparse(view, run);
             let style = Style { tint: Some(Tint::Pale), width: Some(width), ..Style::default() };
             // A plunge sweeps no more than its hole, which has a symbol.
-            let has_extent =
-                points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]));
+            let has_extent = points.iter().any(|point| self.is_apart(*point, points[0]));
             has_extent.then(|| Stroke { style: Some(style), ..Stroke::new(Pen::Feed, moved(view, points)) })
         });
         swept.collect()
+    }
+
+    /// Returns true if a mill sweeps a width along a feed where it is not along the line of sight.
+    pub(super) fn sweeps_across_sight(&self, view: &PlacedView) -> bool {
+        let has_width =
+            |run: &PathRun| self.path.tools.get(run.tool).is_some_and(|tool| tool.swept_width.is_some());
+        let feeds = self.path.runs.iter().filter(|run| run.kind == RunKind::Feed && has_width(run));
+        feeds.filter(|run| !is_along_sight(view, run)).any(|run| {
+            let points = &self.path.points[run.points.clone()];
+            // A plunge sweeps no more than its hole.
+            let is_across = |pair: &[[f64; 3]]| match run.axis {
+                RunAxis::Along(axis) => {
+                    (0..3).any(|other| other != axis && 1e-6 < (pair[1][other] - pair[0][other]).abs())
+                }
+                RunAxis::Unknown | RunAxis::Oblique => true,
+            };
+            points.windows(2).any(is_across)
+        })
     }
 
     /// Draws the rapids, clipped to the frame; returns true with them if any is cut off.
@@ -162,12 +200,17 @@ impl PathDrawer<'_> {
         (strokes, is_cut)
     }
 
+    /// Returns true if a sheet can tell two points from each other.
+    pub(super) fn is_apart(&self, one: Point, other: Point) -> bool {
+        RESOLUTION * self.extent <= distance(one, other)
+    }
+
     /// Returns true if a view shows feeds of a tool as lines.
     pub(super) fn shows_feeds(&self, view: &PlacedView, tool: usize) -> bool {
         let is_of_tool = |run: &&PathRun| run.kind == RunKind::Feed && run.tool == tool;
         self.path.runs.iter().filter(is_of_tool).any(|run| {
             let points = self.sparse(view, run);
-            points.iter().any(|point| RESOLUTION * self.extent <= distance(*point, points[0]))
+            points.iter().any(|point| self.is_apart(*point, points[0]))
         })
     }
 
@@ -193,9 +236,10 @@ impl PathDrawer<'_> {
                 strokes.extend(lines.into_iter().rev());
                 continue;
             }
-            let of_tool =
-                drawn.entry(run.tool).or_insert_with(|| DrawnSegments::new(2.0 * RESOLUTION * self.extent));
-            strokes.extend(lines.into_iter().rev().flat_map(|stroke| of_tool.without_repeats(stroke)));
+            let of_class = drawn
+                .entry(self.class(run))
+                .or_insert_with(|| DrawnSegments::new(2.0 * RESOLUTION * self.extent));
+            strokes.extend(lines.into_iter().rev().flat_map(|stroke| of_class.without_repeats(stroke)));
         }
         strokes.reverse();
         probes_on_top(strokes)
@@ -325,73 +369,9 @@ pub(super) fn clipped([from, to]: [Point; 2], [low, high]: [Point; 2]) -> Option
     (first < last).then(|| [at(first), at(last)])
 }
 
-/// Draws the outline of the stock.
-pub(super) fn stock_outline(stock: &Stock, view: &PlacedView) -> Vec<Stroke> {
-    let line = |pen: Pen, points: &[[f64; 3]]| {
-        let points: Vec<Point> = points.iter().map(|point| view.project(*point)).collect();
-        Stroke::new(pen, Shape::Line(points))
-    };
-    let edge = |points: &[[f64; 3]]| line(Pen::Outline, points);
-    match stock {
-        Stock::Box { min, max, .. } => {
-            let corner =
-                |ends: usize| [0, 1, 2].map(|axis| if ends >> axis & 1 == 1 { max[axis] } else { min[axis] });
-            let edges = (0..8usize).flat_map(|from| (0..3).map(move |axis| (from, from | 1 << axis)));
-            // The corner farthest from the reader, at which three hidden edges meet.
-            let towards = view.side.towards();
-            let hidden = (0..3).filter(|axis| towards[*axis] < 0.0).fold(0, |ends, axis| ends | 1 << axis);
-            let is_hidden = |ends: [usize; 2]| view.kind == StandardView::Isometric && ends.contains(&hidden);
-            edges
-                .filter(|(from, to)| from != to)
-                .map(|(from, to)| {
-                    let pen = if is_hidden([from, to]) { Pen::Construction } else { Pen::Outline };
-                    line(pen, &[corner(from), corner(to)])
-                })
-                .collect()
-        }
-        Stock::Cylinder { axis, diameter, from, to, .. } => {
-            let (along, radius) = (axis_index(*axis), diameter / 2.0);
-            let (first, second) = ((along + 1) % 3, (along + 2) % 3);
-            let rim = |end: f64, angles: [f64; 2]| -> Vec<[f64; 3]> {
-                let place = |[a, b]: Point| {
-                    let mut point = [end; 3];
-                    (point[first], point[second]) = (a, b);
-                    point
-                };
-                arc([0.0, 0.0], [radius, radius], angles).into_iter().map(place).collect()
-            };
-            let towards = view.side.towards();
-            let (near, far) = if towards[along] < 0.0 { (*from, *to) } else { (*to, *from) };
-            let facing = Deg::atan2(towards[second], towards[first]).0;
-            // The wall hides the half of the far rim that is turned away from the reader.
-            let is_half_hidden = view.kind == StandardView::Isometric;
-            let far_rims = match is_half_hidden {
-                true => vec![
-                    edge(&rim(far, [facing - 90.0, facing + 90.0])),
-                    line(Pen::Construction, &rim(far, [facing + 90.0, facing + 270.0])),
-                ],
-                false => vec![edge(&rim(far, [0.0, 360.0]))],
-            };
-            // The outline runs along the generators that are farthest apart across the line of sight.
-            let across = libm::hypot(towards[first], towards[second]);
-            let sides = [1.0, -1.0].into_iter().filter(|_| 1e-6 < across).map(|sign| {
-                let end = |end: f64| {
-                    let mut point = [end; 3];
-                    point[first] = -towards[second] / across * radius * sign;
-                    point[second] = towards[first] / across * radius * sign;
-                    point
-                };
-                edge(&[end(*from), end(*to)])
-            });
-            far_rims.into_iter().chain([edge(&rim(near, [0.0, 360.0]))]).chain(sides).collect()
-        }
-        Stock::Surface { .. } => Vec::new(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::path_view::Arrangement;
+    use super::super::path_view::{Arrangement, StandardView};
     use super::super::top::TopView;
     use super::super::view_frames::ViewBox;
     use super::*;
@@ -419,10 +399,10 @@ mod tests {
             };
             let frames = Frames::of(ViewBox::of(Side::Z, &TopView::default(), &path), &arrangement);
             let scale = ShadeScale::of(&path, ColorBy::Depth, &frames, |at| at[2]).unwrap();
-            [scale.low, scale.high]
+            ([scale.low, scale.high], scale.plunge)
         };
-        assert_eq!(scale(StandardView::Top), [-2.0, -2.0]);
-        assert_eq!(scale(StandardView::Front), [-20.0, -2.0]);
+        assert_eq!(scale(StandardView::Top), ([-2.0, -2.0], None));
+        assert_eq!(scale(StandardView::Front), ([-20.0, -2.0], Some(0.0)));
     }
 
     /// From (−10, 5) to (30, 25) the line enters a square of 0 to 20 at (0, 10) and leaves it at (20, 20).

@@ -16,8 +16,8 @@ pub struct TopView {
     pub name: String,
     /// Viewing direction.
     pub side: Side,
-    /// Radius of the part's outline seen along y, mm.
-    pub outline: Option<f64>,
+    /// Equatorial and polar radius of a part that is an ellipsoid of revolution about y, mm.
+    pub outline: Option<[f64; 2]>,
     /// Dimensions of a part that is a cylinder about x.
     pub cylinder: Option<Cylinder>,
     /// Diameter of the position tolerance zone, mm.
@@ -148,29 +148,6 @@ fn widest(hole: &Hole) -> Option<f64> {
 }
 
 impl TopView {
-    /// Returns the outline of the part as it is seen.
-    pub(super) fn outlines(&self) -> impl Iterator<Item = Shape> {
-        let outline = self.outline.map(|radius| Shape::Circle { centre: [0.0, 0.0], radius });
-        let sides = self.cylinder.into_iter().flat_map(|Cylinder { outer, length, .. }| {
-            [outer, -outer].map(|y| Shape::Line(vec![[0.0, y], [length, y]]))
-        });
-        outline.into_iter().chain(sides).chain(self.shaft_sides())
-    }
-
-    /// Returns the sides of a shaft, a little longer than the pattern of its holes, where x runs across the sheet.
-    fn shaft_sides(&self) -> impl Iterator<Item = Shape> {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for hole in self.holes.iter().filter_map(DrawnHole::shown) {
-            let radius = hole.diameter.unwrap_or(0.0) / 2.0;
-            (low, high) = (low.min(hole.entry[0] - radius), high.max(hole.entry[0] + radius));
-        }
-        let is_seen = low < high && self.side.axis_of_coordinate(0) == Some(('x', 1.0));
-        self.shaft.filter(|_| is_seen).into_iter().flat_map(move |radius| {
-            let beyond = 0.25 * radius;
-            [radius, -radius].map(|up| Shape::Line(vec![[low - beyond, up], [high + beyond, up]]))
-        })
-    }
-
     /// Draws the diameters of the features of holes along the line of sight, those of threads broken.
     pub(super) fn feature_circles(&self, side: Side) -> impl Iterator<Item = Stroke> {
         let along = move |hole: &&Hole| ALONG < Vector3::from(hole.axis).dot(&side.towards());
@@ -274,6 +251,12 @@ impl TopView {
             all.dedup();
             all.into_iter().map(|diameter| signed(diameter, 3)).collect::<Vec<_>>().join("/")
         };
+        // The other columns have the nominal hole.
+        let fault = |drawn: &DrawnHole| match drawn.status {
+            HoleStatus::Bad => drawn.remarks.join(", "),
+            HoleStatus::Missing | HoleStatus::Extra => self.purpose.status_word(drawn.status).to_owned(),
+            HoleStatus::Good | HoleStatus::Unjudged => String::new(),
+        };
         let has_diameter = shown().any(|(_, hole)| !diameters(hole).is_empty());
         let has_position = shown().any(|(hole, _)| hole.position_deviation.is_some());
         // Without a nominal hole the depth counts from where a feed begins to the deepest point of any tool.
@@ -286,12 +269,13 @@ impl TopView {
             (has_diameter, "Φ", 3),
             (true, if is_fed { "deepest" } else { "depth" }, 2),
             (has_position, "position", 5),
+            (shown().any(|(hole, _)| !fault(hole).is_empty()), "fault", 6),
         ];
         let row = |(drawn, hole): (&DrawnHole, &Hole)| {
             let [x, y, z] = hole.entry.map(|mm| signed(mm, 3));
             let depth = if hole.through { "through".to_owned() } else { signed(hole.depth, 3) };
             let position = drawn.position_deviation.map_or_else(String::new, |phi| format!("Φ{phi:.3}"));
-            let cells = [drawn.id.clone(), x, y, z, diameters(hole), depth, position];
+            let cells = [drawn.id.clone(), x, y, z, diameters(hole), depth, position, fault(drawn)];
             let cells = cells.into_iter().zip(&columns).filter(|(_, (is_shown, ..))| *is_shown);
             (drawn.status, cells.map(|(cell, _)| cell).collect())
         };

@@ -8,6 +8,8 @@ use gcode_part::{Hole, Stock, StockAxis};
 
 /// Margin of the box about the feeds, in parts of its largest edge.
 const MARGIN: f64 = 0.08;
+/// Least edge of the box, mm: enlarged further, a short move or a point looks like a part, and its scale has more digits than a control.
+const LEAST_EDGE: f64 = 2.0;
 /// Largest distance of a work zero from the feeds at which the box contains it, in parts of its largest edge.
 const ZERO_REACH: f64 = 0.5;
 /// Space between views for scales and names, in parts of the largest extent of all views.
@@ -62,9 +64,13 @@ impl ViewBox {
             }
             Some(Stock::Surface { .. }) | None => {}
         }
-        for [right, up] in view.outlines().flat_map(|shape| shape.points()) {
-            (all.low[0], all.high[0]) = (all.low[0].min(right), all.high[0].max(right));
-            (all.low[1], all.high[1]) = (all.low[1].min(up), all.high[1].max(up));
+        // The front view has the first and the third coordinate of the top view, the right view the second and the third.
+        for (side, axes) in [(top, [0, 1]), (top.front(), [0, 2]), (top.from_right(), [1, 2])] {
+            for point in view.outlines(side).iter().flat_map(Shape::points) {
+                for (axis, mm) in axes.into_iter().zip(point) {
+                    (all.low[axis], all.high[axis]) = (all.low[axis].min(mm), all.high[axis].max(mm));
+                }
+            }
         }
         if all.high[2] < all.low[2] {
             path.points.iter().for_each(|point| all.add(*point, 0.0));
@@ -74,8 +80,17 @@ impl ViewBox {
         for (_, at) in path.zeros.iter().filter(|(_, at)| cuts.contains(*at)) {
             all.add(*at, 0.0);
         }
-        // A single point is shown with 10 mm about it.
-        all.grown((MARGIN * all.largest()).max(if all.largest() < 0.1 { 10.0 } else { 0.0 }))
+        all.grown(MARGIN * all.largest()).widened()
+    }
+
+    /// Widens edges about their middles to the least one.
+    fn widened(mut self) -> Self {
+        for axis in 0..3 {
+            let missing = ((LEAST_EDGE - (self.high[axis] - self.low[axis])) / 2.0).max(0.0);
+            self.low[axis] -= missing;
+            self.high[axis] += missing;
+        }
+        self
     }
 
     /// Adds a point, and the circle about it across the line of sight.
@@ -326,5 +341,41 @@ impl Frames {
             let start = at(sign * value);
             line(vec![start, further(start, outwards, tick)], Pen::Ruler, Some(ticks.name(value)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::path_view::PathRun;
+    use super::*;
+
+    /// Returns the box about a feed along z from 0 to a depth.
+    fn about_plunge(depth: f64) -> ViewBox {
+        let run = PathRun {
+            kind: RunKind::Feed,
+            tool: 0,
+            program: 0,
+            feed: 100.0,
+            axis: super::super::path_view::RunAxis::Unknown,
+            points: 0..2,
+        };
+        let points = vec![[5.0, 5.0, 0.0], [5.0, 5.0, depth]];
+        let path = PathView { points, runs: vec![run], ..PathView::default() };
+        ViewBox::of(Side::Z, &TopView::default(), &path)
+    }
+
+    /// 8 % of 100 mm on each side are 16 mm across the feed and 116 along it; 8 % of 0.1 mm are less than the least edge.
+    #[test]
+    fn a_short_move_is_not_enlarged_without_limit() {
+        let edges = |depth: f64| {
+            let all = about_plunge(depth);
+            [0, 1, 2]
+                .map(|axis| (all.high[axis] - all.low[axis]) * 1e6)
+                .map(f64::round)
+                .map(|edge| edge / 1e6)
+        };
+        assert_eq!(edges(-100.0), [16.0, 16.0, 116.0]);
+        assert_eq!(edges(-0.1), [2.0, 2.0, 2.0]);
+        assert_eq!(edges(0.0), [2.0, 2.0, 2.0]);
     }
 }
