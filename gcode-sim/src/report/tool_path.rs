@@ -195,7 +195,8 @@ pub(crate) fn finding_line<'a>(
 ) -> Option<String> {
     let mut of_severity = findings.into_iter().filter(|finding| finding.severity == severity);
     let first = of_severity.next()?;
-    Some(format!("{}: {}", count(of_severity.count() + 1, what), first.message))
+    let others: usize = of_severity.map(|finding| 1 + finding.more).sum();
+    Some(format!("{}: {}", count(1 + first.more + others, what), first.message))
 }
 
 /// Returns true if there is something to draw: a move or a hole.
