@@ -1,5 +1,8 @@
 //! An emitted job in memory: programs and files by name.
 
+/// Name of the machine file.
+pub const MACHINE: &str = "machine.toml";
+
 /// The programs and the machine file of one job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Package {
@@ -24,7 +27,7 @@ impl Package {
     /// Returns the files by name: `O8100.nc`, `O8101.nc`, …, `machine.toml`.
     pub fn files(&self) -> Vec<(String, &str)> {
         let programs = self.programs.iter().map(|program| (file_name(program.number), program.text.as_str()));
-        programs.chain([("machine.toml".to_owned(), self.machine.as_str())]).collect()
+        programs.chain([(MACHINE.to_owned(), self.machine.as_str())]).collect()
     }
 
     /// Returns the main program of a job with exactly one.

@@ -12,6 +12,9 @@ use crate::proof::report::JobProof;
 use crate::proved::{ProvedMacros, not_proved, proved};
 use crate::sheet::cost::{Cost, MachineTime};
 
+/// Name of the file by which git leaves out its folder.
+pub(crate) const IGNORED_BY_GIT: &str = ".gitignore";
+
 const BASIS: &str = "predicted by simulation, not measured";
 
 /// The schemas of results.
@@ -30,6 +33,8 @@ pub struct EmitReport<'c> {
     pub refused: Option<String>,
     /// The files that were written.
     pub written: Vec<String>,
+    /// The machine file of the folder, if it has other contents than emit writes: it is kept, and the verdict is with it.
+    pub kept: Option<String>,
     /// Macros of an earlier job in the folder that these programs do not call.
     pub left_over: Vec<String>,
     /// Running time without operator stops; null if nothing could be run.
@@ -57,6 +62,7 @@ impl<'c> EmitReport<'c> {
             basis: BASIS,
             refused,
             written,
+            kept: None,
             left_over,
             seconds: checked.map(|checked| checked.seconds),
             proved: Vec::new(),
@@ -73,6 +79,12 @@ impl<'c> EmitReport<'c> {
         self
     }
 
+    /// Adds the machine file that is kept.
+    pub(crate) fn with_kept(mut self, kept: Option<String>) -> Self {
+        self.kept = kept;
+        self
+    }
+
     /// Formats the result for a terminal.
     pub(crate) fn text(&self) -> String {
         let mut text = self.table.to_owned();
@@ -84,7 +96,7 @@ impl<'c> EmitReport<'c> {
         if !self.not_proved.is_empty() {
             let _ = writeln!(
                 text,
-                "no recorded proof covers {} as written for this job",
+                "no proof for all values is recorded of {} as written for this job: the verdict holds for its values",
                 self.not_proved.join(", ")
             );
         }
@@ -92,7 +104,11 @@ impl<'c> EmitReport<'c> {
             text.push('\n');
         }
         for path in &self.written {
-            let _ = writeln!(text, "written: {path}");
+            let effect = if path.ends_with(IGNORED_BY_GIT) { " (git leaves the folder out)" } else { "" };
+            let _ = writeln!(text, "written: {path}{effect}");
+        }
+        if let Some(path) = &self.kept {
+            let _ = writeln!(text, "kept: {path} (edited, or written by others: the verdict is with it)");
         }
         text
     }

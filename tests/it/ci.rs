@@ -116,6 +116,11 @@ fn the_hook_needs_no_folder_of_macros_and_names_a_case_that_fails_its_reference(
     let text = std::fs::read_to_string(&program).unwrap();
     assert!(text.contains("30."));
     std::fs::write(&program, text.replacen("30.", "30.5", 1)).unwrap();
+    git(place, &["add", "--all"]);
+    let messages = refused(git(place, &COMMIT), place);
+    assert!(messages.contains("changed  flange") && !messages.contains("use --accept"), "{messages}");
+    let last: Vec<&str> = messages.lines().filter(|line| line.starts_with("commit refused")).collect();
+    assert_eq!(last, [reason], "the change is corrected, not accepted: {messages}");
     std::fs::remove_file(place.join("parts/flange/reference.csv")).unwrap();
     git(place, &["add", "--all"]);
     let messages = refused(git(place, &COMMIT), place);

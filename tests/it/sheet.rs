@@ -162,6 +162,7 @@ fn a_program_by_hand_has_a_sheet_with_its_tools_offsets_stops_and_codes() {
     assert_eq!([&tools[0][9], &tools[1][9]], ["0.6", "0.2"]);
     assert_eq!([&tools[0][10], &tools[1][10]], ["O1234 line 5", "O1234 line 18"]);
 
+    assert!(!html.contains("Switches of the panel"), "no block has a / and no stop is M01");
     let stops = rows(&html, "Operator stops");
     assert_eq!(stops.len(), 2, "{stops:?}");
     assert!(stops[0][1].starts_with("M00 TURN THE PART") && stops[0][2] == "T1", "{stops:?}");
@@ -187,4 +188,33 @@ fn a_sheet_shows_the_verdict_and_has_its_exit_code() {
     assert_eq!(done.status.code(), Some(1), "{}", String::from_utf8_lossy(&done.stderr));
     let html = std::fs::read_to_string(place.path().join("wrong.html")).unwrap();
     assert!(html.contains("<b>FAIL. </b>") && html.contains("0 of 2 holes in tolerance"), "{html}");
+}
+
+/// Comments on tools behind their change and at the head, a block with `/`, and M01.
+#[test]
+fn a_sheet_has_the_comments_on_tools_and_the_switches_of_the_panel() {
+    let program = "%\nO1 (PLATE)\n(T2 - .240 THREAD MILL)\nG90 G17 G21 G40 G80 G49 G54\nT1 M6 (DRILL 6.8)\nG0 X0 Y0\n\
+                   G43 H1 Z50. S3000 M3\nG1 Z-1. F100\nG0 Z50.\nM01 (CHECK DEPTH)\n/G0 X100.\n/2 G0 X110.\nT2 M6\nG0 X0\n\
+                   G43 H2 Z50. S3000 M3\nG1 Z-1. F100\nG0 Z50.\nT3 M6\nG0 X0\nG43 H3 Z50. S3000 M3\nG1 Z-1. F100\nG0 Z50.\nM30\n%\n";
+    let place = tempfile::tempdir().unwrap();
+    std::fs::write(place.path().join("O1.nc"), program).unwrap();
+    std::fs::write(
+        place.path().join("machine.toml"),
+        "[[tool]]\nnumber = 2\nkind = \"end-mill\"\ndiameter = 6.0\n",
+    )
+    .unwrap();
+    let done = programs::run_line("gcode-sim sheet O1.nc -o sheet.html", place.path());
+    assert!(place.path().join("sheet.html").exists(), "{}", String::from_utf8_lossy(&done.stderr));
+    let html = std::fs::read_to_string(place.path().join("sheet.html")).unwrap();
+    let kinds: Vec<String> =
+        rows(&html, "Tools, in the order of use").iter().map(|row| row[1].clone()).collect();
+    assert_eq!(kinds, ["“DRILL 6.8”", "end mill Φ6“.240 THREAD MILL”", ""]);
+    assert_eq!(
+        rows(&html, "Switches of the panel"),
+        [
+            ["block skip", "off: the blocks are executed", "O0001 line 11"],
+            ["block skip 2", "off: the blocks are executed", "O0001 line 12"],
+            ["optional stop", "on: M01 stops", "O0001 line 10"],
+        ]
+    );
 }

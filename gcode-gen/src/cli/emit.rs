@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
 use gcode_draw::{FileFormat, Picture, Size};
+use gcode_inspect::machine::Machine;
 use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard, progress};
@@ -12,7 +13,7 @@ use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard, pro
 use super::emitted_files::{self, EmittedFiles};
 use crate::check::{CheckError, CheckedPackage, check};
 use crate::families;
-use crate::package::{Package, file_name};
+use crate::package::{MACHINE, Package, file_name};
 use crate::report::EmitReport;
 
 /// The programs of a job and their run.
@@ -29,14 +30,25 @@ pub(super) struct Emitted {
 pub(super) fn emit_verified(path: &Path) -> Result<Emitted, UsageError> {
     let job = Job::parse(&input::text(path)?).map_err(|error| UsageError::in_toml(path, &error))?;
     let package = families::emit(&job);
+    let failure = format!("the programs of {} fail verification", path.display());
+    let (checked, refused) = verified(&job, &package, path, &failure)?;
+    Ok(Emitted { job, package, checked, refused })
+}
+
+/// Verifies the programs; the reasons of a failure are printed and returned, without colours.
+fn verified(
+    job: &Job,
+    package: &Package,
+    path: &Path,
+    failure: &str,
+) -> Result<(Option<CheckedPackage>, Option<String>), UsageError> {
     let name = path.display();
-    let checked = progress::of_work("simulating and verifying the programs", || check(&job, &package));
+    let checked = progress::of_work("simulating and verifying the programs", || check(job, package));
     let (checked, reasons) = match checked {
         Ok(checked) if checked.refusals.is_empty() => (Some(checked), None),
         Ok(checked) => {
             let reasons = checked.refusals.concat();
-            let last = format!("error: nothing is written: the programs of {name} fail verification\n");
-            (Some(checked), Some(reasons + &last))
+            (Some(checked), Some(format!("{reasons}error: nothing is written: {failure}\n")))
         }
         Err(CheckError::Impossible(why)) => {
             (None, Some(format!("error: {why}\nerror: nothing is written for {name}\n")))
@@ -45,7 +57,7 @@ pub(super) fn emit_verified(path: &Path) -> Result<Emitted, UsageError> {
     };
     reasons.iter().for_each(|reasons| output::print_message(reasons));
     let refused = reasons.map(|reasons| strip_str(reasons.trim_end()).to_string());
-    Ok(Emitted { job, package, checked, refused })
+    Ok((checked, refused))
 }
 
 pub(super) fn run(
@@ -54,7 +66,18 @@ pub(super) fn run(
     force: bool,
     format: TextFormat,
 ) -> Result<ExitStatus, UsageError> {
-    let Emitted { job, package, checked, refused } = emit_verified(path)?;
+    let mut result = emit_verified(path)?;
+    let emitted = EmittedFiles::of(out)?;
+    // A machine file with the data of a person stays, if the programs pass on that machine as well.
+    let machine = out.join(MACHINE);
+    let kept = if force { None } else { emitted.edited_text(&machine, &result.package.machine)? };
+    if let (Some(text), None) = (&kept, &result.refused) {
+        Machine::parse(text).map_err(|error| UsageError::in_toml(&machine, &error))?;
+        result.package.machine.clone_from(text);
+        let failure = emitted_files::failure_with_machine(path, &machine);
+        (result.checked, result.refused) = verified(&result.job, &result.package, path, &failure)?;
+    }
+    let Emitted { job, package, checked, refused } = result;
     let (Some(checked), None) = (&checked, &refused) else {
         if format == TextFormat::Json {
             output::json(&EmitReport::new(checked.as_ref(), refused, Vec::new(), Vec::new()))?;
@@ -63,13 +86,13 @@ pub(super) fn run(
     };
     checked.warnings.iter().for_each(|warning| output::print_message(warning));
     let pictures = pictures(checked)?;
-    let programs: Vec<(PathBuf, &[u8])> =
-        package.files().into_iter().map(|(name, text)| (out.join(name), text.as_bytes())).collect();
+    let texts = package.files();
+    let texts = texts.iter().map(|(name, text)| (out.join(name), text.as_bytes()));
     let pictures = pictures.iter().map(|(name, png)| (out.join(name), png.as_slice()));
-    let files: Vec<_> = programs.iter().cloned().chain(pictures).collect();
+    let mut files: Vec<(PathBuf, &[u8])> = texts.chain(pictures).collect();
     files.iter().try_for_each(|(file, _)| overwrite_guard::check_not_input(file, &[path]))?;
-    let emitted = EmittedFiles::of(out)?;
-    let edited = if force { Vec::new() } else { emitted.edited(&programs)? };
+    files.retain(|(file, _)| kept.is_none() || *file != machine);
+    let edited = if force { Vec::new() } else { emitted.edited(&files)? };
     if !edited.is_empty() {
         let refusal = emitted_files::refusal(&edited);
         output::print_message(&refusal);
@@ -79,17 +102,18 @@ pub(super) fn run(
         }
         return Ok(ExitStatus::Failed);
     }
-    let (list, digests) = emitted.with(out, &programs);
+    let (list, digests) = emitted.with(out, &files);
+    files.extend(emitted_files::ignored_by_git(out));
     let mut all = files.clone();
     all.push((list, digests.as_bytes()));
-    all.extend(emitted_files::ignored_by_git(out));
     make_folder(out)?;
     output::write_all(&all)?;
     let left_over = stale_files(&job, &package, out);
     let name = |path: &PathBuf| path.display().to_string();
     let written = files.iter().map(|(path, _)| name(path)).collect();
     let left = left_over.iter().map(name).collect();
-    let report = EmitReport::new(Some(checked), None, written, left).with_proofs(&package);
+    let kept = kept.map(|_| name(&machine));
+    let report = EmitReport::new(Some(checked), None, written, left).with_proofs(&package).with_kept(kept);
     output::report(&report, EmitReport::text, format)?;
     for path in left_over {
         output::print_message(&format!(

@@ -31,7 +31,7 @@ struct Arguments {
 const EXIT_CODES: &str = "\
 Exit codes:
   0  done
-  1  refused: the programs of this job fail verification, or a file was edited since; nothing is written
+  1  refused: the programs of this job fail verification, or a program was edited since; nothing is written
   2  the request is invalid: bad flag, unreadable or malformed job, unwritable folder
 
 Results go to standard output, messages to standard error. --format json writes one document and nothing else; its \
@@ -59,14 +59,15 @@ Examples:
         force: bool,
     },
 
-    /// Write the O-programs and the machine file of a job
+    /// Write the O-programs, the machine file and the picture of a job
     #[command(after_help = "\
 Examples:
   gcode-gen emit job.toml --out nc
   gcode-sim verify nc/O8100.nc --reference job.toml --machine nc/machine.toml
 
-emitted.sha256 in the folder lists the files as they were written. If one of them has other contents,
-nothing is written without --force.")]
+emitted.sha256 in the folder lists the files as they were written. If a program or a picture has other \
+contents, nothing is written without --force. A machine.toml with other contents is kept: the programs have \
+to pass with it as well.")]
     Emit {
         /// The job file; '-' reads standard input
         #[arg(value_name = "JOB.toml")]

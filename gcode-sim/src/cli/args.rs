@@ -87,7 +87,7 @@ Examples:
   gcode-sim page O1234.nc -o page.html
   gcode-sim page O1234.nc -o page.html --machine machine.toml --reference O1234.csv
 
-The page is one file and needs no network. Click a move to see its block and the calls that led there; a finding links to
+The page is one file and needs no network. Click a move to see its block and the calls that led there; a finding links to \
 its block.")]
     Page(page_command::Arguments),
 
@@ -107,7 +107,7 @@ Examples:
   gcode-sim readings O8220.nc --part job.toml --machine machine.toml --tolerance 0.03
   gcode-sim readings O8220.nc --part job.toml --machine machine.toml --format csv > readings.csv
 
-Above 0: gap between ball and surface; below 0: stylus deflected. [part] in the machine file gives the actual
+Above 0: gap between ball and surface; below 0: stylus deflected. [part] in the machine file gives the actual \
 position of the part.")]
     Readings(readings::Arguments),
 
@@ -118,7 +118,7 @@ Examples:
   gcode-sim check O1234.nc --lib macros --format json
   gcode-sim check O1234.nc --format sarif > findings.sarif
 
-A comment (CHECK-OFF DOUBLED-N) on a block suppresses that rule for the block, at the head of a program for all of it;
+A comment (CHECK-OFF DOUBLED-N) on a block suppresses that rule for the block, at the head of a program for all of it; \
 allow = [\"doubled-n\"] in gcode.toml suppresses it for a folder.")]
     Check(check::Arguments),
 
@@ -130,8 +130,8 @@ Examples:
   gcode-sim diff old/O8100.nc new/O8100.nc --page review.html --reference job.toml
   git show HEAD:O8100.nc | gcode-sim diff - O8100.nc
 
-Sequence numbers, spaces, comments, names of locals and the way numbers are written are ignored.
-Called programs come from each revision's own folder first, then from --lib, those of the old one from
+Sequence numbers, spaces, comments, names of locals and the way numbers are written are ignored. \
+Called programs come from each revision's own folder first, then from --lib, those of the old one from \
 --old-lib if given.
 Exit code 0: no difference; 1: a difference; 3: a revision stops with an alarm or a limit.")]
     Diff(diff::Arguments),
@@ -145,7 +145,7 @@ Examples:
   gcode-sim test programs --lib macros --format junit > result.xml
   gcode-sim test --merge shard-1.json shard-2.json --format sarif
 
-A case is a folder with a program (main.nc, or the only one in it that no other calls) and, optionally, lib/, machine.toml,
+A case is a folder with a program (main.nc, or the only one in it that no other calls) and, optionally, lib/, machine.toml, \
 control.toml, a reference (reference.json, reference.csv or job.toml), and accepted.json, which --accept writes.")]
     Test(test::Arguments),
 
@@ -176,8 +176,8 @@ Examples:
   gcode-sim prove O9010.nc --range '#1=0..50' --claim 'travel 1320=X100.,Y50. 1321=X-5.'
   gcode-sim prove O9010.nc --range '#1=0.1..9.9' --bounds '#100' --format json
 
-Claims: a condition as in IF, at the end of every run that ends without an alarm; no-alarm; 'alarm CODE|CODE', no other alarm;
-'blocks LE N'; 'travel 1320=… 1321=…', no overtravel with these stroke limits. Each is proved, refuted with a counterexample
+Claims: a condition as in IF, at the end of every run that ends without an alarm; no-alarm; 'alarm CODE|CODE', no other alarm; \
+'blocks LE N'; 'travel 1320=… 1321=…', no overtravel with these stroke limits. Each is proved, refuted with a counterexample \
 that run confirms, or undecided with the share of the values that is left (see docs/prove.md). Exit code 0: all are proved.")]
     Prove(prove::Arguments),
 

@@ -35,8 +35,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CONTROL.toml")]
     control_file: Option<PathBuf>,
 
-    /// The machine: its axes and its control [default: that of gcode.toml, machine.toml beside the program, or the machine
-    /// of the paper]
+    /// The machine: its axes and its control [default: that of gcode.toml, machine.toml beside the program, or
+    /// X, Y, Z and a rotary B about Y]
     #[arg(long, value_name = "MACHINE.toml")]
     machine: Option<PathBuf>,
 

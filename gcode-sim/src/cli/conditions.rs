@@ -87,8 +87,8 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "CONTROL.toml")]
     pub(super) control_file: Option<PathBuf>,
 
-    /// An input signal, e.g. '#1005=1' (repeatable)
-    #[arg(long, value_name = "#N=0|1")]
+    /// An input signal, a setting or a parameter that the program reads, e.g. '#1005=1' (repeatable)
+    #[arg(long, value_name = "#N=VALUE")]
     pub(super) input: Vec<String>,
 
     /// The machine: axes, rotary sign, head, tools, offsets [default: that of gcode.toml, machine.toml beside the program,
@@ -101,7 +101,7 @@ pub(super) struct RunConditions {
     pub(super) code: Vec<String>,
 
     /// G31 stops after this fraction of its path, 0 to 1
-    #[arg(long, value_name = "PART", allow_negative_numbers = true, value_parser = common::number)]
+    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true, value_parser = common::number)]
     pub(super) skip: Option<f64>,
 
     #[arg(

@@ -39,7 +39,8 @@ pub fn count<N: std::fmt::Display + PartialEq + From<u8>>(number: N, what: &str)
 pub(crate) fn finding_counts<'a>(findings: impl Iterator<Item = &'a Diagnostic> + Clone) -> Option<String> {
     let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning")];
     let numbers = kinds.map(|(severity, name)| {
-        (findings.clone().filter(|finding| finding.severity == severity).count(), name)
+        let of_severity = findings.clone().filter(|finding| finding.severity == severity);
+        (of_severity.map(|finding| 1 + finding.more).sum::<usize>(), name)
     });
     let words: Vec<String> =
         numbers.iter().filter(|(number, _)| 0 < *number).map(|(number, name)| count(*number, name)).collect();
@@ -76,6 +77,16 @@ pub fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gcode_inspect::findings::HOLE_TWICE;
+
+    /// A list that shows one of three warnings has three.
+    #[test]
+    fn findings_that_a_list_leaves_out_count() {
+        let warning = Diagnostic::new(&HOLE_TWICE, "").with_severity(Severity::Warning);
+        let shown = [Diagnostic { more: 2, ..warning }, Diagnostic::new(&HOLE_TWICE, "")];
+        assert_eq!(finding_counts(shown.iter()).as_deref(), Some("1 error, 3 warnings"));
+        assert_eq!(finding_counts(shown[1..].iter()).as_deref(), Some("1 error"));
+    }
 
     #[test]
     fn a_variable_has_eight_digits_at_most() {

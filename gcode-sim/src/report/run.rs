@@ -305,10 +305,15 @@ impl RunReport {
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         let word = match self.outcome {
-            "end" if self.lacks_end => "ended where its text does, without M02, M30 or M99",
-            "end" => "ended",
-            "limit" => "not ended: a limit was reached",
-            _ => "stopped by an alarm",
+            "end" if self.lacks_end => "ended where its text does, without M02, M30 or M99".to_owned(),
+            "end" => "ended".to_owned(),
+            "limit" => "not ended: a limit was reached".to_owned(),
+            _ => self.alarm.as_ref().map_or_else(
+                || "stopped by an alarm".to_owned(),
+                |AlarmReport { code, message, program, line, .. }| {
+                    format!("stopped by the alarm {code} {message} ({program} line {line})")
+                },
+            ),
         };
         let [work, machine] = self.decimals;
         let _ = writeln!(text, "outcome    {word}");

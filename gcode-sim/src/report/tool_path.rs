@@ -200,7 +200,8 @@ pub(crate) fn finding_line<'a>(
 ) -> Option<String> {
     let mut of_severity = findings.into_iter().filter(|finding| finding.severity == severity);
     let first = of_severity.next()?;
-    let all = of_severity.count() + 1;
+    let others: usize = of_severity.map(|finding| 1 + finding.more).sum();
+    let all = 1 + first.more + others;
     let which = if all == 1 { "" } else { ", first" };
     Some(format!("{}{which}: {}", count(all, what), first.message))
 }

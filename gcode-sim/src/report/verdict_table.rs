@@ -34,7 +34,10 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
         true => format!("Motion in the stated stock: {}\n\n", verdict.basis),
         false => format!(
             "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual − nominal\n\n",
-            count(all, "hole"),
+            match verdict.missing.len() {
+                0 => count(all, "hole"),
+                missing => format!("{all} of {}", count(all + missing, "hole")),
+            },
             verdict.tolerance,
             verdict.basis
         ),
@@ -350,7 +353,7 @@ mod tests {
     #[test]
     fn a_hole_has_one_line() {
         insta::assert_snapshot!(table(&verdict(), Layout::default()), @r"
-Position of 2 holes against Φ0.1: predicted by simulation, not measured
+Position of 2 of 17 holes against Φ0.1: predicted by simulation, not measured
 mm and degrees; deviations are actual − nominal
 
 hole       x       y     z      dx     dy     dz bottom   tilt  depth      Φ  verdict
@@ -383,7 +386,7 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
     #[test]
     fn the_full_table_has_every_column_worst_hole_first() {
         insta::assert_snapshot!(table(&verdict(), Layout { worst_first: true, full: true }), @r"
-Position of 2 holes against Φ0.1: predicted by simulation, not measured
+Position of 2 of 17 holes against Φ0.1: predicted by simulation, not measured
 mm and degrees; deviations are actual − nominal
 
 hole 2              x         y         z         i         j         k         d         l

@@ -165,6 +165,8 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// Remedy: one instruction.
     pub help: Option<String>,
+    /// Number of findings of this kind and severity that a list leaves out behind this one.
+    pub more: usize,
 }
 
 impl Diagnostic {
@@ -181,6 +183,7 @@ impl Diagnostic {
             labels: Vec::new(),
             notes: Vec::new(),
             help: None,
+            more: 0,
         }
     }
 

@@ -56,6 +56,7 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, FileError> {
         process_limits,
         pattern: Some(pattern),
         open_depths: Vec::new(),
+        unread: Vec::new(),
         note: None,
     })
 }

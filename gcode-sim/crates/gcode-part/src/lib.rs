@@ -39,6 +39,7 @@ mod contact;
 mod csv_list;
 mod distance;
 mod drawn_pattern;
+mod drill_size;
 mod entry_planes;
 mod entry_search;
 mod facing;

@@ -31,6 +31,7 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, FileError> {
         process_limits,
         pattern: None,
         open_depths: Vec::new(),
+        unread: Vec::new(),
         note: None,
     })
 }

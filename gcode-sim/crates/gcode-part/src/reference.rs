@@ -33,6 +33,8 @@ pub struct Reference {
     pub open_depths: Vec<usize>,
     /// What the reader of a list took for granted, in one sentence.
     pub note: Option<String>,
+    /// Columns of a list that the reader does not use, but for remarks: statements of the drawing that nothing compares.
+    pub unread: Vec<String>,
 }
 
 impl Reference {
@@ -78,13 +80,14 @@ impl Reference {
             pattern: None,
             open_depths: Vec::new(),
             note: None,
+            unread: Vec::new(),
         }
     }
 
     /// Returns the reference of a list read as CSV.
     pub(super) fn of_csv(list: CsvList) -> Result<Self, FileError> {
-        let CsvList { holes, open_depths, note } = list;
-        Ok(Self { open_depths, note, ..Self::of_list(holes)? })
+        let CsvList { holes, open_depths, note, unread } = list;
+        Ok(Self { open_depths, note, unread, ..Self::of_list(holes)? })
     }
 
     /// Sets depths of holes, by their indices, whose list leaves them out.

@@ -32,7 +32,7 @@ pub(super) fn reshaped(
         return None;
     }
     Some(format!(
-        "an arc of radius {:.4} sweeps {:+.3}° about {:.4} {:.4} instead of one of {:.4} {:+.3}° about {:.4} {:.4}",
+        "an arc of radius {:.4} sweeps {:+.3}° about {:.4} {:.4} instead of one of {:.4} {:+.3}° about {:.4} {:.4} (machine, mm)",
         radius(ends_now),
         b.sweep.0,
         b.centre.0,

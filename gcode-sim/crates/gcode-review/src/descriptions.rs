@@ -39,7 +39,18 @@ pub(super) fn point(step: &Step<'_>, axes: &Axes) -> String {
         .filter(|(axis, _)| displacement[*axis] != 0.0)
         .map(|(axis, letter)| format!("{letter}{:.4}", step.at[axis]))
         .collect();
-    if moving.is_empty() { "its start point".to_owned() } else { moving.join(" ") }
+    if moving.is_empty() {
+        return "its start point".to_owned();
+    }
+    let moves = |is_rotary: bool| {
+        axes.iter().any(|(axis, _)| displacement[axis] != 0.0 && axes.is_rotary(axis) == is_rotary)
+    };
+    let units = match (moves(false), moves(true)) {
+        (true, true) => "mm, degrees",
+        (false, true) => "degrees",
+        (_, false) => "mm",
+    };
+    format!("{} (machine, {units})", moving.join(" "))
 }
 
 /// Formats the axes whose values exceed `least`.

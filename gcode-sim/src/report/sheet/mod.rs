@@ -1,5 +1,6 @@
 //! The set-up sheet of any program: what the person at the machine needs to set up, start and watch it.
 pub mod layout;
+mod program_words;
 pub(crate) mod recorder;
 mod rotary;
 
@@ -14,7 +15,7 @@ use gcode_inspect::holes::HoleExtraction;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Conclusion};
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_lang::motion::{Backtrace, LengthCompensation};
+use gcode_lang::motion::{Backtrace, LengthCompensation, StopKind};
 use gcode_part::{Assumption, MM_PER_INCH, Total};
 use gcode_session::{Request, Simulation};
 use layout::{BASIS, blank, cell, digest, table};
@@ -61,6 +62,7 @@ impl ProgramSheet<'_> {
             (self.work_zeros())
             (rotary::section(&self.request.machine, self.offsets))
             (self.tools())
+            (self.switches())
             (self.stops())
             (self.m_codes())
             (self.picture_section())
@@ -75,7 +77,10 @@ impl ProgramSheet<'_> {
         let memory = self.simulation.run.control.memory();
         let main = memory.get(memory.main());
         let label = main.label();
-        let comment = main_comment(memory.sources().iter().map(|(_, source)| source.lines()), main.number());
+        let comment = program_words::main_comment(
+            memory.sources().iter().map(|(_, source)| source.lines()),
+            main.number(),
+        );
         let comment = comment.unwrap_or_default();
         if comment.is_empty() { label } else { format!("{label} ({comment})") }
     }
@@ -141,7 +146,7 @@ impl ProgramSheet<'_> {
         html! {
             div.verdict {
                 @match &self.verdict {
-                    Some((conclusion, _)) => { b { (conclusion.answer.word()) ". " } (BASIS) ". " (conclusion.summary) "." }
+                    Some((conclusion, _)) => { b { (conclusion.answer.word()) ". " } (BASIS) ". " (as_sentence(conclusion.summary)) "." }
                     None => {
                         @match self.simulation.run.stop_sentence() {
                             Some(sentence) => { b { (Answer::Fail.word()) ". " } (BASIS) ". " (sentence) "." }
@@ -247,7 +252,7 @@ impl ProgramSheet<'_> {
                 per_revolution.map(|feeds| format!(" ({} {unit}, G95)", range_of(Some(*feeds), short)));
             vec![
                 cell(one.tool.map_or("in the spindle".to_owned(), |tool| format!("T{tool}"))),
-                kind(machine, one),
+                self.kind(one),
                 cell(length.map_or_else(String::new, short)),
                 cell(self.lengths(one)),
                 cell(offsets.join(" ")),
@@ -264,7 +269,7 @@ impl ProgramSheet<'_> {
         html! {
             h2 { "Tools, in the order of use" }
             (table(&columns, rows))
-            p.note { "S and F are those of its cuts; a length is that of the machine file, from the gauge line to the tip; a number behind D is a radius. A kind that no machine file states is left empty; check H and D against the offset page." }
+            p.note { "S and F are those of its cuts; a length is that of the machine file, from the gauge line to the tip; a number behind D is a radius. A kind that no machine file states is left empty, a text in quotes is the program's comment; check H and D against the offset page." }
         }
     }
 
@@ -311,6 +316,28 @@ impl ProgramSheet<'_> {
             .map(|(program, line)| format!("{program} line {line}"))
             .collect();
         places.join(", called from ")
+    }
+
+    /// Returns kind and diameter of a tool as the machine file states them, else a blank, and what the program's comment says.
+    fn kind(&self, one: &ToolUse) -> Markup {
+        let stated = stated_kind(&self.request.machine, one);
+        let comment =
+            one.tool.and_then(|tool| program_words::tool_comment(&self.simulation.run, tool, one.change));
+        html! {
+            @if !stated.is_empty() { (stated) } @else if comment.is_none() { (blank()) }
+            @if let Some(comment) = comment { div.note { "“" (comment) "”" } }
+        }
+    }
+
+    fn switches(&self) -> Markup {
+        let optional = self.uses.stops.iter().find(|stop| stop.kind == StopKind::M01);
+        let rows = program_words::switches(&self.simulation.run, optional.map(|stop| stop.backtrace.block));
+        html! {
+            @if !rows.is_empty() {
+                h2 { "Switches of the panel" }
+                (table(&["switch", "as in this run", "first at"], rows.iter().map(|row| row.iter().map(cell).collect())))
+            }
+        }
     }
 
     fn stops(&self) -> Markup {
@@ -383,6 +410,7 @@ impl ProgramSheet<'_> {
                         li {
                             b { (finding.severity.name()) } " " code { (finding.code()) } " " (finding.message)
                             @if let Some(at) = &finding.backtrace { div.note { (self.location(at)) } }
+                            @if 0 < finding.more { div.note { "and " (finding.more) " more of this kind" } }
                         }
                     }
                 }
@@ -406,57 +434,20 @@ impl ProgramSheet<'_> {
     }
 }
 
-/// Returns the comment in the heading of the main program: in a dump of its part, else of the first file.
-fn main_comment<L: Iterator<Item = String>>(
-    sources: impl Iterator<Item = L>,
-    number: Option<u32>,
-) -> Option<String> {
-    let mut of_first = None;
-    for (index, lines) in sources.enumerate() {
-        let lines: Vec<String> = lines.collect();
-        let own = lines.iter().position(|line| number.is_some() && number_of_line(line) == number);
-        if let Some(start) = own {
-            return heading(&lines[start..]);
-        }
-        if index == 0 {
-            let start = lines.iter().position(|line| !matches!(line.trim(), "" | "%")).unwrap_or(0);
-            of_first = heading(&lines[start..]);
-        }
-    }
-    of_first
+/// Returns kind and diameter of a tool as the machine file states them.
+fn stated_kind(machine: &Machine, one: &ToolUse) -> String {
+    let Some(tool) = machine.tools.iter().find(|tool| Some(tool.number) == one.tool) else {
+        return String::new();
+    };
+    let kind = tool.kind.map(|kind| kind.name().replace('-', " "));
+    let size = tool.diameter.map(|diameter| format!("Φ{}", short(diameter)));
+    kind.into_iter().chain(size).collect::<Vec<_>>().join(" ")
 }
 
-/// Returns the comment of a program's first line, or of a line of its own directly behind it. Others are of their blocks, as that
-/// of an M00.
-fn heading(lines: &[String]) -> Option<String> {
-    let [first, rest @ ..] = lines else { return None };
-    let own = first
-        .split_once('(')
-        .filter(|(before, _)| before.trim().is_empty() || number_of_line(before).is_some());
-    let behind = || number_of_line(first).and(rest.first()?.trim_start().strip_prefix('('));
-    let text = own.map(|(_, text)| text).or_else(behind)?;
-    Some(text.split(')').next()?.trim().to_owned())
-}
-
-/// Returns the number of a line that begins a program: `O1520`, `:1520`.
-fn number_of_line(line: &str) -> Option<u32> {
-    let digits = line.trim_start().strip_prefix(['O', 'o', ':'])?;
-    let end = digits.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(digits.len());
-    digits[..end].parse().ok()
-}
-
-/// Returns kind and diameter of a tool as the machine file states them, else a blank.
-fn kind(machine: &Machine, one: &ToolUse) -> Markup {
-    let known = machine.tools.iter().find(|tool| Some(tool.number) == one.tool);
-    let words = known.map(|tool| {
-        let kind = tool.kind.map(|kind| kind.name().replace('-', " "));
-        let size = tool.diameter.map(|diameter| format!("Φ{}", short(diameter)));
-        kind.into_iter().chain(size).collect::<Vec<_>>().join(" ")
-    });
-    match words.filter(|words| !words.is_empty()) {
-        Some(words) => cell(words),
-        None => blank(),
-    }
+/// Returns a text with its first letter in upper case.
+fn as_sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
 }
 
 /// Returns `800` or `800 to 1200`; nothing without a cut.
@@ -465,26 +456,5 @@ fn range_of(range: Option<[f64; 2]>, format: impl Fn(f64) -> String) -> String {
         None => String::new(),
         Some([min, max]) if min == max => min,
         Some([min, max]) => format!("{min} to {max}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_program_is_named_by_the_comment_of_its_heading() {
-        let named = |text: &str, number| main_comment([text.lines().map(str::to_owned)].into_iter(), number);
-        for (text, number, name) in [
-            ("%\nO1(PLATE)\nM00(CHECK)\n", Some(1), Some("PLATE")),
-            ("%\nO0001\n(PLATE)\nM00(CHECK)\n", Some(1), Some("PLATE")),
-            ("%\nO1\nG21\nM00(CHECK #500 ON SCREEN)\n", Some(1), None),
-            ("%\nO1\nM00(CHECK)\n", Some(1), None),
-            ("(OTHER)\nO2(TWO)\nM99\nO1\n(ONE)\n", Some(1), Some("ONE")),
-            ("%\n\n(PLATE)\nG21\n", None, Some("PLATE")),
-            ("%\nG21(UNIT)\n(PLATE)\n", None, None),
-        ] {
-            assert_eq!(named(text, number).as_deref(), name, "{text}");
-        }
     }
 }

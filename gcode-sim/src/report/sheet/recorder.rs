@@ -33,6 +33,8 @@ pub(crate) struct ToolUse {
     pub coolants: BTreeSet<u32>,
     /// Duration without stops, s.
     pub seconds: f64,
+    /// Block of its tool change.
+    pub change: Option<Span>,
     /// Block of its first move.
     pub first_block: Option<Backtrace>,
 }
@@ -110,7 +112,8 @@ impl EventSink for UseRecorder {
             }
             EventKind::Dwell { .. } => Some(2),
             EventKind::ToolChange { number } => {
-                self.uses.push(ToolUse { tool: Some(*number), ..ToolUse::default() });
+                let change = Some(event.block);
+                self.uses.push(ToolUse { tool: Some(*number), change, ..ToolUse::default() });
                 None
             }
             EventKind::ToolLength { compensation, .. } => {

@@ -112,7 +112,8 @@ impl SummaryWords {
 
 /// Returns `warnings: hole-twice (3 times), second-start`.
 fn warnings(findings: &[Finding]) -> Option<String> {
-    let warnings = findings.iter().filter(|finding| finding.severity == Severity::Warning.name());
+    let is_shown = |one: &&Finding| !one.is_folded && one.severity == Severity::Warning.name();
+    let warnings = findings.iter().filter(is_shown);
     let codes = counted(warnings.map(|finding| finding.code.as_ref()));
     (!codes.is_empty()).then(|| format!("warnings: {}", codes.join(", ")))
 }

@@ -93,9 +93,14 @@ impl HoleFindings {
 
     /// Folds the findings of these kinds whose subject `is_explained` accepts; returns their number.
     pub(super) fn fold(&mut self, kinds: &[&FindingKind], is_explained: impl Fn(Subject) -> bool) -> usize {
+        self.fold_if(|one| kinds.contains(&one.finding.kind) && is_explained(one.subject))
+    }
+
+    /// Folds the findings that `is_explained` accepts; returns their number.
+    pub(super) fn fold_if(&mut self, is_explained: impl Fn(&HoleFinding) -> bool) -> usize {
         let mut folded = 0;
-        for one in self.list.iter_mut().filter(|one| !one.is_folded && kinds.contains(&one.finding.kind)) {
-            one.is_folded = is_explained(one.subject);
+        for one in self.list.iter_mut().filter(|one| !one.is_folded) {
+            one.is_folded = is_explained(one);
             folded += usize::from(one.is_folded);
         }
         folded

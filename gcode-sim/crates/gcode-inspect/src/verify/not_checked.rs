@@ -73,6 +73,11 @@ pub(super) fn list(
         let what = format!("the depth of {}", hole_names(&open));
         all.push(NotChecked::gap(what, "the list has none, and that of the program counts"));
     }
+    if !reference.unread.is_empty() {
+        let (s, verb) = if reference.unread.len() == 1 { ("", "is") } else { ("s", "are") };
+        let what = format!("the column{s} {} of the list", reference.unread.join(", "));
+        all.push(NotChecked::gap(what, format!("{verb} not read: no value of a hole")));
+    }
     if !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none()) {
         let what = "the tool in the spindle at the start";
         all.push(NotChecked::gap(what, "it cuts before the first tool change"));
@@ -123,7 +128,7 @@ pub(super) fn list(
             &extraction.rapids_of_unknown_tip,
             "rapids at machine positions without a length offset",
             "rapid",
-            "the tool length is unknown, and length 0 would put the tip on the part; give the length in the machine file",
+            "the length of the tool is unknown, and a tool of length 0 would stand in the part there; give the length in the machine file",
         ),
         (
             &extraction.rapids_behind_change,
@@ -420,6 +425,18 @@ fn lengths(extraction: &HoleExtraction, machine: &Machine) -> Vec<NotChecked> {
     let gap = |(tool, compensation): (Option<u32>, LengthCompensation)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
         match compensation.number() {
+            // Touched off at the part: the offset is stated, and is no length.
+            Some(h)
+                if machine
+                    .find_tool(h)
+                    .and_then(|tool| tool.length_offset)
+                    .is_some_and(|offset| offset < 0.0) =>
+            {
+                NotChecked::gap(
+                    whose,
+                    format!("not in the machine file: the stated H{h} puts its tip, and is no length"),
+                )
+            }
             Some(h) => NotChecked::gap(whose, format!("not in the machine file: H{h} counts as its length")),
             None => NotChecked::gap(
                 format!("{whose} (no length offset)"),

@@ -174,7 +174,8 @@ pub(super) fn verdict(
     };
     let as_data = |one: &HoleFinding| {
         let hole = if let Subject::Nominal(index) = one.subject { Some(comparison.id(index)) } else { None };
-        finding_of(&one.finding, hole, one.subject == Subject::Motion, locate)
+        let data = finding_of(&one.finding, hole, one.subject == Subject::Motion, locate);
+        Finding { is_folded: one.is_folded, ..data }
     };
     let good = holes.iter().filter(|hole| hole.ok).count();
     let counts =

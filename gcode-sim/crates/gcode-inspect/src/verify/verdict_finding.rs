@@ -34,6 +34,9 @@ pub struct Finding {
     /// Further blocks, such as the first cut with a wrong length offset.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub labels: Vec<BlockLabel>,
+    /// A finding about many holes replaces it in the printed list and in the first line.
+    #[serde(skip)]
+    pub is_folded: bool,
     /// For a finding on flutes: positions on the part, the worst first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sites: Vec<PartPoint>,
@@ -87,18 +90,19 @@ pub(super) fn finding_of(
         hole: hole.map(str::to_owned),
         from: finding.backtrace.as_ref().map(|backtrace| origin(backtrace.block, None, locate)),
         labels: finding.labels.iter().map(label).collect(),
+        is_folded: false,
         sites: finding.sites.iter().map(Into::into).collect(),
     }
 }
 
-/// Keeps the first findings of each kind, the last of them with a note on the number left out. Alarms come first: what
+/// Keeps the first findings of each kind and severity, the last of them with the number left out and a note on it. Alarms come first: what
 /// stopped the run explains the rest.
 pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
     const MAX_SHOWN: usize = 8;
-    let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    let mut kinds: BTreeMap<(&str, Severity), (usize, usize)> = BTreeMap::new();
     let mut shown: Vec<Diagnostic> = Vec::new();
     for finding in findings {
-        let (count, last) = kinds.entry(finding.kind.code).or_insert((0, 0));
+        let (count, last) = kinds.entry((finding.kind.code, finding.severity)).or_insert((0, 0));
         *count += 1;
         if *count <= MAX_SHOWN {
             *last = shown.len();
@@ -106,8 +110,9 @@ pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<
         }
     }
     for (count, last) in kinds.into_values().filter(|(count, _)| MAX_SHOWN < *count) {
-        let note = format!("and {} more of this kind; --format json lists them all", count - MAX_SHOWN);
-        shown[last].notes.push(note);
+        let more = count - MAX_SHOWN;
+        shown[last].more = more;
+        shown[last].notes.push(format!("and {more} more of this kind; --format json lists them all"));
     }
     shown.sort_by_key(|finding| finding.severity != Severity::Alarm);
     shown
@@ -124,6 +129,18 @@ mod tests {
     use super::*;
     use crate::findings::LENGTH_OFFSET;
     use gcode_lang::source::SourceId;
+
+    /// Nine warnings and an error of one kind: the error is shown, and the count of the warnings stays nine.
+    #[test]
+    fn a_list_knows_how_many_findings_it_leaves_out() {
+        let warning = || Diagnostic::new(&LENGTH_OFFSET, "").with_severity(Severity::Warning);
+        let all = std::iter::repeat_with(warning).take(9).chain([Diagnostic::new(&LENGTH_OFFSET, "")]);
+        let shown = limit_per_kind(all);
+        let counts: Vec<_> = shown.iter().map(|one| (one.severity, one.more)).collect();
+        assert_eq!(counts[7..], [(Severity::Warning, 1), (Severity::Error, 0)]);
+        assert_eq!(counts.iter().map(|(_, more)| 1 + more).sum::<usize>(), 10);
+        assert_eq!(limit_per_kind(std::iter::repeat_with(warning).take(8))[7].more, 0);
+    }
 
     /// A finding at line 3 with a second block at line 7.
     #[test]

@@ -1,138 +1,15 @@
 //! The columns of a list: the separator, their names, and what a list without some of them means.
 use super::Cells;
+use super::names::{
+    COLUMNS, DIAMETER_WORDS, FEATURE_COLUMNS, FEATURE_NAMES, REMARKS, ROUND, TWO_MEANINGS, VALUE_NAMES,
+    is_known, unit_of,
+};
 use crate::feature::FeatureKind;
 use crate::hole::{MM_PER_INCH, Unit};
 use gcode_lang::similar;
 
-/// Columns of a list, with other names of each; a feature's own columns are beside them.
-const COLUMNS: [(&str, &[&str]); 13] = [
-    (
-        "id",
-        &[
-            "hole",
-            "no",
-            "nr",
-            "no.",
-            "nr.",
-            "tag",
-            "#",
-            "hole #",
-            "hole#",
-            "hole no",
-            "hole no.",
-            "hole number",
-            "hole id",
-            "pos",
-            "pos.",
-            "item",
-            "bohrung",
-            "孔号",
-            "序号",
-        ],
-    ),
-    (
-        "x",
-        &[
-            "x pos",
-            "x pos.",
-            "x location",
-            "x coordinate",
-            "x dim",
-            "x loc",
-            "xpos",
-            "pos x",
-            "posx",
-            "x coord",
-            "x position",
-            "x koord",
-            "x koordinate",
-            "x wert",
-            "x坐标",
-        ],
-    ),
-    (
-        "y",
-        &[
-            "y pos",
-            "y pos.",
-            "y location",
-            "y coordinate",
-            "y dim",
-            "y loc",
-            "ypos",
-            "pos y",
-            "posy",
-            "y coord",
-            "y position",
-            "y koord",
-            "y koordinate",
-            "y wert",
-            "y坐标",
-        ],
-    ),
-    (
-        "z",
-        &[
-            "z pos",
-            "z loc",
-            "zpos",
-            "pos z",
-            "posz",
-            "z coord",
-            "z position",
-            "z koord",
-            "z koordinate",
-            "z wert",
-            "z坐标",
-        ],
-    ),
-    ("i", &[]),
-    ("j", &[]),
-    ("k", &[]),
-    ("angle", &["winkel", "角度"]),
-    ("radius", &["radius r", "半径"]),
-    ("depth", &["hole depth", "tiefe", "深度", "孔深"]),
-    (
-        "diameter",
-        &[
-            "dia",
-            "dia.",
-            "d",
-            "ø",
-            "φ",
-            "hole dia",
-            "hole dia.",
-            "hole diameter",
-            "hole size",
-            "durchmesser",
-            "直径",
-            "孔径",
-        ],
-    ),
-    ("features", &[]),
-    ("through", &["thru", "thru hole", "through hole", "durchgehend", "durchgangsbohrung", "通孔"]),
-];
-
-/// Other names of the columns of features, which `thread depth` begins with too.
-const FEATURE_NAMES: [(&str, FeatureKind); 8] = [
-    ("thread", FeatureKind::Tap),
-    ("cbore", FeatureKind::Counterbore),
-    ("c'bore", FeatureKind::Counterbore),
-    ("csink", FeatureKind::Countersink),
-    ("c'sink", FeatureKind::Countersink),
-    ("csk", FeatureKind::Countersink),
-    ("tap drill", FeatureKind::Drill),
-    ("bohrer", FeatureKind::Drill),
-];
-
-/// Words for a diameter behind the name of a feature: `Drill Dia` means `drill`.
-const DIAMETER_WORDS: [&str; 5] = [" dia", " dia.", " diameter", " size", " ø"];
-
-/// Columns of a hole round the axis x, in place of y, z, i, j and k.
-const ROUND: [&str; 2] = ["angle", "radius"];
-
-/// Further values of a feature with columns of its own: `tap pitch`.
-pub(super) const FEATURE_COLUMNS: [&str; 5] = ["depth", "to", "angle", "pitch", "hand"];
+/// Largest number of lines with a title that are looked for above the names of the columns.
+const MOST_TITLES: usize = 8;
 
 /// Returns true if the first line looks like a header of columns, unlike the first line of a job file.
 pub(crate) fn is_csv(text: &str) -> bool {
@@ -161,6 +38,20 @@ pub(crate) fn wrong_header(text: &str) -> Option<(usize, String)> {
     {
         let message = "columns are separated by spaces: separate them by commas, semicolons or tabs";
         return Some((line, format!("{message}; {}", example(&[], ','))));
+    }
+    // A title above the table.
+    let has_place = |line: &str| {
+        let names: Vec<String> = line.split(separator(line)).map(column_name).collect();
+        let has = |column: usize| {
+            let (own, others) = COLUMNS[column];
+            names.iter().any(|name| name == own || others.contains(&name.as_str()))
+        };
+        has(1) && (has(2) || names.iter().any(|name| name == ROUND[0]))
+    };
+    let below = text.lines().enumerate().skip(line).take(MOST_TITLES).find(|(_, below)| has_place(below));
+    if let Some((below, _)) = below.filter(|_| !has_place(first)) {
+        let message = "line {} names the columns, and has to be the first: remove what stands above it";
+        return Some((line, message.replace("{}", &(below + 1).to_string())));
     }
     let separator = separator(first);
     let cells: Vec<&str> = first.split(separator).map(str::trim).collect();
@@ -196,14 +87,18 @@ pub(super) fn column_name(cell: &str) -> String {
 /// Returns the name of a column, and its unit of length if brackets behind it have one.
 fn name_and_unit(cell: &str) -> (String, Option<Unit>) {
     let name = cell.trim().trim_matches('"').trim().to_lowercase().replace(['_', '-'], " ");
-    let Some(at) = name.find(['[', '(']) else { return (name, None) };
-    let unit = match name[at + 1..].trim_end_matches([']', ')']) {
-        "mm" => Some(Unit::Mm),
-        "in" | "inch" | "inches" | "in." => Some(Unit::Inch),
-        "°" => None,
-        _ => return (name, None),
+    let Some(at) = name.find(['[', '(']) else {
+        // Without brackets, behind a known name: `X mm`.
+        let split = name.rsplit_once(' ').and_then(|(before, word)| Some((before, unit_of(word)?)));
+        return match split.filter(|(before, _)| is_known(before)) {
+            Some((before, unit)) => (before.to_owned(), unit),
+            None => (name, None),
+        };
     };
-    (name[..at].trim().to_owned(), unit)
+    match unit_of(name[at + 1..].trim_end_matches([']', ')'])) {
+        Some(unit) => (name[..at].trim().to_owned(), unit),
+        None => (name, None),
+    }
 }
 
 /// Returns the unit of all lengths of a list by the units in its header; mm without one.
@@ -275,10 +170,26 @@ pub(super) fn example(names: &[String], separator: char) -> String {
     if has("countersink") && !has("depth") && !has("features") && !FeatureKind::ALL.iter().any(is_deep) {
         all.push("depth".to_owned());
     }
+    if has("through") && !has("depth") && !has("features") && !FeatureKind::ALL.iter().any(is_deep) {
+        all.push("depth".to_owned());
+    }
     let line: Vec<_> = all.iter().map(cell).collect();
     match all == names {
         true => format!("a right line: {}", line.join(&text)),
         false => format!("right columns: {}, and a right line: {}", all.join(&text), line.join(&text)),
+    }
+}
+
+/// Renames the column `drill` to `diameter` where a list says no more of a hole than that.
+fn drill_alone_is_the_diameter(names: &mut [String]) {
+    let says_more = |name: &String| {
+        let is_of_kind = FeatureKind::ALL.iter().any(|kind| name.starts_with(kind.name()));
+        matches!(name.as_str(), "diameter" | "depth" | "features") || (name != "drill" && is_of_kind)
+    };
+    if !names.iter().any(says_more)
+        && let Some(drill) = names.iter_mut().find(|name| *name == "drill")
+    {
+        "diameter".clone_into(drill);
     }
 }
 
@@ -345,6 +256,13 @@ impl Columns {
                 name.clone_into(&mut names[place]);
             }
         }
+        for (name, meaning, other) in TWO_MEANINGS {
+            let free = [Some(meaning), other].into_iter().flatten();
+            let free = free.into_iter().find(|free| !names.iter().any(|name| name == free));
+            if let (Some(place), Some(free)) = (names.iter().position(|other| other == name), free) {
+                free.clone_into(&mut names[place]);
+            }
+        }
         let kinds = FeatureKind::ALL.map(FeatureKind::name);
         for name in &mut names {
             for (other, kind) in FEATURE_NAMES {
@@ -355,12 +273,16 @@ impl Columns {
                     _ => {}
                 }
             }
+            if let Some((_, meant)) = VALUE_NAMES.iter().find(|(other, _)| other == name) {
+                (*meant).clone_into(name);
+            }
             let of_kind =
                 |kind: &str| DIAMETER_WORDS.iter().any(|word| name.strip_suffix(word) == Some(kind));
             if let Some(kind) = kinds.into_iter().find(|kind| of_kind(kind)) {
                 kind.clone_into(name);
             }
         }
+        drill_alone_is_the_diameter(&mut names);
         let is_round = is_round(&names);
         let of_features =
             kinds.iter().flat_map(|kind| FEATURE_COLUMNS.map(|value| format!("{kind} {value}")));
@@ -401,7 +323,8 @@ impl Columns {
         let place: &[&str] = if is_round { &["x", "angle", "radius"] } else { &["x", "y"] };
         if let Some(missing) = place.iter().find(|name| !columns.has(name)) {
             let round = if is_round { ": x, angle and radius are the place of a hole round x" } else { "" };
-            return Err(format!("column '{missing}' is missing{round}"));
+            let there = columns.names.iter().filter(|name| !name.is_empty()).cloned().collect::<Vec<_>>();
+            return Err(format!("column '{missing}' is missing among {}{round}", there.join(", ")));
         }
         if let Some(other) = ["z", "i", "j", "k"].into_iter().find(|name| is_round && columns.has(name)) {
             return Err(format!("column '{other}' is there: it follows from angle and radius"));
@@ -419,6 +342,12 @@ impl Columns {
         self.column(name).place.is_some()
     }
 
+    /// Returns the unused columns that may state something of a hole; remarks don't.
+    pub(super) fn unread(&self) -> Vec<String> {
+        let is_remark = |name: &str| REMARKS.contains(&name);
+        self.unused.iter().filter(|name| !is_remark(name)).cloned().collect()
+    }
+
     /// Returns the length of the unit of a column's numbers, mm; 1 for a column without lengths.
     pub(super) fn length_of_unit(&self, column: &str) -> f64 {
         let is_length = || !matches!(column, "i" | "j" | "k" | "angle") && !column.ends_with(" angle");
@@ -431,7 +360,7 @@ impl Columns {
 
     /// Returns what the reader takes for granted.
     pub(super) fn note(&self, has_open_depths: bool, cells: &Cells<'_>) -> Option<String> {
-        let Cells { has_comma, has_hole_deep_drill, shallow, .. } = cells;
+        let Cells { has_comma, has_hole_deep_drill, has_through_finish, shallow, .. } = cells;
         let mut facts = Vec::new();
         if self.unit == Unit::Inch {
             facts.push("lengths are in inches".to_owned());
@@ -450,6 +379,12 @@ impl Columns {
         }
         if *has_hole_deep_drill {
             facts.push("a drill without a depth of its own is as deep as its hole".to_owned());
+        }
+        if *has_through_finish {
+            facts.push(
+                "reaming or boring of a through hole without a depth of its own is as deep as its hole"
+                    .to_owned(),
+            );
         }
         if let Some(first) = shallow.first() {
             let others =

@@ -1,6 +1,7 @@
 //! Lists of holes as CSV, as spreadsheets and people write them: columns in any order, decimal commas, features in columns of
 //! their own.
 mod columns;
+mod names;
 #[cfg(test)]
 mod tests;
 
@@ -8,16 +9,16 @@ use std::cell::Cell;
 
 pub(super) use columns::is_csv;
 pub(super) use columns::wrong_header;
-use columns::{
-    Column, Columns, FEATURE_COLUMNS, HoleColumns, column_name, example, first_line, separator, unit,
-};
+use columns::{Column, Columns, HoleColumns, column_name, example, first_line, separator, unit};
+
+use names::FEATURE_COLUMNS;
 
 use super::feature::{DepthTo, Feature, FeatureKind};
 use super::hand::Hand;
-use super::hole::{Hole, HoleList, Unit};
+use super::hole::{Hole, HoleList, MM_PER_INCH, Unit};
 use super::read::{check, complete, repeated_id};
 use crate::reader::FileError;
-use crate::{exceeds, thread_size};
+use crate::{drill_size, exceeds, thread_size};
 use gcode_lang::units::Deg;
 
 /// Beginning of the last line of a list whose run stopped before its end.
@@ -25,6 +26,9 @@ pub const STOPPED: &str = "# stopped: ";
 
 /// Depth of a hole whose list gives none, until that of the program is known, mm.
 const OPEN_DEPTH: f64 = 1.0;
+
+/// Columns of diameters, which may hold a size of a drill.
+const DIAMETERS: [&str; 6] = ["diameter", "drill", "ream", "bore", "counterbore", "countersink"];
 
 /// Largest difference between a pitch in a column and that of the thread's designation, mm.
 const SAME_PITCH: f64 = 0.001;
@@ -44,6 +48,8 @@ pub(super) struct CsvList {
     pub(super) open_depths: Vec<usize>,
     /// What the reader took for granted, in one sentence; `None` for a list with all columns and no others.
     pub(super) note: Option<String>,
+    /// Columns that the reader does not use, but for remarks.
+    pub(super) unread: Vec<String>,
 }
 
 fn error(line: Option<usize>, message: impl Into<String>) -> FileError {
@@ -88,6 +94,7 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         },
         open_depths: Vec::new(),
         note: None,
+        unread: columns.unread(),
     };
     let mut cells = Cells {
         columns: &columns,
@@ -96,6 +103,7 @@ pub(super) fn csv(text: &str) -> Result<CsvList, FileError> {
         has_comma: Cell::default(),
         has_point: Cell::default(),
         has_hole_deep_drill: false,
+        has_through_finish: false,
         shallow: Vec::new(),
     };
     // A line is counted from the start of the text, only for an error.
@@ -177,6 +185,8 @@ struct Cells<'c> {
     has_point: Cell<bool>,
     /// A drill has no depth of its own, and is as deep as its hole.
     has_hole_deep_drill: bool,
+    /// A ream or a bore of a through hole has no depth of its own, and is as deep as its hole.
+    has_through_finish: bool,
     /// Holes whose depth is less than that of a feature.
     shallow: Vec<String>,
 }
@@ -194,6 +204,17 @@ impl Cells<'_> {
 
     /// Parses a number, which has a decimal comma where commas are no separators.
     fn parse(&self, column: &str, text: &str) -> Result<f64, String> {
+        if text.contains(['−', '–', '—']) {
+            return Err(format!("column '{column}' is '{text}': a minus is the sign - of the keyboard"));
+        }
+        let text = if DIAMETERS.contains(&column) {
+            if let Some(inches) = drill_size::inches(text) {
+                return Ok(inches * MM_PER_INCH);
+            }
+            text.trim_start_matches(['Ø', 'ø', '⌀', '∅', 'Φ', 'φ']).trim_start()
+        } else {
+            text
+        };
         let (has_comma, has_point) = (text.contains(','), text.contains('.'));
         if has_comma && self.columns.separator == ',' {
             return Err(format!(
@@ -244,11 +265,7 @@ impl Cells<'_> {
             axis,
             diameter: self.number(diameter)?,
             features: self.features()?,
-            through: match self.text(through).to_lowercase().as_str() {
-                "" | "false" | "no" | "n" | "0" | "-" | "nein" => false,
-                "true" | "yes" | "y" | "1" | "x" | "ja" | "j" | "thru" | "through" | "durch" => true,
-                other => return Err(format!("column 'through' is '{other}': yes or no is required")),
-            },
+            through: self.through()?,
             ..Hole::default()
         };
         let depth = self.number(depth)?;
@@ -269,6 +286,15 @@ impl Cells<'_> {
         }
         check(&hole, index)?;
         Ok(CsvHole { hole, is_open })
+    }
+
+    /// Returns true if the line says that its hole goes through.
+    fn through(&self) -> Result<bool, String> {
+        match self.text(self.of_hole.through).to_lowercase().as_str() {
+            "" | "false" | "no" | "n" | "0" | "-" | "nein" => Ok(false),
+            "true" | "yes" | "y" | "1" | "x" | "ja" | "j" | "thru" | "through" | "durch" => Ok(true),
+            other => Err(format!("column 'through' is '{other}': yes or no is required")),
+        }
     }
 
     /// Returns the entry and the axis of the line.
@@ -350,9 +376,14 @@ impl Cells<'_> {
         }
         let depth = own("depth");
         let written = self.text(columns.column(name)).to_owned();
-        let of_hole = if kind == FeatureKind::Drill { self.number(self.of_hole.depth)? } else { None };
+        // Reamed and bored through holes are so over their whole length; a thread may be shorter.
+        let is_through_finish = matches!(kind, FeatureKind::Ream | FeatureKind::Bore) && self.through()?;
+        let is_hole_deep = kind == FeatureKind::Drill || is_through_finish;
+        let of_hole = if is_hole_deep { self.number(self.of_hole.depth)? } else { None };
         let own_depth = self.number(columns.column(&depth))?;
-        self.has_hole_deep_drill |= own_depth.is_none() && of_hole.is_some();
+        let is_taken = own_depth.is_none() && of_hole.is_some();
+        self.has_hole_deep_drill |= is_taken && !is_through_finish;
+        self.has_through_finish |= is_taken && is_through_finish;
         let is_deep = own_depth.or(of_hole).is_some() || kind == FeatureKind::Countersink;
         if !is_deep && columns.has(&depth) {
             return Err(format!("column '{depth}' is empty: {name} {written} needs a depth of its own"));

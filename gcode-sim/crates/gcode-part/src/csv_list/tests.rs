@@ -86,7 +86,10 @@ fn holes_round_x_have_an_angle_and_a_radius() {
     let inches = read("x [inch],angle,radius,depth\n1,90,1,0.5\n");
     assert_eq!(inches.holes.holes[0].entry[1], 25.4);
     for (text, expected) in [
-        ("x,angle,depth\n1,2,3\n", "column 'radius' is missing: x, angle and radius are the place"),
+        (
+            "x,angle,depth\n1,2,3\n",
+            "column 'radius' is missing among x, angle, depth: x, angle and radius are the place",
+        ),
         ("x,angle,radius,z,depth\n1,2,3,4,5\n", "column 'z' is there: it follows from angle and radius"),
         ("x,angle,radius,depth\n1,2,0,4\n", "column 'radius' is '0': a number above 0 is required"),
     ] {
@@ -103,6 +106,91 @@ fn names_with_a_word_for_the_diameter_are_those_of_features() {
     let text = "Hole,X,Y,Hole Depth,Drill Dia,Drill Depth,C'Bore Dia.,C'Bore Depth\n1,30,10,20,6.8,20,11,5\n";
     assert_eq!(read(text).holes, plain.holes);
     assert_eq!(read("x,y,depth,Hole Dia\n1,2,3,8\n").holes.holes[0].diameter, Some(8.0));
+}
+
+/// Columns of a German drawing, beside them the same in English.
+#[test]
+fn columns_have_the_german_words_of_drawings() {
+    let plain = read("id,x,y,depth,drill,tap,tap depth\n1,20,20,28,8.5,M10,18\n2,80,20,28,8.5,M10,18\n");
+    for text in [
+        "Nr;X;Y;Kernloch;Tiefe;Gewinde;Gewindetiefe\n1;20;20;8,5;28;M10;18\n2;80;20;8,5;28;M10;18\n",
+        "Pos.;X-Maß;Y-Maß;Bohrung;Bohrtiefe;Gewinde;Gewindetiefe\n1;20;20;8,5;28;M10;18\n2;80;20;8,5;28;M10;18\n",
+    ] {
+        assert_eq!(read(text).holes, plain.holes, "{text}");
+        assert_eq!(read(text).unread, Vec::<String>::new(), "{text}");
+    }
+    // Where nothing else names the holes, Bohrung does; beside Tiefe the depth of a bore is that of the drill.
+    assert_eq!(read("Bohrung;X;Y;Bohrtiefe\nA;1;2;5\n").holes, read("id;x;y;depth\nA;1;2;5\n").holes);
+    let own = read("x;y;Tiefe;Bohrung;Nr;Bohrtiefe\n1;2;20;8;1;15\n");
+    assert_eq!(own.holes, read("x;y;depth;drill;id;drill depth\n1;2;20;8;1;15\n").holes);
+    let fine =
+        read("x;y;Tiefe;Kernloch;Gewinde;Gewindetiefe;Steigung;Senkung;Senkwinkel\n1;2;20;9;10;12;1;11;90\n");
+    let same =
+        "x;y;depth;drill;tap;tap depth;tap pitch;countersink;countersink angle\n1;2;20;9;10;12;1;11;90\n";
+    assert_eq!(fine.holes, read(same).holes);
+}
+
+/// 21/64 inch is 8.334 mm, Q 0.332 inch 8.433; fractions are inches in a list in mm too, as 1/4-20 is.
+#[test]
+fn diameters_may_be_sizes_of_drills() {
+    for (cell, diameter) in
+        [("21/64", 0.328_125 * 25.4), ("Q", 0.332 * 25.4), ("#7", 0.201 * 25.4), ("Ø8.5", 8.5)]
+    {
+        let holes = read(&format!("x,y,depth,dia\n1,2,20,{cell}\n")).holes.holes;
+        assert_eq!(holes[0].diameter, Some(diameter), "{cell}");
+    }
+    let inches = read("x [inch],y,dia\n1,2,1 1/8\n").holes.holes;
+    assert_eq!(inches[0].diameter, Some(1.125 * 25.4));
+}
+
+/// A table of a CAD program has SIZE and no depth; a table of drills alone states diameters.
+#[test]
+fn a_size_or_a_drill_alone_is_the_diameter() {
+    let plain = read("id,x,y,diameter\nA1,20,20,8.5\n");
+    for header in [
+        "TAG,X LOC,Y LOC,SIZE",
+        "Hole,X Position,Y Position,Drill Size",
+        "No,X mm,Y mm,Dia mm",
+        "#,x,y,drill",
+    ] {
+        let list = read(&format!("{header}\nA1,20,20,8.50\n"));
+        assert_eq!((list.holes, list.open_depths), (plain.holes.clone(), vec![0]), "{header}");
+    }
+    // Beside another diameter SIZE says something else, and a column behind a unit is one that is known.
+    assert_eq!(read("x,y,dia,size\n1,2,3,L\n").unread, ["size"]);
+    assert_eq!(read("x,y,built in\n1,2,3\n").holes.unit, Unit::Mm);
+    assert_eq!(read("X in,Y in\n1,2\n").holes.holes[0].entry[0], 25.4);
+}
+
+/// 11 H7 THRU: the reamed diameter goes through; in a blind hole it has a depth of its own.
+#[test]
+fn reaming_of_a_through_hole_is_as_deep_as_the_hole() {
+    let list = read("x,y,depth,drill,ream,thru\n1,2,20,10.8,11,yes\n");
+    assert_eq!(list.holes, read("x,y,depth,drill,ream,ream depth,thru\n1,2,20,10.8,11,20,yes\n").holes);
+    assert!(list.note.unwrap().contains("reaming or boring of a through hole without a depth"));
+    assert!(refused("x,y,depth,drill,ream,thru\n1,2,20,10.8,11,no\n").contains("ream 11 needs a depth"));
+    assert!(refused("x,y,depth,drill,tap,thru\n1,2,20,8.5,M10,yes\n").contains("tap M10 needs a depth"));
+}
+
+/// A tolerance and a kind of thread are statements of the drawing, a remark isn't.
+#[test]
+fn columns_that_state_something_and_are_not_read_are_known() {
+    let list = read("x,y,depth,tolerance,remark,Qty\n1,2,3,0.02,top,2\n");
+    assert_eq!(list.unread, ["tolerance"]);
+    assert!(list.note.unwrap().ends_with("unused: tolerance, remark, qty"));
+}
+
+#[test]
+fn a_title_above_the_columns_is_named() {
+    for text in
+        ["Hole table part 4711;;;\nHole;X;Y;Dia\n1;20;20;8,5\n", "# from drawing 4711\nHole,X,Y\n1,2,3\n"]
+    {
+        let (line, message) = wrong_header(text).unwrap();
+        assert_eq!(line, 1, "{text}");
+        assert_eq!(message, "line 2 names the columns, and has to be the first: remove what stands above it");
+    }
+    assert_eq!(wrong_header("x,y\n1,2\nx,y\n"), None);
+    assert_eq!(wrong_header("# x, y\nfamily = \"pattern\"\nx = 1\n"), None);
 }
 
 #[test]
@@ -169,11 +257,11 @@ fn an_error_shows_a_line_that_is_right() {
         ("x,y,x\n1,2,3\n", "line 1: column 'x' is there twice; "),
         (
             "id,x\n1,2\n",
-            "line 1: column 'y' is missing; a list begins with its columns, for example: id,x,y,depth",
+            "line 1: column 'y' is missing among id, x; a list begins with its columns, for example: id,x,y,depth",
         ),
         (
             "x;z;depth\n1;2;3\n",
-            "line 1: column 'y' is missing; a list begins with its columns, for example: id;x;y;depth",
+            "line 1: column 'y' is missing among x, z, depth; a list begins with its columns, for example: id;x;y;depth",
         ),
         (
             "x [cm],y,depth\n1,2,3\n",
@@ -230,9 +318,27 @@ fn an_error_shows_a_line_that_is_right() {
         ),
         ("x,y,depth,tap,thread\n1,2,20,M10,M10\n", "line 1: column 'tap' is there twice; "),
         (
-            "id,x,y,drill\n1,2,3,6.8\n",
+            "id,x,y,drill,tap,tap depth\n1,2,3,6.8,M8,12\n",
             "line 2: column 'drill depth' is missing: drill 6.8 needs a depth of its own; right columns: \
-             id,x,y,drill,drill depth, and a right line: 1,30.5,10,6.8,15",
+             id,x,y,drill,drill depth,tap,tap depth, and a right line: 1,30.5,10,6.8,15,M8,12",
+        ),
+        (
+            "x,y,dia,thru\n1,2,6.8,yes\n",
+            "line 2: column 'depth' is '': a through hole needs the thickness of the part; right columns: \
+             x,y,diameter,through,depth, and a right line: 30.5,10,6,false,15",
+        ),
+        (
+            "x,y,depth\n3.5,−1,4\n",
+            "line 2: column 'y' is '−1': a minus is the sign - of the keyboard; a right line: 30.5,10,15",
+        ),
+        (
+            "x,y,depth\n1/4,1,4\n",
+            "line 2: column 'x' is '1/4': a number is required; a right line: 30.5,10,15",
+        ),
+        ("x,y,drill,depth\n1,1,X,4\n", "line 2: column 'drill' is 'x': a number is required; "),
+        (
+            "x,y,depth,ream,ream depth\n1,2,20,11,\n",
+            "line 2: column 'ream depth' is empty: ream 11 needs a depth of its own; ",
         ),
         (
             "id,x,y,dia,depth,tap,tap depth\n1,2,3,6.8,18,M8,14\n",

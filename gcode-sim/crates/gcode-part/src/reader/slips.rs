@@ -8,7 +8,8 @@ use toml::Table;
 type Repair = (&'static str, fn(&str) -> Option<String>);
 
 /// Repairs of a value.
-const OF_VALUE: [Repair; 14] = [
+const OF_VALUE: [Repair; 15] = [
+    ("a minus is the sign - of the keyboard", keyboard_minus),
     ("text has straight quotes on both sides", straight_quotes),
     ("a line ends without a comma", |value| value.strip_suffix(',').map(|rest| rest.trim().to_owned())),
     ("a number has a point, not a comma", decimal_point),
@@ -164,6 +165,14 @@ fn straight_quotes(value: &str) -> Option<String> {
     value.contains(is_curly).then(|| value.replace(is_curly, "\""))
 }
 
+/// Returns a value with the minus of a keyboard in place of a typographic one or a dash.
+fn keyboard_minus(value: &str) -> Option<String> {
+    let is_minus = |c: char| matches!(c, '−' | '–' | '—');
+    let right = value.replace(is_minus, "-");
+    let right = decimal_point(&right).unwrap_or_else(|| whole(&right));
+    value.contains(is_minus).then_some(right)
+}
+
 /// Returns a number with its comma as a point: 300,0 and 1,5e-3.
 fn decimal_point(value: &str) -> Option<String> {
     let right = value.replacen(',', ".", 1);
@@ -302,6 +311,18 @@ mod tests {
             (
                 "length = -5.",
                 "key 'drill.length' is -5.: a number has a digit on both sides of its point; write length = -5.0",
+            ),
+            (
+                "Z = −450.0",
+                "key 'drill.Z' is −450.0: a minus is the sign - of the keyboard; write Z = -450.0",
+            ),
+            (
+                "origin = [–300,0]",
+                "key 'drill.origin' is [–300,0]: a minus is the sign - of the keyboard; write origin = [-300,0]",
+            ),
+            (
+                "Z = −450,5",
+                "key 'drill.Z' is −450,5: a minus is the sign - of the keyboard; write Z = -450.5",
             ),
             ("Z = -400.0,", "key 'drill.Z' is -400.0,: a line ends without a comma; write Z = -400.0"),
             ("number = 01", "key 'drill.number' is 01: a number does not begin with 0; write number = 1"),

@@ -14,7 +14,7 @@ use gcode_lang::source::Span;
 type GroupFinding = (Diagnostic, Option<String>);
 
 /// Least number of holes for one finding.
-const MIN_GROUP_SIZE: usize = 3;
+pub(super) const MIN_GROUP_SIZE: usize = 3;
 
 /// Largest number of groups: more different deviations have no common cause.
 const MAX_GROUPS: usize = 64;
@@ -280,7 +280,7 @@ fn groups<'a, T>(all: impl IntoIterator<Item = &'a T>, is_alike: impl Fn(&T, &T)
 }
 
 /// Describes a set of nominal holes: all, a row, a group of rows, or their number and the first.
-fn describe_set(comparison: &Comparison<'_>, members: &[usize]) -> String {
+pub(super) fn describe_set(comparison: &Comparison<'_>, members: &[usize]) -> String {
     let (count, all) = (members.len(), comparison.nominal.len());
     if count == all {
         return format!("all {count} holes");

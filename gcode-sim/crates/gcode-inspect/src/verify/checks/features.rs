@@ -1,14 +1,14 @@
 //! Features of each hole: each is made, to its depth, and no tool cuts wider than the hole is.
 use super::*;
-use crate::findings::{FEATURE_DEPTH, FEATURE_EXTRA, FEATURE_MISSING, HOLE_DEPTH};
+use crate::findings::{FEATURE_DEPTH, FEATURE_MISSING, HOLE_DEPTH};
 use crate::machine::{PointShape, ToolKind};
 use crate::verify::followers::Follower;
 use crate::verify::hole_cuts::{Cut, assign, deepest_circle, widest_circle};
 use crate::verify::mill_size::size_mills;
-use crate::verify::outline::{CutShape, Outline};
+use crate::verify::outline::Outline;
 use crate::verify::voids::Blank;
 use gcode_lang::shares;
-use gcode_part::{Feature, FeatureKind, MAX_EDGE_BREAK, POINT_LENGTH};
+use gcode_part::{Feature, FeatureKind, POINT_LENGTH};
 
 /// What the end of a tool leaves open, by the tool's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -214,28 +214,6 @@ impl Judgement<'_> {
         self.judge_widths(&self.near.clone(), outline.as_ref(), drilled);
     }
 
-    /// Judges the cuts from the far side of a through hole: there it has the diameter that goes through.
-    fn judge_far_widths(&mut self, drilled: &DrilledHole) {
-        if !self.far.is_empty() {
-            let outline = Outline::of_far_side(self.nominal);
-            self.judge_widths(&self.far.clone(), outline.as_ref(), drilled);
-        }
-    }
-
-    /// Reports the cuts that are wider than the hole, without those of the finishing tool, which the check on the diameter
-    /// covers.
-    fn judge_widths(&mut self, cuts: &[Cut<'_>], outline: Option<&Outline>, drilled: &DrilledHole) {
-        let mut deepest = f64::NEG_INFINITY;
-        for cut in cuts {
-            let own = cut.pass;
-            let is_finishing = (own.tool, own.diameter) == (drilled.tool, drilled.diameter);
-            if own.tool.is_none() || !is_finishing || !self.nominal.features.is_empty() {
-                self.judge_width(cut, outline, deepest);
-            }
-            deepest = deepest.max(cut.tip);
-        }
-    }
-
     /// Returns true if what is drilled from both sides of a through hole, each from its own entry, meets.
     pub(super) fn is_drilled_through(&self, drilled: f64, from_other_side: f64) -> bool {
         let Hole { through, depth, .. } = *self.nominal;
@@ -358,53 +336,6 @@ impl Judgement<'_> {
             let is_cylinder = feature.kind != FeatureKind::Countersink;
             (is_cylinder && is_as_deep && cut.mismatch(&resized, tolerances).is_some()).then_some((cut, own))
         })
-    }
-
-    /// Reports a cut that is wider than the hole; `before` is the deepest tip before it.
-    fn judge_width(&mut self, cut: &Cut<'_>, outline: Option<&Outline>, before: f64) {
-        let tolerances = self.comparison.tolerances;
-        let (Some(shape), Some(outline)) = (cut.shape(), outline) else { return };
-        let excess = -2.0 * outline.margin(&shape);
-        if !exceeds(excess, tolerances.diameter) {
-            return;
-        }
-        // Without its angle a tool of unknown kind counts as a spot drill.
-        let point =
-            if cut.kind == Some(ToolKind::Drill) { PointShape::DRILL } else { PointShape::SPOT_DRILL };
-        let as_spot = -2.0 * outline.margin(&CutShape { point, ..shape });
-        let is_first = before <= cut.tip;
-        if cut.point == PointShape::Unknown && is_first && !exceeds(as_spot, tolerances.diameter) {
-            self.gaps.push(ShapeGap::SpotDrill(cut.pass.tool));
-            return;
-        }
-        let message = format!(
-            "hole {}: {} cuts {excess:.3} mm wider than the hole, {:.3} mm deep",
-            self.id,
-            cut.name(),
-            cut.tip
-        );
-        let finding = Diagnostic::new(&FEATURE_EXTRA, message).with_backtrace(cut.pass.backtrace.clone());
-        let is_cone = matches!(cut.point, PointShape::Pointed(_)) && !exceeds(shape.full_depth(), 0.0);
-        let is_edge_break = is_cone && !exceeds(excess, self.max_edge_break());
-        let severity = if is_edge_break { Severity::Warning } else { Severity::Error };
-        let finding = cut.mill_note().into_iter().fold(finding, Diagnostic::note);
-        let finding = match cut.point {
-            PointShape::Unknown => {
-                finding.note("the machine file gives neither its kind nor its point_angle: it counts as flat")
-            }
-            PointShape::Flat | PointShape::Pointed(_) => finding,
-        };
-        let finding = finding.with_severity(severity);
-        self.findings.push(finding.help("remove the pass, or add its feature to the hole in the reference"));
-    }
-
-    /// Returns the width by which a cone may break the edge of the hole, mm in diameter: that of a countersink is its
-    /// tolerance.
-    fn max_edge_break(&self) -> f64 {
-        let cones = self.nominal.features.iter().filter(|feature| feature.kind == FeatureKind::Countersink);
-        let slack = self.comparison.tolerances.depth;
-        let widths = cones.filter_map(|cone| Some(2.0 * slack * Deg(cone.angle? / 2.0).tan()));
-        widths.fold(2.0 * MAX_EDGE_BREAK, f64::min)
     }
 
     /// Reports a cut that makes no feature and goes deeper than `bottom`, the deepest tip that makes one.

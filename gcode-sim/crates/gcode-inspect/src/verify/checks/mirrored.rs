@@ -66,7 +66,10 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
             &ROTARY_SIGN,
             format!("{fault}; the rotary table direction is opposite to the one the program assumes"),
         )
-        .help("reverse the table's sign in the machine file, or machine.rotary.sign in the job"),
+        .help(
+            "turn the axis by hand: if the table turns as the machine file says, negate the angles of the program, or of the \
+             list (90 is towards y); else correct the sign of the table in the machine file, or machine.rotary.sign in the job",
+        ),
         false => Diagnostic::new(&MIRROR_IMAGE, format!("{fault}; no rotation of the table has this effect"))
             .help("check for a mirror image (G51.1) left in force, or a wrong sign of a coordinate"),
     };

@@ -8,6 +8,7 @@ pub(super) mod cutting;
 mod cycle_in_air;
 mod depth;
 mod diameter;
+mod edges_alike;
 mod explained_by_rows;
 pub(super) mod extra;
 pub(super) mod features;
@@ -38,6 +39,7 @@ mod tool_short;
 mod tools;
 mod transformed;
 mod wall;
+mod widths;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -85,6 +87,7 @@ pub(super) const ALL: &[Check] = &[
     tool_short::check,    // tool-short
     stopped::check,       // hole-missing
     common_shift::check,  // holes-alike, hole-twice
+    edges_alike::check,   // feature-extra
     reach::check,         // length-offset
     signs::check,         // axis-signs
     clearance::check,     // turns-near-part, rapid-near-part
