@@ -108,7 +108,8 @@ pub(crate) fn run(case: &Case) {
             }
         }
         let expected: Vec<&str> = lines.iter().filter_map(|line| line.strip_prefix("idle ")).collect();
-        let idle = unexecuted(&old, &new).into_iter().map(|block| places(&block.old, &block.new));
+        let idle =
+            unexecuted(&old.record, &new.record).into_iter().map(|block| places(&block.old, &block.new));
         let idle: Vec<String> =
             if expected == ["none"] { idle.chain(["none".to_owned()]).collect() } else { idle.collect() };
         if !expected.is_empty() && idle != expected {

@@ -252,7 +252,7 @@ impl Cells<'_> {
             return Err(format!("{count} columns, the header has {expected}{help}"));
         }
         let (entry, axis) = if self.columns.is_round { self.round_place()? } else { self.place()? };
-        let HoleColumns { id, depth, diameter, through, .. } = self.of_hole;
+        let HoleColumns { id, depth, diameter, .. } = self.of_hole;
         if is_through(self.text(depth)) {
             return Err(format!(
                 "column 'depth' is '{}': the thickness of the part is required, and true in a column 'through'",
