@@ -198,8 +198,11 @@ fn a_sheet_has_the_comments_on_tools_and_the_switches_of_the_panel() {
                    G43 H2 Z50. S3000 M3\nG1 Z-1. F100\nG0 Z50.\nT3 M6\nG0 X0\nG43 H3 Z50. S3000 M3\nG1 Z-1. F100\nG0 Z50.\nM30\n%\n";
     let place = tempfile::tempdir().unwrap();
     std::fs::write(place.path().join("O1.nc"), program).unwrap();
-    std::fs::write(place.path().join("machine.toml"), "[[tool]]\nnumber = 2\nkind = \"end-mill\"\ndiameter = 6.0\n")
-        .unwrap();
+    std::fs::write(
+        place.path().join("machine.toml"),
+        "[[tool]]\nnumber = 2\nkind = \"end-mill\"\ndiameter = 6.0\n",
+    )
+    .unwrap();
     let done = programs::run_line("gcode-sim sheet O1.nc -o sheet.html", place.path());
     assert!(place.path().join("sheet.html").exists(), "{}", String::from_utf8_lossy(&done.stderr));
     let html = std::fs::read_to_string(place.path().join("sheet.html")).unwrap();
