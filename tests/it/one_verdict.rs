@@ -316,7 +316,10 @@ fn a_verdict_on_motion_alone_is_the_same_everywhere() {
         }
         assert_eq!(run("gcode-sim sheet O1.nc -o sheet.html", place.path()).1, row.exit);
         let sheet = std::fs::read_to_string(place.path().join("sheet.html")).unwrap();
-        let answer = format!("<b>{}. </b>Predicted by simulation, not measured. {}", row.answer, row.summary);
+        // On the sheet the summary is a sentence.
+        let (first, rest) = row.summary.split_at(1);
+        let summary = format!("{}{rest}", first.to_uppercase());
+        let answer = format!("<b>{}. </b>Predicted by simulation, not measured. {summary}", row.answer);
         assert!(sheet.contains(&answer), "{answer}");
     }
 }

@@ -3,6 +3,7 @@
 mod alignment;
 
 use gcode_draw::Picture;
+use gcode_inspect::findings::AXIS_SIGNS;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_inspect::verify::{Answer, Verdict};
@@ -66,6 +67,16 @@ impl PackageVerdict {
             Self::Holes(verdict) => Some(verdict),
             Self::Flutes(_) | Self::Measured => None,
         }
+    }
+
+    /// Returns true if the machine gives an axis the other sign than the job: a symmetric part passes on both.
+    pub fn has_opposite_signs(&self) -> bool {
+        let findings = match self {
+            Self::Holes(verdict) => &verdict.findings,
+            Self::Flutes(verdict) => &verdict.findings,
+            Self::Measured => return false,
+        };
+        findings.iter().any(|finding| finding.kind == &AXIS_SIGNS)
     }
 
     /// Returns the verdict on flutes, if it is one.

@@ -76,6 +76,13 @@ pub(super) fn run(
         result.package.machine.clone_from(text);
         let failure = emitted_files::failure_with_machine(path, &machine);
         (result.checked, result.refused) = verified(&result.job, &result.package, path, &failure)?;
+        if let (Some(checked), None) = (&result.checked, &result.refused)
+            && checked.verdict.has_opposite_signs()
+        {
+            let reasons = format!("{}error: nothing is written: {failure}\n", checked.warnings.concat());
+            output::print_message(&reasons);
+            result.refused = Some(strip_str(reasons.trim_end()).to_string());
+        }
     }
     let Emitted { job, package, checked, refused } = result;
     let (Some(checked), None) = (&checked, &refused) else {

@@ -188,7 +188,12 @@ pub fn text(path: &Path) -> Result<String, UsageError> {
 
 /// Reads the text of a list, which a spreadsheet may write in the encoding of its system.
 pub(super) fn table(path: &Path) -> Result<String, UsageError> {
-    let text = String::from_utf8_lossy(&to_utf8(bytes(path)?)).into_owned();
+    let bytes = bytes(path)?;
+    if let Some((_, kind)) = OTHERS.iter().find(|(signature, _)| bytes.starts_with(signature)) {
+        let message = "which is neither a list of holes nor a job file: save a table as CSV";
+        return Err(UsageError::new(format!("{} is {kind}, {message}", path.display())));
+    }
+    let text = String::from_utf8_lossy(&to_utf8(bytes)).into_owned();
     Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned))
 }
 

@@ -74,9 +74,9 @@ pub(super) fn list(
         all.push(NotChecked::gap(what, "the list has none, and that of the program counts"));
     }
     if !reference.unread.is_empty() {
-        let (s, verb) = if reference.unread.len() == 1 { ("", "is") } else { ("s", "are") };
+        let s = if reference.unread.len() == 1 { "" } else { "s" };
         let what = format!("the column{s} {} of the list", reference.unread.join(", "));
-        all.push(NotChecked::gap(what, format!("{verb} not read: no value of a hole")));
+        all.push(NotChecked::gap(what, "no such column is read"));
     }
     if !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none()) {
         let what = "the tool in the spindle at the start";
