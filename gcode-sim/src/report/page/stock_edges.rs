@@ -78,7 +78,7 @@ mod tests {
         assert_eq!(all.len(), 18);
         for [x, y, z] in all[12..].iter().flatten() {
             assert!(
-                ((x - 10.0).hypot(y - 5.0) - 4.0).abs() < 1e-9 && (*z == 0.0 || *z == -20.0),
+                (libm::hypot(x - 10.0, y - 5.0) - 4.0).abs() < 1e-9 && (*z == 0.0 || *z == -20.0),
                 "{x} {y} {z}"
             );
         }
