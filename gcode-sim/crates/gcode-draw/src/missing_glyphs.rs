@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use super::chart::{Chart, Graph};
 use super::font::Font;
 use super::picture::Picture;
-use super::scene::{Scene, Shape};
+use super::scene::{Scene, Shape, Stroke};
 
 /// Line of the title block.
 const NOTE: &str = "‹…›: Unicode numbers of letters that the font lacks; SVG has the letters";
@@ -14,19 +14,34 @@ const NOTE: &str = "‹…›: Unicode numbers of letters that the font lacks; S
 /// Returns the picture with the numbers of the letters that the font lacks.
 pub(super) fn spelt_out(picture: &Picture) -> Cow<'_, Picture> {
     let font = Font::embedded();
+    let mut is_complete = true;
+    for_each_text(&mut texts_alone(picture), &mut |text| is_complete &= numbered(text, &font).is_none());
+    if is_complete {
+        return Cow::Borrowed(picture);
+    }
     let mut spelt = picture.clone();
-    let mut is_changed = false;
     for_each_text(&mut spelt, &mut |text| {
         if let Some(words) = numbered(text, &font) {
             *text = words;
-            is_changed = true;
         }
     });
-    if !is_changed {
-        return Cow::Borrowed(picture);
-    }
     spelt.title.lines.push(NOTE.to_owned());
     Cow::Owned(spelt)
+}
+
+/// Returns a picture without the lines that have no text: a path has millions of points.
+fn texts_alone(picture: &Picture) -> Picture {
+    let Picture { title, scene: Scene { axes, strokes, marks, zone: _ }, legend, table, chart } = picture;
+    let has_text = |stroke: &&Stroke| stroke.caption.is_some() || matches!(stroke.shape, Shape::Text { .. });
+    let strokes = strokes.iter().filter(has_text).cloned().collect();
+    let scene = Scene { axes: axes.clone(), strokes, marks: marks.clone(), zone: None };
+    Picture {
+        title: title.clone(),
+        scene,
+        legend: legend.clone(),
+        table: table.clone(),
+        chart: chart.clone(),
+    }
 }
 
 /// Returns a text with the numbers of the letters that the font lacks; `None` if it has all of them.

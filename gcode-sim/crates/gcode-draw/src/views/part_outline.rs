@@ -128,7 +128,7 @@ mod tests {
             // The last chord ends at most 1/192 of a turn above the end.
             assert!((17.5..17.5 + 50.0 * 0.033).contains(&end[1]), "{end:?}");
         }
-        let is_on = |[x, y]: Point| (x * x / 10_000.0 + y * y / 2_500.0 - 1.0).abs() < 1e-9;
+        let is_on = |[x, y]: Point| (libm::hypot(x / 100.0, y / 50.0) - 1.0).abs() < 1e-9;
         assert!(arch.iter().all(|point| is_on(*point)) && arch.windows(2).all(|pair| pair[0] != pair[1]));
         // From the right and in the isometric view it is an arch too, whose ends are apart.
         for side in [Side::Y.from_right(), Side::Y.isometric()] {
