@@ -217,7 +217,7 @@ mod tests {
         let text = format!(
             r#"{{"version": 1, "axes": "XYZ", "totals": {{"holes": 0, "moves": 0, "blocks": 1, "seconds": 0.0}},
             "ending": {{"outcome": "end", "words": "the program ends", "stopped": null, "output": [],
-            "left": {{{modes}}}}}, "places": [], "begun": [], "steps": [], "holes": []}}"#
+            "left": {{{modes}}}}}, "places": [], "other_blocks": [], "begun": [], "steps": [], "holes": []}}"#
         );
         Record::from_json(&text).unwrap()
     }
