@@ -87,13 +87,19 @@ fn lacks_point(text: &[u8]) -> bool {
 }
 
 /// Chooses the main program of a file with several programs and returns the note that names the choice, if there is one: the
-/// first program, or the only main program if that one is called by another.
+/// first program, or the first main program if that one is called by another.
 pub(super) fn choose_main(memory: &mut Memory, request: &Request) -> Option<Diagnostic> {
     const NAMED: usize = 5;
     let called = programs_called_by_others(memory, &request.settings);
     let (first, mains) = (memory.main(), main_programs(memory, &called));
     let (main, reason) = match mains[..] {
-        [only] if only != first && called.contains(&first) => (only, "the only program that no other calls"),
+        [main, ref others @ ..] if main != first && called.contains(&first) => {
+            let reason = match others {
+                [] => "the only program that no other calls",
+                _ => "the first program that no other calls",
+            };
+            (main, reason)
+        }
         _ => (first, "the first program"),
     };
     memory.set_main(main);

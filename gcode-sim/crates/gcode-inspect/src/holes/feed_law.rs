@@ -186,7 +186,7 @@ impl HoleExtractor<'_> {
         self.count_unsearched_feed(event, OnPath::Straight);
         if let Some(gouge) = worst {
             self.gouge_count += 1;
-            self.milling.record_cut(self.setup.tool);
+            self.milling.record_cut(&self.tool_state());
             self.report_gouge(&event.backtrace(), path, gouge);
         }
     }

@@ -474,7 +474,7 @@ impl HoleExtractor<'_> {
             // A block of a cycle positions, feeds and retracts.
             line.is_cycle = last_motion == Some((MotionKind::Rapid, event.block));
             line.is_reached_by_feed = last_motion.is_some_and(|(kind, _)| kind == MotionKind::Feed);
-            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+            line.cutting_state = self.tool_state();
             line.unknown_axes = self.positions.unknown_axes();
             line.length_excess = self.length_excess();
             line.sweeps_before = self.metal.removed.count();

@@ -433,7 +433,7 @@ impl HoleExtractor<'_> {
             // The deepest feed shows the place of most.
             let place = if is_last { backtrace } else { &cut.backtrace };
             if let Some(extremes) = cut.extremes {
-                self.milling.record_cut(cut.state.tool);
+                self.milling.record_cut(&cut.state);
                 self.cut_conditions.add(RecordedCut {
                     backtrace: place,
                     state: &cut.state,

@@ -146,7 +146,7 @@ impl HoleExtractor<'_> {
         if !line.enters_solid && self.machine.kind_of(self.setup.tool).is_none_or(ToolKind::needs_hole) {
             line.enters_solid = self.metal.cuts(from, &tip) == Some(true);
         }
-        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+        let state = self.tool_state();
         let is_entry = (is_steep() || self.is_entry_told(&state)) && cuts_nothing();
         let origin = self.offset_origin.as_ref();
         let first = || StateCut::new(state, *rate, !is_entry, event.backtrace(), origin);

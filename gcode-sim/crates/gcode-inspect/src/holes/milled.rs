@@ -238,7 +238,7 @@ impl HoleExtractor<'_> {
     /// Records the modal state of a feed of the current run.
     fn note_run_cut(&mut self, event: &Event<'_>) {
         let Some(rate) = event.kind.rate() else { return };
-        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+        let state = self.tool_state();
         let origin = self.offset_origin.as_ref();
         let first = || StateCut::new(state, rate, true, event.backtrace(), origin);
         self.engagement.run_cuts.record(&state, rate, true, first);

@@ -13,7 +13,7 @@ use super::strokes::MIN_TOOL_COSINE;
 use crate::findings::{TOOL_CUTS_NOTHING, TOOL_KIND};
 use crate::machine::{TOUCH_DEPTH, ToolKind, tool_name};
 use gcode_lang::diag::Diagnostic;
-use gcode_lang::motion::{Backtrace, Event, SpindleDirection};
+use gcode_lang::motion::{Backtrace, Event, LengthCompensation, SpindleDirection};
 use gcode_lang::units::MmPerMin;
 
 /// State of a cut, and the selected tool.
@@ -27,8 +27,8 @@ pub(super) struct Milling {
     rates: BTreeMap<MillingKey, [f64; 2]>,
     /// Path of the last feed across that was searched and met no metal, with its state.
     clear: Option<(MillingKey, Vec<Point3<f64>>)>,
-    /// First feed across of each tool that has met no metal so far; `None` once it has cut.
-    idle: BTreeMap<u32, Option<Backtrace>>,
+    /// First feed across of each tool that has met no metal so far with a length offset; `None` once it has cut with it.
+    idle: BTreeMap<(u32, LengthCompensation), Option<Backtrace>>,
     /// First feed across of each tool that cuts with its end, beside the metal and below its top.
     fed_aside: BTreeMap<u32, Backtrace>,
     /// Tools of unknown diameter that mill the part.
@@ -39,14 +39,14 @@ pub(super) struct Milling {
 
 impl Milling {
     /// Records that a tool cuts.
-    pub(super) fn record_cut(&mut self, tool: Option<u32>) {
-        self.idle.extend(tool.map(|tool| (tool, None)));
+    pub(super) fn record_cut(&mut self, state: &CuttingState) {
+        self.idle.extend(state.tool.map(|tool| ((tool, state.compensation), None)));
     }
 
     /// Records that a feed of a tool meets no metal.
-    pub(super) fn record_idle(&mut self, event: &Event<'_>, tool: Option<u32>) {
-        if let Some(tool) = tool {
-            self.idle.entry(tool).or_insert_with(|| Some(event.backtrace()));
+    pub(super) fn record_idle(&mut self, event: &Event<'_>, state: &CuttingState) {
+        if let Some(tool) = state.tool {
+            self.idle.entry((tool, state.compensation)).or_insert_with(|| Some(event.backtrace()));
         }
     }
 
@@ -60,6 +60,11 @@ impl Milling {
 }
 
 impl HoleExtractor<'_> {
+    /// Returns the state in which the tool in the spindle would cut.
+    pub(super) fn tool_state(&self) -> CuttingState {
+        CuttingState { tool: self.setup.tool, ..self.cutting_state }
+    }
+
     /// Checks the tool, its spindle and its rate in a feed that cuts metal across the tool. `path` are its points, none while an
     /// axis rotates; `mills` tells whether it cuts metal.
     pub(super) fn check_milling(
@@ -72,7 +77,7 @@ impl HoleExtractor<'_> {
         if self.metal.holes.is_none() {
             return;
         }
-        let state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+        let state = self.tool_state();
         let is_stopped = state.spindle_direction == SpindleDirection::Off;
         let key = (state.key(), state.selected_tool);
         let range = self.milling.rates.get(&key).copied();
@@ -92,7 +97,7 @@ impl HoleExtractor<'_> {
             }
             return;
         }
-        self.milling.record_cut(state.tool);
+        self.milling.record_cut(&state);
         let backtrace = event.backtrace();
         if is_stopped {
             self.report_spindle_stopped(&backtrace, &state);
@@ -137,15 +142,20 @@ impl HoleExtractor<'_> {
         {
             self.milling.fed_aside.entry(tool).or_insert_with(|| event.backtrace());
         }
-        self.milling.record_idle(event, Some(tool));
+        self.milling.record_idle(event, state);
     }
 
     /// Reports the tools whose feeds all miss the metal, and those that follow a mill's path beside it.
     pub(super) fn report_idle_mills(&mut self) {
-        let idle = std::mem::take(&mut self.milling.idle).into_iter();
-        let idle: BTreeMap<_, _> = idle.filter_map(|(tool, first)| Some((tool, first?))).collect();
+        let feeds = std::mem::take(&mut self.milling.idle);
+        let cuts = |tool: u32| feeds.iter().any(|((one, _), idle)| *one == tool && idle.is_none());
+        // A second pass with the same offset may have nothing left to cut.
+        let idle: Vec<_> = feeds
+            .iter()
+            .filter_map(|((tool, offset), idle)| Some((*tool, cuts(*tool).then_some(*offset), idle.clone()?)))
+            .collect();
         let mut fed_aside = std::mem::take(&mut self.milling.fed_aside);
-        fed_aside.retain(|tool, _| !idle.contains_key(tool));
+        fed_aside.retain(|tool, _| idle.iter().all(|(one, ..)| one != tool));
         for (tool, backtrace) in fed_aside {
             self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool, 1, |kind| {
                 let own = self.machine.kind_of(Some(tool)).map_or("tool", |kind| kind.name());
@@ -155,14 +165,18 @@ impl HoleExtractor<'_> {
                 Diagnostic::new(kind, message).help("check T and M06 before it, its H and its kind")
             });
         }
-        for (tool, backtrace) in idle {
+        for (tool, offset, backtrace) in idle {
             self.findings.add_in_program(&TOOL_CUTS_NOTHING, &backtrace, tool, 1, |kind| {
+                let with = match offset {
+                    Some(LengthCompensation::Off) => " without a length offset".to_owned(),
+                    Some(LengthCompensation::Plus(h)) => format!(" with H{h}"),
+                    Some(LengthCompensation::Minus(h)) => format!(" with G44 H{h}"),
+                    None => String::new(),
+                };
                 let name = tool_name(Some(tool));
-                Diagnostic::new(
-                    kind,
-                    format!("{name} cuts nothing: all its feeds miss the metal of the part"),
-                )
-                .help("check T and M06 before it, its H, the sign of Z and the stock")
+                let message = format!("{name}{with} cuts nothing: all its feeds miss the metal of the part");
+                Diagnostic::new(kind, message)
+                    .help("check T and M06 before it, its H, the sign of Z and the stock")
             });
         }
     }

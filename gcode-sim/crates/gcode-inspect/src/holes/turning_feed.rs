@@ -38,7 +38,7 @@ impl HoleExtractor<'_> {
             self.metal.is_touched(&from, &to, axis, reach)
         };
         if !coarse.iter().any(is_near) {
-            self.milling.record_idle(event, self.setup.tool);
+            self.milling.record_idle(event, &self.tool_state());
             return true;
         }
         let Some(chords) = self.turning_chords(travel, CHORD_TOLERANCE) else { return false };

@@ -44,7 +44,13 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let mut reported = CutFindings::default();
     let offsets = offsets_of_tools(conditions);
     let described = described_taps(inspection);
-    for check in [reversed, speed, feed, feed_per_turn, rubbing_feed, peck, fine_peck, length, tool] {
+    let widths = widths_of_unknown_tools(inspection);
+    let per_turn = |cut: &CutConditions, _: &ProcessLimits, machine: &Machine| {
+        feed_per_turn(cut, machine, widths.get(&cut.tool).copied())
+    };
+    let checks: [&dyn Fn(&CutConditions, &ProcessLimits, &Machine) -> Option<Diagnostic>; 9] =
+        [&reversed, &speed, &feed, &per_turn, &rubbing_feed, &peck, &fine_peck, &length, &tool];
+    for check in checks {
         for cut in conditions {
             let Some(finding) = check(cut, limits, inspection.machine) else { continue };
             if finding.kind == &SPINDLE_REVERSED && cut.is_tapping && described.contains(&cut.tool) {
@@ -116,6 +122,27 @@ fn described_taps(inspection: &HoleInspection<'_>) -> BTreeSet<Option<u32>> {
         taps(&comparison.actual[*extra]).iter().for_each(|tool| _ = described.remove(tool));
     }
     described
+}
+
+/// Returns the diameter of the widest hole of the reference in which each tool of unknown diameter cuts: no such tool is wider. A
+/// tool that cuts elsewhere too has none.
+fn widths_of_unknown_tools(inspection: &HoleInspection<'_>) -> BTreeMap<Option<u32>, f64> {
+    let HoleInspection { comparison, machine, .. } = inspection;
+    let mut widths: BTreeMap<Option<u32>, f64> = BTreeMap::new();
+    if inspection.extraction.cut_conditions.iter().all(|cut| machine.diameter_of(cut.tool).is_some()) {
+        return widths;
+    }
+    for (_, nominal, drilled) in comparison.matched() {
+        let width = nominal.widest_diameter().unwrap_or(f64::INFINITY);
+        for pass in drilled.passes().filter(|pass| machine.diameter_of(pass.tool).is_none()) {
+            let known = widths.entry(pass.tool).or_insert(width);
+            *known = known.max(width);
+        }
+    }
+    for extra in &comparison.extra {
+        comparison.actual[*extra].passes().for_each(|pass| _ = widths.remove(&pass.tool));
+    }
+    widths
 }
 
 /// Returns the first cut of each tool with each length offset.
@@ -192,7 +219,7 @@ fn feed(cut: &CutConditions, limits: &ProcessLimits, _: &Machine) -> Option<Diag
 
 /// Reports a feed per revolution of several times what tables of cutting data give; an error above the diameter, of a drill above
 /// a quarter of it.
-fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+fn feed_per_turn(cut: &CutConditions, machine: &Machine, width: Option<f64>) -> Option<Diagnostic> {
     let kind = machine.kind_of(cut.tool);
     let [_, (feed, speed)] = cut.extremes;
     if !is_fed_by_turns(cut, machine) || speed.0 <= 0.0 {
@@ -203,13 +230,14 @@ fn feed_per_turn(cut: &CutConditions, _: &ProcessLimits, machine: &Machine) -> O
     let limit = match (diameter, kind) {
         (Some(diameter), Some(ToolKind::Drill)) => (0.1 * diameter).max(0.2),
         (Some(diameter), _) => (0.2 * diameter).max(0.5),
-        (None, _) => MAX_FEED_PER_TURN,
+        // A tap of unknown kind advances by its pitch, which is below a quarter of its diameter.
+        (None, _) => width.map_or(MAX_FEED_PER_TURN, |width| (0.25 * width).clamp(0.5, MAX_FEED_PER_TURN)),
     };
     let is_drill = kind == Some(ToolKind::Drill);
     let most = match diameter {
         Some(diameter) if is_drill => MAX_DRILL_FEED_SHARE * diameter,
         Some(diameter) => diameter,
-        None => limit,
+        None => width.map_or(MAX_FEED_PER_TURN, |width| width.min(MAX_FEED_PER_TURN)),
     };
     let is_too_fast = is_drill && exceeds(feed.0, MAX_DRILL_FEED);
     let is_impossible = is_too_fast || exceeds(per_turn, most.max(limit));
