@@ -30,10 +30,13 @@ fn run(main: &Path, other: Option<(&str, String)>) -> Option<(Record, BTreeMap<S
     Some((record, read))
 }
 
-/// The effect of a program as text: its record without the text of the blocks and without the totals.
+/// The effect of a program as text: its record without the text of the blocks, those without a step and the totals.
 pub(crate) fn effect(record: &Record) -> String {
     let mut effect = String::new();
-    for line in record.to_json().unwrap().lines().filter(|line| !line.starts_with("\"totals\"")) {
+    let text = record.to_json().unwrap();
+    let (before, others) = text.split_once("\"other_blocks\": ").unwrap();
+    let behind = &others[others.find("\"begun\": ").unwrap()..];
+    for line in before.lines().chain(behind.lines()).filter(|line| !line.starts_with("\"totals\"")) {
         let mut parts = line.split("\"block\":\"");
         effect.push_str(parts.next().unwrap());
         for part in parts {

@@ -38,3 +38,19 @@ impl BlockLocation {
         self.calls.iter().rev().chain([self])
     }
 }
+
+/// A block of an executed program that no step names.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OtherBlock {
+    pub program: String,
+    /// Line in its file, from 1.
+    pub line: u32,
+    pub block: String,
+    /// Number of steps before its first execution; absent if it was not executed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steps: Option<usize>,
+    /// True if a condition or a block skip kept it from being executed as a whole.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub in_part: bool,
+}

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::block_location::BlockLocation;
 use super::kinds;
-use super::program_text::UnexecutedChange;
 use gcode_lang::diag::FindingKind;
 
 /// Entry of one edit: its effects on part and control, the one with the highest precedence first.
@@ -42,6 +41,15 @@ impl From<Effect> for Change {
         let Effect { code, message, old, new } = effect;
         Self { code, message, old, new, anchor: None, also: Vec::new() }
     }
+}
+
+/// An unexecuted changed block, old and new; only one of them if it is added or removed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct UnexecutedChange {
+    /// The block of the old revision.
+    pub old: Option<BlockLocation>,
+    /// The block of the new revision.
+    pub new: Option<BlockLocation>,
 }
 
 impl From<UnexecutedChange> for Change {

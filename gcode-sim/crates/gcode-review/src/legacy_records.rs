@@ -67,9 +67,6 @@ impl Record {
         if self.is_legacy() {
             all.extend(self.unrecorded_legacy_aspects().into_iter().map(str::to_owned));
         }
-        if self.lacks_other_blocks() {
-            all.push("blocks that make no move, and G53".to_owned());
-        }
         all.extend(self.unrecorded_modes(current).map(|mode| format!("{mode} at the end")));
         all
     }

@@ -65,15 +65,16 @@ mod step_list;
 mod steps;
 mod store;
 mod tool_setup;
+mod unexecuted;
 mod uniform_shift;
 
 pub use block_location::BlockLocation;
-pub use change::{Change, Effect};
+pub use change::{Change, Effect, UnexecutedChange};
 pub use holes::Paired;
 pub use leg::{Leg, UnplacedEnd};
-pub use program_text::{UnexecutedChange, unexecuted};
 pub use record::{Record, Revision, Totals, alarm_code};
 pub use store::{AcceptedFile, StoreError};
+pub use unexecuted::unexecuted;
 
 use self::align::Alignment;
 use self::edits::Edits;

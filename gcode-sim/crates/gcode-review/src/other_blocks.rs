@@ -2,28 +2,9 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::block_location::BlockLocation;
+use super::block_location::{BlockLocation, OtherBlock};
 use super::program_text::{NamedBlock, ProgramSide, words, written};
 use super::record::Record;
-
-/// A block of an executed program that no step names.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct OtherBlock {
-    pub program: String,
-    /// Line in its file, from 1.
-    pub line: u32,
-    pub block: String,
-    /// Number of steps before its first execution; absent if it was not executed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub steps: Option<usize>,
-    /// True if a condition or a block skip kept it from being executed as a whole.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub in_part: bool,
-}
 
 /// Returns the programs of two records with their blocks: of runs all blocks; if one record is from a file, those that steps
 /// and their calls name, and the others if both records have them. The main program has no name.

@@ -4,13 +4,9 @@ use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::block_list::{BlockList, ExecutedBlocks};
 use super::block_location::BlockLocation;
 use super::common_sequence::{EqualRun, common_lines};
-use super::other_blocks::sides;
 use super::record::Record;
 
 /// Blocks of both revisions that cause a difference.
@@ -33,7 +29,7 @@ pub(super) fn words(block: &str) -> String {
 }
 
 /// Puts a block without sequence number, comments and spaces into `code`.
-fn read_words(block: &str, code: &mut String) {
+pub(super) fn read_words(block: &str, code: &mut String) {
     code.clear();
     if block.contains(['(', ')']) {
         let mut depth = 0;
@@ -156,7 +152,7 @@ pub(super) fn written(record: &Record) -> Option<Vec<ProgramSide<'_>>> {
 
 /// The passage between the first and the last difference of two programs: blocks with words, by their indices, old and
 /// new.
-struct ChangedPassage<'a> {
+pub(super) struct ChangedPassage<'a> {
     sides: [&'a ProgramSide<'a>; 2],
     read_words: fn(&str, &mut String),
     blocks: [Vec<u32>; 2],
@@ -165,7 +161,7 @@ struct ChangedPassage<'a> {
 }
 
 impl<'a> ChangedPassage<'a> {
-    fn new(sides: [&'a ProgramSide<'a>; 2], read_words: fn(&str, &mut String)) -> Self {
+    pub(super) fn new(sides: [&'a ProgramSide<'a>; 2], read_words: fn(&str, &mut String)) -> Self {
         let mut passage = Self { sides, read_words, blocks: Default::default(), hashes: Default::default() };
         let mut from = [0, 0];
         let mut to = sides.map(ProgramSide::count);
@@ -226,7 +222,7 @@ impl<'a> ChangedPassage<'a> {
     }
 
     /// Returns the ranges of blocks between equal ones.
-    fn differences(&self) -> Vec<[Range<usize>; 2]> {
+    pub(super) fn differences(&self) -> Vec<[Range<usize>; 2]> {
         let [old, new] = &self.hashes;
         let runs = common_lines([old, new], |i, j| self.words(0, i) == self.words(1, j));
         let ends = [self.blocks[0].len(), self.blocks[1].len()];
@@ -260,7 +256,7 @@ impl<'a> ChangedPassage<'a> {
         gaps
     }
 
-    fn indices(&self, side: usize, range: &Range<usize>) -> &[u32] {
+    pub(super) fn indices(&self, side: usize, range: &Range<usize>) -> &[u32] {
         &self.blocks[side][range.clone()]
     }
 }
@@ -279,60 +275,9 @@ pub(super) fn for_each_gap<'a>(sides: [&'a ProgramSide<'a>; 2], mut each: impl F
     }
 }
 
-/// An unexecuted changed block, old and new; only one of them if it is added or removed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct UnexecutedChange {
-    /// The block of the old revision.
-    pub old: Option<BlockLocation>,
-    /// The block of the new revision.
-    pub new: Option<BlockLocation>,
-}
-
-/// Returns the changed blocks of programs of both records that no run executed as a whole, in their order: their effect
-/// is unknown. A file of an earlier version has none.
-pub fn unexecuted(old: &Record, new: &Record) -> Vec<UnexecutedChange> {
-    let [was, is] = sides(old, new);
-    let has_words = |side: &ProgramSide<'_>, index: usize| !words(&side.text(index)).is_empty();
-    let with_words = |side: &ProgramSide<'_>| (0..side.count()).any(|index| has_words(side, index));
-    let is_done =
-        |side: &ProgramSide<'_>, index: usize| side.reached(index).is_some_and(|(_, is_whole)| is_whole);
-    let is_idle = |side: &ProgramSide<'_>| {
-        (0..side.count()).any(|index| !is_done(side, index) && has_words(side, index))
-    };
-    let mut all = Vec::new();
-    for before in &was {
-        let Some(now) = is.iter().find(|other| other.name == before.name) else { continue };
-        let is_compared = before.name.is_empty() || with_words(before) && with_words(now);
-        if !(is_compared && (is_idle(before) || is_idle(now))) {
-            continue;
-        }
-        let sides = [before, now];
-        let passage = ChangedPassage::new(sides, read_words);
-        for gap in passage.differences() {
-            let [mut lost, mut added] = [0, 1].map(|side| {
-                let blocks = passage.indices(side, &gap[side]).iter().map(|index| *index as usize);
-                blocks
-                    .filter(move |index| !is_done(sides[side], *index))
-                    .map(move |index| sides[side].location(index))
-            });
-            let changes = std::iter::from_fn(|| match (lost.next(), added.next()) {
-                (None, None) => None,
-                (old, new) => Some(UnexecutedChange { old, new }),
-            });
-            all.extend(changes);
-        }
-    }
-    all
-}
-
 #[cfg(test)]
 mod tests {
-    use gcode_inspect::machine::Machine;
-    use gcode_lang::program::NoLibrary;
-    use gcode_session::Request;
-
     use super::*;
-    use crate::Revision;
 
     fn side(text: &str) -> ProgramSide<'static> {
         let block = |(line, block): (usize, &str)| BlockLocation {
@@ -343,25 +288,6 @@ mod tests {
         };
         let blocks = text.lines().enumerate().map(|line| (block(line), Some((line.0, true))));
         ProgramSide::named(String::new(), blocks.collect())
-    }
-
-    /// A dump has O2 in two folders: each is compared with that of its own folder.
-    #[test]
-    fn programs_of_one_number_are_paired_by_their_folders() {
-        let run = |library: &str| {
-            let text = format!(
-                "O1\nM98 P2\nM30\n&F=//CNC_MEM/USER/PATH1/\nO2\n#100=1\nM99\n&F=//CNC_MEM/USER/LIBRARY/\nO2\n{library}\nM99\n"
-            );
-            let request = Request::new("O1.nc", text.into_bytes(), Machine::default());
-            Revision::of(&request, &mut NoLibrary, None).unwrap()
-        };
-        let lines = |old: &Revision, new: &Revision| {
-            let all = unexecuted(&old.record, &new.record).into_iter();
-            all.map(|change| [change.old, change.new].map(|block| block.map(|block| block.line)))
-                .collect::<Vec<_>>()
-        };
-        assert_eq!(lines(&run("#100=2"), &run("#100=2")), [[None; 2]; 0]);
-        assert_eq!(lines(&run("#100=2"), &run("#100=3")), [[Some(10), Some(10)]]);
     }
 
     /// Returns the first and the last block of each gap, old and new; none of an empty side.

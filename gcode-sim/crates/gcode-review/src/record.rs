@@ -7,11 +7,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::block_list::{BlockList, ExecutedBlocks};
-use super::block_location::BlockLocation;
+use super::block_location::{BlockLocation, OtherBlock};
 use super::first_command::FirstCommand;
 use super::kinds;
 use super::modal_conditions::ModalConditions;
-use super::other_blocks::OtherBlock;
 use super::recorder::{MOST_STEPS, Recorder, RunStart, SharedRecorder};
 use super::step_list::StepList;
 use super::steps::StepKind;

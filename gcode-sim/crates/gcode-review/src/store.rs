@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::block_list::BlockList;
-use super::block_location::BlockLocation;
+use super::block_location::{BlockLocation, OtherBlock};
 use super::first_command::FirstCommand;
 use super::legacy_records::present_words;
 use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
-use super::other_blocks::{OtherBlock, other_blocks};
+use super::other_blocks::other_blocks;
 use super::record::{EndState, Record, Totals};
 use super::recorder::RunStart;
 use super::step_list::{NewStep, StepList};

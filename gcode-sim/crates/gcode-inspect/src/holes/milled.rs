@@ -5,7 +5,6 @@ use super::HoleExtractor;
 use super::arc_run::{ArcRun, PartArc, Ring};
 use super::chord_run::ChordRun;
 use super::cut_states::{CutStates, StateCut};
-use super::cutting::CuttingState;
 use super::drill_pass::{DrillPass, MilledCut, PassCut};
 use super::feed_law::ON_AXIS;
 use super::gouge_report::OpenFeed;
