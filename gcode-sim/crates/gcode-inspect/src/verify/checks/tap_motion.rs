@@ -5,7 +5,7 @@ use crate::findings::{TAP_DRILL, TAP_PITCH};
 use crate::verify::hole_cuts::Cut;
 use crate::verify::matching::{is_one_run, step_off};
 use gcode_lang::motion::SpindleDirection;
-use gcode_part::{Feature, NOISE};
+use gcode_part::{Feature, FeatureKind, NOISE};
 
 /// Largest distance along the axis between two passes of one thread, mm.
 pub(super) const MAX_STEP: f64 = 0.05;
@@ -37,7 +37,15 @@ pub(super) fn uneven_retract(
         _ if other.is_thread() => None,
         (Some(own), Some(thread)) => (thread <= own).then(|| other.full_depth(own).unwrap_or(other.tip)),
         (_, None) => Some(other.tip).filter(|tip| *tip < cut.tip * CORE_SHARE),
-        (None, Some(_)) => None,
+        (None, Some(thread)) => {
+            // It makes the feature of the list that ends where its stroke does.
+            let ends_there = |feature: &&Feature| {
+                let off = (feature.bottom() - other.tip).abs();
+                feature.kind != FeatureKind::Tap && !exceeds(off, judged.comparison.tolerances.depth)
+            };
+            let feature = judged.nominal.features.iter().find(ends_there)?;
+            (thread <= feature.diameter).then_some(other.tip)
+        }
     };
     let free = judged.near.iter().filter_map(wide).fold(0.0, f64::max);
     if depth <= free + NOISE {
