@@ -74,6 +74,8 @@ pub struct HoleExtraction {
     pub(crate) rapids_behind_change: UnsearchedMotions,
     /// Probing moves through metal, up to a signal.
     pub(crate) probes_in_metal: UnsearchedMotions,
+    /// Shifts in a hole of tools that may be boring bars or not.
+    pub(crate) shifts_of_unknown_kind: UnsearchedMotions,
     /// Probing moves through metal that no signal ends.
     pub(crate) probes_without_signal: UnsearchedMotions,
     /// Tools of unknown diameter that mill a known body: what they remove is unknown.

@@ -56,6 +56,7 @@ impl HoleExtractor<'_> {
             rapids_of_unknown_tip: self.rapids_of_unknown_tip,
             rapids_behind_change: self.change_retract.rapids,
             probes_in_metal: self.probes_in_metal,
+            shifts_of_unknown_kind: self.shifts_of_unknown_kind,
             probes_without_signal: self.probes_without_signal,
             unsized_mills: self.milling.unsized_tools,
             assumed_cones: self.milling.cones,

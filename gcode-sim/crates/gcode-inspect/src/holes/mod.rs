@@ -190,7 +190,6 @@ pub struct HoleExtractor<'m> {
     length_change: Option<Span>,
     /// A probing move without a signal has left the tool in the metal.
     is_probe_in_metal: bool,
-    /// Number of probing moves.
     probe_count: u64,
     search_budget: SearchBudget,
     /// Motions whose searches for metal have been given up.
@@ -200,6 +199,7 @@ pub struct HoleExtractor<'m> {
     /// Probing moves through metal, up to a signal and without one.
     probes_in_metal: UnsearchedMotions,
     probes_without_signal: UnsearchedMotions,
+    shifts_of_unknown_kind: UnsearchedMotions,
     /// The search for the current feed was given up.
     is_feed_unsearched: Cell<bool>,
     bar_shift: BarShift,
@@ -272,6 +272,7 @@ impl<'m> HoleExtractor<'m> {
             unsearched: BTreeMap::new(),
             rapids_of_unknown_tip: UnsearchedMotions::default(),
             probes_in_metal: UnsearchedMotions::default(),
+            shifts_of_unknown_kind: UnsearchedMotions::default(),
             probes_without_signal: UnsearchedMotions::default(),
             is_feed_unsearched: Cell::default(),
             bar_shift: BarShift::default(),
@@ -487,8 +488,8 @@ impl EventSink for HoleExtractor<'_> {
                 }
             }
             EventKind::Auxiliary { code } => {
-                let effect = m_codes::find(*code, self.dialect);
-                let is_output = matches!(effect, Some(MCodeEffect::Output { .. }));
+                let is_output =
+                    matches!(m_codes::find(*code, self.dialect), Some(MCodeEffect::Output { .. }));
                 if !self.apply_clamp_code(*code) && !is_output {
                     self.cutting_state.builder_code = Some(*code);
                 }

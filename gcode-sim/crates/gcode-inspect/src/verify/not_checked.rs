@@ -143,6 +143,12 @@ pub(super) fn list(
             "G31 leads through metal up to its signal, or a probe moves in a pocket that no feed has milled",
         ),
         (
+            &extraction.shifts_of_unknown_kind,
+            "whether a tool shifted in its hole is a boring bar",
+            "shift",
+            "G76 and G87 shift a bar off the wall, and any other tool into it; give the kind of the tool in the machine file",
+        ),
+        (
             &extraction.probes_without_signal,
             match machine.probe {
                 None => "what probing moves touch (no [probe], no --skip)",
