@@ -39,6 +39,9 @@ const LEAST_OPEN_FEED: f64 = 0.0002;
 const LEAST_PECK: f64 = 0.01;
 const LEAST_PECK_SHARE: f64 = 0.005;
 
+/// A check of one cut.
+type CutCheck<'c> = &'c dyn Fn(&CutConditions, &ProcessLimits, &Machine) -> Option<Diagnostic>;
+
 pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings) {
     let (conditions, limits) = (&inspection.extraction.cut_conditions, &inspection.reference.process_limits);
     let mut reported = CutFindings::default();
@@ -48,7 +51,7 @@ pub(super) fn check(inspection: &HoleInspection<'_>, findings: &mut HoleFindings
     let per_turn = |cut: &CutConditions, _: &ProcessLimits, machine: &Machine| {
         feed_per_turn(cut, machine, widths.get(&cut.tool).copied())
     };
-    let checks: [&dyn Fn(&CutConditions, &ProcessLimits, &Machine) -> Option<Diagnostic>; 9] =
+    let checks: [CutCheck<'_>; 9] =
         [&reversed, &speed, &feed, &per_turn, &rubbing_feed, &peck, &fine_peck, &length, &tool];
     for check in checks {
         for cut in conditions {
