@@ -52,9 +52,19 @@ pub struct UnexecutedChange {
     pub new: Option<BlockLocation>,
 }
 
+impl Change {
+    /// Returns the entry of a case whose accepted result a reference judged, and that has none any more.
+    pub fn lost_reference() -> Self {
+        let message = "a reference judged the accepted result, and the case has none: it was deleted, or has another name";
+        Effect { code: kinds::REFERENCE.code.into(), message: message.to_owned(), old: None, new: None }
+            .into()
+    }
+}
+
 impl From<UnexecutedChange> for Change {
     fn from(UnexecutedChange { old, new }: UnexecutedChange) -> Self {
-        let message = "a changed block is not executed: its effect is unknown".to_owned();
+        let message =
+            "the run does not execute a changed block, or not as a whole: its effect is unknown".to_owned();
         Effect { code: kinds::UNEXECUTED.code.into(), message, old, new }.into()
     }
 }

@@ -65,6 +65,7 @@ change_kinds! {
     MODE = "mode", "another modal code is active at the end";
     COUNTER = "counter", "the parts counter has another final value";
     UNEXECUTED = "unexecuted", "a changed block is not executed";
+    REFERENCE = "reference", "a case has lost its reference";
     CASE_NEW = "case-new", "a case has no accepted result";
     CASE_OLDER = "case-older", "accepted by an earlier version that recorded less";
     CASE_REFUSED = "case-refused", "a case can't be used";

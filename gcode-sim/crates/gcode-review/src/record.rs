@@ -48,6 +48,8 @@ pub struct Record {
     /// Name of the main program as a control shows it.
     pub(super) program: Option<String>,
     pub(super) ending: EndState,
+    /// True if the case has a reference, which judges what the run makes.
+    pub is_verified: bool,
     /// Totals of the run.
     pub totals: Totals,
 }
@@ -198,6 +200,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
             seconds: run.control.seconds().0,
         },
         ending,
+        is_verified: false,
         first_commands: Some(first_commands.into_values().collect()),
         program: Some(memory.get(memory.main()).label()),
         conditions,

@@ -34,6 +34,9 @@ pub struct AcceptedFile {
     program: Option<String>,
     totals: Totals,
     ending: EndState,
+    /// True if a reference judged the result.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    verified: bool,
     #[serde(rename = "places")]
     blocks: Vec<BlockLocation>,
     /// Blocks that no step names.
@@ -204,6 +207,9 @@ impl Record {
             let _ = writeln!(text, "\"program\": {},", json(program)?);
         }
         let _ = writeln!(text, "\"totals\": {},\n\"ending\": {},", json(&self.totals)?, json(&self.ending)?);
+        if self.is_verified {
+            text.push_str("\"verified\": true,\n");
+        }
         let _ = writeln!(text, "\"places\": {},", lines(&blocks)?);
         if let Some(others) = other_blocks(self) {
             let _ = writeln!(text, "\"other_blocks\": {},", lines(&others)?);
@@ -286,6 +292,7 @@ impl Record {
             first_commands: file.begun,
             program: file.program,
             ending,
+            is_verified: file.verified,
             totals,
         })
     }

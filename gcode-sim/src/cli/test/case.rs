@@ -178,7 +178,8 @@ impl Case {
             Some(NominalPart::Holes(reference)) => Some(Criteria::of(reference)),
             Some(NominalPart::Flutes(_)) | None => None,
         };
-        let revision = Revision::of(&request, &mut folders, criteria)?;
+        let mut revision = Revision::of(&request, &mut folders, criteria)?;
+        revision.record.is_verified = reference.is_some();
         if revision.is_cut_off() {
             return Err(cut_off(&revision));
         }
@@ -216,6 +217,8 @@ impl Case {
                 let mut found = changes(&accepted, &revision.record.reduced_to(&accepted), tolerance);
                 let unexecuted = unexecuted(&accepted, &revision.record);
                 found.extend(unexecuted.into_iter().map(Change::from));
+                let has_lost_reference = accepted.is_verified && !revision.record.is_verified;
+                found.extend(has_lost_reference.then(Change::lost_reference));
                 let answer = match (found.is_empty(), not_compared.is_empty()) {
                     (false, _) => CaseAnswer::Changed,
                     (true, false) => CaseAnswer::Older,

@@ -3,6 +3,7 @@ use super::moves::is_drilling;
 use super::possible_motion::PossibleMotion;
 use super::{Marks, Slice};
 use crate::registers::Registers;
+use gcode_lang::motion::SpindleDirection;
 use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::modes::{ModalGroup, Motion, Plane};
@@ -162,6 +163,12 @@ impl Slice {
             ) => self.machine.spindle |= marks,
             Some(MCodeEffect::ToolChange) => self.machine.tool |= marks,
             Some(MCodeEffect::CoolantOn | MCodeEffect::CoolantOff | MCodeEffect::NoEffect) => {}
+            // At most the spindle stops; one that the block starts itself has the marks already.
+            Some(MCodeEffect::Stop | MCodeEffect::OptionalStop) => {
+                if registers.state.spindle != SpindleDirection::Off {
+                    self.machine.spindle |= marks;
+                }
+            }
             Some(_) => self.machine.add_to_all(marks),
             None if self.stated.codes.contains(&(code as u32)) => {}
             None => self.machine.rest |= marks,

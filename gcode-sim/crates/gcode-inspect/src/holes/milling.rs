@@ -124,18 +124,17 @@ impl HoleExtractor<'_> {
         }
     }
 
-    /// Records a straight feed across a turning tool of known diameter that meets no metal of a known body.
+    /// Records a straight feed across a turning tool that meets no metal of a known body.
     fn record_idle_feed(&mut self, event: &Event<'_>, [from, to]: &Line, state: &CuttingState) {
-        let Some(tool) = state.tool else { return };
         let Some(axis) = self.pose.axis.filter(|axis| is_across(axis, &(to - from))) else { return };
-        let Some(body) = self.surface.filter(|_| self.tool_radius().is_some()) else { return };
-        if state.spindle_direction == SpindleDirection::Off {
+        let Some(body) = self.surface.filter(|_| state.spindle_direction != SpindleDirection::Off) else {
             return;
-        }
+        };
         let is_other = state.selected_tool != state.tool;
         if is_other && self.check_tool_changed(&event.backtrace(), state, "is fed across") {
             return;
         }
+        let Some(tool) = state.tool.filter(|_| self.tool_radius().is_some()) else { return };
         let kind = self.machine.kind_of(state.tool);
         if kind.is_some_and(ToolKind::cuts_with_end)
             && to.coords.dot(&axis) + TOUCH_DEPTH < -lowest(&body, &-axis)

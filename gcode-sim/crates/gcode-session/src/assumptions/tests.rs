@@ -162,6 +162,9 @@ fn switches_signals_lengths_and_codes_of_the_builder_are_assumptions() {
     // Whether the spindle goes on behind a stop.
     assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM00\nX20.", 2, &["M00=vacant@5: 2"]);
     assert_assumptions("G81 X10. Y10. Z-5. R2. F100.\nM01\nM03\nX20.", 2, &[]);
+    // A stop that the operator switches off stops nothing that stands, and at most a spindle that turns.
+    assert_assumptions("M05\n/M00\nM03\nG81 X10. Y10. Z-5. R2. F100.", 1, &[]);
+    assert_assumptions("/M00\nG81 X10. Y10. Z-5. R2. F100.", 1, &["/=0@4: 1", "M00=vacant@4: 1"]);
     // Rigid tapping turns the spindle itself; one that stands still before the stop stands still behind it.
     let tapped =
         |stop| format!("G81 X10. Y10. Z-5. R2. F100.\nG80\n{stop}\nM29 S500\nG84 X20. Z-5. R2. F500.");
