@@ -39,7 +39,8 @@ impl HoleExtractor<'_> {
     /// Follows the end of a motion below the part. The full diameter has the room of a through hole there, below the part or the
     /// floor that a pocket states.
     pub(super) fn follow_below_part(&mut self, event: &Event<'_>) {
-        let body = self.surface.filter(|_| self.metal.holes.is_some() && self.has_left_start);
+        let is_placed = self.has_left_start || self.positions.is_known(self.machine);
+        let body = self.surface.filter(|_| self.metal.holes.is_some() && is_placed);
         // Oblique to the part's axes the bounds of the body say nothing of what is below it.
         let axis = self.pose.axis.filter(|axis| 1.0 - NOISE <= axis.amax());
         let (Some(body), Some(axis)) = (body, axis) else { return };

@@ -5,7 +5,9 @@ use nalgebra::{Point3, Vector3};
 
 use super::clearance::CloseMotion;
 use super::cone_end::AssumedCone;
-use super::{CutConditions, DrilledHole, LengthMismatch, Search, UnknownRapids, UnsearchedMotions};
+use super::{
+    CutConditions, DrilledHole, LengthMismatch, Search, UnjudgedMotions, UnknownRapids, UnsearchedMotions,
+};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
@@ -68,16 +70,9 @@ pub struct HoleExtraction {
     pub(crate) is_metal_known: bool,
     /// Motions whose searches for metal have been given up.
     pub(crate) unsearched: BTreeMap<Search, UnsearchedMotions>,
-    /// Rapids at machine positions by tools of unknown length without an offset.
-    pub(crate) rapids_of_unknown_tip: UnsearchedMotions,
+    pub(crate) unjudged: UnjudgedMotions,
     /// Rapids that are free only if the tool change before them retracts the tool.
     pub(crate) rapids_behind_change: UnsearchedMotions,
-    /// Probing moves through metal, up to a signal.
-    pub(crate) probes_in_metal: UnsearchedMotions,
-    /// Shifts in a hole of tools that may be boring bars or not.
-    pub(crate) shifts_of_unknown_kind: UnsearchedMotions,
-    /// Probing moves through metal that no signal ends.
-    pub(crate) probes_without_signal: UnsearchedMotions,
     /// Tools of unknown diameter that mill a known body: what they remove is unknown.
     pub(crate) unsized_mills: Vec<Option<u32>>,
     /// Tools of unknown end that count as cones.

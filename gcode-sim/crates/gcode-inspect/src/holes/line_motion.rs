@@ -38,7 +38,7 @@ impl HoleExtractor<'_> {
         let may_be_shifted = kind == MotionKind::Rapid && self.may_be_shifted();
         if may_be_shifted && line.is_inward() && line.try_bar_shift(&tip, self.tool_radius()) {
             if self.machine.kind_of(self.setup.tool).is_none() {
-                self.shifts_of_unknown_kind.count(|| event.backtrace());
+                self.unjudged.shifts_of_unknown_kind.count(|| event.backtrace());
             }
             self.current_line = Some(line);
             return None;

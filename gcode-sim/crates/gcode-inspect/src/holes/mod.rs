@@ -77,7 +77,7 @@ pub use group::{DrilledHole, EarlierPass, ToolPass};
 pub(crate) use length_mismatch::LengthMismatch;
 pub(crate) use machine_requests::unclear_head;
 pub(crate) use offset_origin::OffsetOrigin;
-pub(crate) use rapid_paths::{OnPath, Search, UnsearchedMotions};
+pub(crate) use rapid_paths::{OnPath, Search, UnjudgedMotions, UnsearchedMotions};
 pub(crate) use swept_tool::ring;
 pub(crate) use unknown_axes::{UnknownRapids, unknown_position_finding};
 
@@ -194,12 +194,7 @@ pub struct HoleExtractor<'m> {
     search_budget: SearchBudget,
     /// Motions whose searches for metal have been given up.
     unsearched: BTreeMap<Search, UnsearchedMotions>,
-    /// Rapids at machine positions by tools of unknown length without an offset.
-    rapids_of_unknown_tip: UnsearchedMotions,
-    /// Probing moves through metal, up to a signal and without one.
-    probes_in_metal: UnsearchedMotions,
-    probes_without_signal: UnsearchedMotions,
-    shifts_of_unknown_kind: UnsearchedMotions,
+    unjudged: UnjudgedMotions,
     /// The search for the current feed was given up.
     is_feed_unsearched: Cell<bool>,
     bar_shift: BarShift,
@@ -270,10 +265,7 @@ impl<'m> HoleExtractor<'m> {
             probe_count: 0,
             search_budget: SearchBudget::default(),
             unsearched: BTreeMap::new(),
-            rapids_of_unknown_tip: UnsearchedMotions::default(),
-            probes_in_metal: UnsearchedMotions::default(),
-            shifts_of_unknown_kind: UnsearchedMotions::default(),
-            probes_without_signal: UnsearchedMotions::default(),
+            unjudged: UnjudgedMotions::default(),
             is_feed_unsearched: Cell::default(),
             bar_shift: BarShift::default(),
             change_retract: ChangeRetract::default(),
@@ -367,7 +359,7 @@ impl<'m> HoleExtractor<'m> {
         };
         let kind = if self.follow_unstopped_probe() { MotionKind::Probe } else { kind };
         if kind == MotionKind::Rapid && self.has_unknown_tip((&from, &before.tip), to) {
-            self.rapids_of_unknown_tip.count(|| event.backtrace());
+            self.unjudged.rapids_of_unknown_tip.count(|| event.backtrace());
             self.change_retract.end();
             self.report_low_rapid();
             self.end_line(Some(kind));
@@ -379,6 +371,9 @@ impl<'m> HoleExtractor<'m> {
             self.change_retract.end();
             self.report_low_rapid();
             self.report_unknown_rapid(event, kind, &travel, &before.tip, (was, is));
+            if kind == MotionKind::Rapid && is.is_none() {
+                self.follow_below_part(event);
+            }
             // With the same axes unknown the motion itself is known.
             match was == is && !is_rotating {
                 true => self.disengage(&before.tip),

@@ -37,7 +37,13 @@ impl HoleExtractor<'_> {
 
     /// Follows a probing move. A touch probe must not turn in it.
     pub(super) fn probe(&mut self, event: &Event<'_>, to: &Position) {
-        let state = self.cutting_state;
+        let state = self.tool_state();
+        if state.tool.is_none() {
+            self.unjudged.probes_of_start_tool.count(|| event.backtrace());
+        }
+        if state.selected_tool != state.tool {
+            self.check_tool_changed(&event.backtrace(), &state, "probes");
+        }
         if self.is_probe() && state.spindle_direction != SpindleDirection::Off {
             let tool = self.setup.tool;
             self.findings.add_in_program(&PROBE_TURNS, &event.backtrace(), tool.unwrap_or(0), 1, |kind| {
@@ -62,8 +68,8 @@ impl HoleExtractor<'_> {
             Some(_) => {
                 self.is_probe_in_metal = matches!(event.kind, EventKind::Skip { has_signal: false, .. });
                 let probes = match self.is_probe_in_metal {
-                    true => &mut self.probes_without_signal,
-                    false => &mut self.probes_in_metal,
+                    true => &mut self.unjudged.probes_without_signal,
+                    false => &mut self.unjudged.probes_in_metal,
                 };
                 probes.count(|| event.backtrace());
                 MotionKind::Probe
@@ -116,7 +122,7 @@ impl HoleExtractor<'_> {
                 });
             }
             None if kept.is_none() && self.metal.uncut(&travel).is_some() => {
-                self.probes_in_metal.count(|| event.backtrace());
+                self.unjudged.probes_in_metal.count(|| event.backtrace());
                 return MotionKind::Probe;
             }
             None => {}

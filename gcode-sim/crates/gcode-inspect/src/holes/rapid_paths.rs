@@ -32,6 +32,21 @@ pub(crate) enum OnPath {
     Straight,
 }
 
+/// Motions that nothing judges, by their reasons.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct UnjudgedMotions {
+    /// Rapids at machine positions by tools of unknown length without an offset.
+    pub rapids_of_unknown_tip: UnsearchedMotions,
+    /// Probing moves through metal, up to a signal.
+    pub probes_in_metal: UnsearchedMotions,
+    /// Probing moves through metal that no signal ends.
+    pub probes_without_signal: UnsearchedMotions,
+    /// Probing moves before the first tool change.
+    pub probes_of_start_tool: UnsearchedMotions,
+    /// Shifts in a hole of tools that may be boring bars or not.
+    pub shifts_of_unknown_kind: UnsearchedMotions,
+}
+
 /// Motions that are not searched to the end: the first, and their number.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnsearchedMotions(Option<(Backtrace, u64)>);

@@ -78,9 +78,12 @@ pub(super) fn list(
         let what = format!("the column{s} {} of the list", reference.unread.join(", "));
         all.push(NotChecked::gap(what, "no such column is read"));
     }
-    if !machine.tools.is_empty() && extraction.cut_conditions.iter().any(|cut| cut.tool.is_none()) {
+    let cuts = extraction.cut_conditions.iter().any(|cut| cut.tool.is_none());
+    let probes = extraction.unjudged.probes_of_start_tool.first().is_some();
+    if !machine.tools.is_empty() && (cuts || probes) {
         let what = "the tool in the spindle at the start";
-        all.push(NotChecked::gap(what, "it cuts before the first tool change"));
+        let does = if cuts { "cuts" } else { "probes" };
+        all.push(NotChecked::gap(what, format!("it {does} before the first tool change")));
     }
     all.extend(pitches(comparison, machine));
     all.extend(shapes(inspection));
@@ -125,7 +128,7 @@ pub(super) fn list(
     });
     let others = [
         (
-            &extraction.rapids_of_unknown_tip,
+            &extraction.unjudged.rapids_of_unknown_tip,
             "rapids at machine positions without a length offset",
             "rapid",
             "the length of the tool is unknown, and a tool of length 0 would stand in the part there; give the length in the machine file",
@@ -137,19 +140,19 @@ pub(super) fn list(
             "free if the tool change moves the tool away from the part, as on most machines; retract before it by G28 or G53",
         ),
         (
-            &extraction.probes_in_metal,
+            &extraction.unjudged.probes_in_metal,
             "what probing moves touch",
             "move",
             "G31 leads through metal up to its signal, or a probe moves in a pocket that no feed has milled",
         ),
         (
-            &extraction.shifts_of_unknown_kind,
+            &extraction.unjudged.shifts_of_unknown_kind,
             "whether a tool shifted in its hole is a boring bar",
             "shift",
             "G76 and G87 shift a bar off the wall, and any other tool into it; give the kind of the tool in the machine file",
         ),
         (
-            &extraction.probes_without_signal,
+            &extraction.unjudged.probes_without_signal,
             match machine.probe {
                 None => "what probing moves touch (no [probe], no --skip)",
                 Some(_) => "what probing moves touch (no [stock], no --skip)",
