@@ -18,7 +18,12 @@ impl Planner<'_> {
         if speed == 0.0 {
             return Err(Alarm::NoSpeedInRigidTapping.located_at(self.block));
         }
-        let spindle = |direction, is_rigid| EventKind::Spindle { direction, speed: Rpm(speed), is_rigid };
+        let spindle = |direction, is_rigid| EventKind::Spindle {
+            direction,
+            speed: Rpm(speed),
+            is_rigid,
+            is_oriented: false,
+        };
         let (inwards, outwards) = match is_left_handed {
             true => (SpindleDirection::Counterclockwise, SpindleDirection::Clockwise),
             false => (SpindleDirection::Clockwise, SpindleDirection::Counterclockwise),

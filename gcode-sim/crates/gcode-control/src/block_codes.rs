@@ -352,11 +352,14 @@ impl Planner<'_> {
                     self.set_spindle(plan, SpindleDirection::Counterclockwise, speed)
                 }
                 MCodeEffect::SpindleStop | MCodeEffect::Orient => {
-                    if effect == MCodeEffect::Orient {
+                    let is_oriented = effect == MCodeEffect::Orient;
+                    if is_oriented {
                         self.words.mark_read(Letters::of(b"PR"));
                     }
                     plan.state.spindle = SpindleDirection::Off;
-                    plan.events_after_motion.push((spindle_event(SpindleDirection::Off, speed), 0.0));
+                    let direction = SpindleDirection::Off;
+                    let stop = EventKind::Spindle { direction, speed, is_rigid: false, is_oriented };
+                    plan.events_after_motion.push((stop, 0.0));
                 }
                 MCodeEffect::ToolChange => {
                     plan.notes.extend(compensation_left(plan).map(Note::CompensationAtToolChange));
@@ -469,7 +472,7 @@ impl Planner<'_> {
 
 /// Returns the event of a spindle that an M code or S changes.
 fn spindle_event(direction: SpindleDirection, speed: Rpm) -> EventKind {
-    EventKind::Spindle { direction, speed, is_rigid: false }
+    EventKind::Spindle { direction, speed, is_rigid: false, is_oriented: false }
 }
 
 /// Returns G41 or G42, × 10, if it is in force behind a block.

@@ -76,7 +76,11 @@ impl CyclePlan {
             state.rigid_tapping != RigidTapping::Off || data.settings.taps_rigidly || self.cycle.is_rigid;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
         let speed = Rpm(state.modal_words.s);
-        let spindle = |direction| EventKind::Spindle { direction, speed, is_rigid };
+        let spindle = |direction| {
+            // G76 and G87 stop the spindle at its angle before they shift the tool.
+            let is_oriented = direction == SpindleDirection::Off;
+            EventKind::Spindle { direction, speed, is_rigid, is_oriented }
+        };
         let returns_to_initial = match step {
             CycleStep::RapidToReturnLevel | CycleStep::RapidToInitialInG98 => to_initial,
             CycleStep::RapidToInitial => true,

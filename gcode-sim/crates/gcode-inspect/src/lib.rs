@@ -21,7 +21,7 @@
 //! let mut extractor = HoleExtractor::new(&machine);
 //! let at = |z| Position([5.0, 0.0, z, 0.0, 0.0, 0.0, 0.0, 0.0]);
 //! for kind in [
-//!     EventKind::Spindle { direction: SpindleDirection::Clockwise, speed: Rpm(1500.0), is_rigid: false },
+//!     EventKind::Spindle { direction: SpindleDirection::Clockwise, speed: Rpm(1500.0), is_rigid: false, is_oriented: false },
 //!     EventKind::Rapid { to: at(2.0) },
 //!     EventKind::Feed { to: at(-10.25), rate: MmPerMin(100.0) },
 //!     EventKind::Rapid { to: at(2.0) },

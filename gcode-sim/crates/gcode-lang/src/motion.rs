@@ -261,6 +261,8 @@ pub enum EventKind {
         speed: Rpm,
         /// True in rigid tapping: the feed follows the angle of the spindle.
         is_rigid: bool,
+        /// The spindle stops at its orientation angle: M19, or a cycle that shifts the tool.
+        is_oriented: bool,
     },
     /// M07 and M08 switch the coolant on, M09 off.
     Coolant {

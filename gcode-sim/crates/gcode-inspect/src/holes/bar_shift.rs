@@ -19,6 +19,8 @@ use gcode_lang::source::Span;
 pub(super) struct BarShift {
     /// The bar has cut backwards and is shifted by the current motion.
     pub is_back_bored: bool,
+    /// The spindle has stopped at a known angle, by M19 or a cycle: the shift takes the edge off the wall.
+    pub is_oriented: bool,
     /// The tool has been fed into the solid metal of a known stock, as no bar is.
     pub has_drilled: bool,
     /// Tip before the shift, while the bar is shifted.

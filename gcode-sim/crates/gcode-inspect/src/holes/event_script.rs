@@ -17,6 +17,7 @@ impl EventScript {
             direction: SpindleDirection::Clockwise,
             speed: Rpm(1500.0),
             is_rigid: false,
+            is_oriented: false,
         })
     }
 

@@ -40,6 +40,9 @@ impl HoleExtractor<'_> {
             if self.machine.kind_of(self.setup.tool).is_none() {
                 self.unjudged.shifts_of_unknown_kind.count(|| event.backtrace());
             }
+            if !self.bar_shift.is_oriented {
+                self.unjudged.shifts_without_angle.count(|| event.backtrace());
+            }
             self.current_line = Some(line);
             return None;
         }

@@ -466,7 +466,7 @@ impl EventSink for HoleExtractor<'_> {
                 self.positions.apply_event(self.machine, *axes);
                 self.update_outside();
             }
-            EventKind::Spindle { direction, speed, is_rigid } => {
+            EventKind::Spindle { direction, speed, is_rigid, is_oriented } => {
                 // S0 stops the spindle.
                 let before = self.cutting_state.spindle_direction;
                 self.cutting_state.spindle_direction =
@@ -475,6 +475,7 @@ impl EventSink for HoleExtractor<'_> {
                 self.cutting_state.apply_rigid(*is_rigid);
                 self.has_tool_turned |= self.cutting_state.spindle_direction != SpindleDirection::Off;
                 self.update_spindle_in_hole(before);
+                self.bar_shift.is_oriented = *is_oriented;
                 self.cutting_state.builder_code = None;
             }
             EventKind::Stop { kind: StopKind::Message, text, variables } => {

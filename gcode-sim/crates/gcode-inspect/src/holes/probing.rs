@@ -1,5 +1,5 @@
 //! Probing moves: the signal of a probe, and moves that go on through metal.
-use nalgebra::Point3;
+use nalgebra::{Point3, Unit};
 
 use super::feed_law::{Gouge, ToolRegion};
 use super::metal::PointInMetal;
@@ -8,11 +8,14 @@ use super::near_metal::{FeedPart, Judged};
 use super::rapid_paths::OnPath;
 use super::rapids::format_point;
 use super::{HoleExtractor, MotionKind};
-use crate::findings::{FEED_BESIDE_HOLE, PROBE_TURNS};
-use crate::machine::{ToolKind, tool_name};
+use crate::findings::{FEED_BESIDE_HOLE, PROBE_TURNS, RAPID_INTO_PART};
+use crate::machine::{TOUCH_DEPTH, ToolKind, tool_name};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Event, EventKind, Position, SkipMove, SkipSignal, SpindleDirection};
 use gcode_part::PartSolid;
+
+/// Depth of the ball in the wall that a touch leaves until the axes stop, mm.
+const DEEPEST_TOUCH: f64 = 0.2;
 
 impl HoleExtractor<'_> {
     /// Sets the part that a touch probe touches, if it is not the metal.
@@ -127,7 +130,30 @@ impl HoleExtractor<'_> {
             }
             None => {}
         }
+        if kept.is_none() {
+            self.check_ball(event, kind, from);
+        }
         if kind == MotionKind::Feed { MotionKind::Probe } else { kind }
+    }
+
+    /// Reports a motion at whose end the ball of the probe is in metal that has to stay: its lowest point, or the one ahead. The tip
+    /// is the ball's centre.
+    fn check_ball(&mut self, event: &Event<'_>, kind: MotionKind, from: &Point3<f64>) {
+        let reach = self.machine.probe.as_ref().map_or(0.0, |probe| probe.radius - DEEPEST_TOUCH);
+        let Some(axis) = self.pose.axis.filter(|_| 0.0 < reach && self.has_left_start) else { return };
+        let (tip, travel) = (self.pose.tip, self.pose.tip - from);
+        let ahead = Unit::try_new(travel - axis.into_inner() * travel.dot(&axis), TOUCH_DEPTH);
+        let points = [Some(-axis), ahead].into_iter().flatten().map(|to| tip + to.into_inner() * reach);
+        let Some(found) = points.filter_map(|point| self.metal.gouge(&[point; 2], FeedPart::Tip)).next()
+        else {
+            return;
+        };
+        let of_motion = if kind == MotionKind::Feed { &FEED_BESIDE_HOLE } else { &RAPID_INTO_PART };
+        let (probe, point) = (tool_name(self.setup.tool), format_point(&found.point));
+        self.findings.add(of_motion, &event.backtrace(), 4, |kind| {
+            Diagnostic::new(kind, format!("the ball of {probe} ends in the metal at {point}"))
+                .help("stop above the part by more than the radius of the ball, and approach with G31")
+        });
     }
 
     /// Returns true if the tool comes from where a probing move without a signal has left it in the metal: a real probe stands

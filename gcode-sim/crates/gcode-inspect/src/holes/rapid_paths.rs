@@ -45,6 +45,8 @@ pub(crate) struct UnjudgedMotions {
     pub probes_of_start_tool: UnsearchedMotions,
     /// Shifts in a hole of tools that may be boring bars or not.
     pub shifts_of_unknown_kind: UnsearchedMotions,
+    /// Shifts of boring bars whose spindle has stopped at any angle.
+    pub shifts_without_angle: UnsearchedMotions,
 }
 
 /// Motions that are not searched to the end: the first, and their number.

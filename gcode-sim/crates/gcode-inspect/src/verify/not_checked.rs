@@ -152,6 +152,12 @@ pub(super) fn list(
             "G76 and G87 shift a bar off the wall, and any other tool into it; give the kind of the tool in the machine file",
         ),
         (
+            &extraction.unjudged.shifts_without_angle,
+            "the angle at which a boring bar is shifted (no M19)",
+            "shift",
+            "M05 stops the edge at any angle, and the shift may take it into the wall; orient the spindle with M19 before it",
+        ),
+        (
             &extraction.unjudged.probes_without_signal,
             match machine.probe {
                 None => "what probing moves touch (no [probe], no --skip)",
