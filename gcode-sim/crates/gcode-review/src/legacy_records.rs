@@ -140,7 +140,8 @@ impl Record {
             residual.map(|(name, entry)| (name.replace(HAAS_SYSTEM, FORMER_SYSTEM), entry)).collect();
     }
 
-    fn lacks_other_blocks(&self) -> bool {
+    /// Returns true for a file without the blocks that no step names.
+    pub(super) fn lacks_other_blocks(&self) -> bool {
         self.other_blocks.is_none() && matches!(self.blocks, BlockList::Listed(_))
     }
 

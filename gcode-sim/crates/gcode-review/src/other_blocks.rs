@@ -12,15 +12,14 @@ pub(super) fn sides<'a>(old: &'a Record, new: &'a Record) -> [Vec<ProgramSide<'a
     if let (Some(was), Some(is)) = (written(old), written(new)) {
         return [was, is];
     }
-    match (other_blocks(old), other_blocks(new)) {
-        (Some(was), Some(is)) => [named_sides(old, was), named_sides(new, is)],
-        _ => [named_sides(old, Vec::new()), named_sides(new, Vec::new())],
-    }
+    let have_others = ![old, new].iter().any(|record| record.lacks_other_blocks());
+    [old, new].map(|record| named_sides(record, have_others))
 }
 
-/// Returns the blocks of steps and these others by program.
-fn named_sides(record: &Record, others: Vec<OtherBlock>) -> Vec<ProgramSide<'_>> {
+/// Returns the blocks of steps by program, with the others or without them.
+fn named_sides(record: &Record, with_others: bool) -> Vec<ProgramSide<'_>> {
     let mut found = blocks_of_steps(record);
+    let others = if with_others { others(record, &found) } else { Vec::new() };
     for OtherBlock { program, line, block, steps, in_part } in others {
         let location = BlockLocation { program: program.clone(), line, block, calls: Vec::new() };
         found.entry((program, line)).or_insert((location, steps.map(|steps| (steps, !in_part))));
@@ -56,8 +55,23 @@ fn blocks_of_steps(record: &Record) -> BTreeMap<(String, u32), NamedBlock> {
 
 /// Returns the blocks with words that no step names, of the programs that the run executes; `None` for a file without them.
 pub(super) fn other_blocks(record: &Record) -> Option<Vec<OtherBlock>> {
-    let Some(programs) = written(record) else { return record.other_blocks.clone() };
-    let of_steps = blocks_of_steps(record);
+    (!record.lacks_other_blocks()).then(|| others(record, &blocks_of_steps(record)))
+}
+
+/// Returns true if a record has a block that it does not execute as a whole.
+pub(super) fn has_idle_blocks(record: &Record) -> bool {
+    let Some(programs) = written(record) else {
+        return record.other_blocks.iter().flatten().any(|block| block.steps.is_none() || block.in_part);
+    };
+    let is_idle = |(side, index): (&ProgramSide<'_>, usize)| {
+        !side.reached(index).is_some_and(|(_, is_whole)| is_whole) && !words(&side.text(index)).is_empty()
+    };
+    programs.iter().flat_map(|side| (0..side.count()).map(move |index| (side, index))).any(is_idle)
+}
+
+/// Returns [`other_blocks`] beside those of the steps.
+fn others(record: &Record, of_steps: &BTreeMap<(String, u32), NamedBlock>) -> Vec<OtherBlock> {
+    let Some(programs) = written(record) else { return record.other_blocks.clone().unwrap_or_default() };
     let mut others = Vec::new();
     for side in &programs {
         if (0..side.count()).all(|index| side.reached(index).is_none()) {
@@ -79,7 +93,7 @@ pub(super) fn other_blocks(record: &Record) -> Option<Vec<OtherBlock>> {
             }
         }
     }
-    Some(others)
+    others
 }
 
 #[cfg(test)]

@@ -1,12 +1,15 @@
 //! Changed blocks that no run executes.
 use super::change::UnexecutedChange;
-use super::other_blocks::sides;
+use super::other_blocks::{has_idle_blocks, sides};
 use super::program_text::{ChangedPassage, ProgramSide, read_words, words};
 use super::record::Record;
 
 /// Returns the changed blocks of programs of both records that no run executed as a whole, in their order: their effect
 /// is unknown. A file of an earlier version has none.
 pub fn unexecuted(old: &Record, new: &Record) -> Vec<UnexecutedChange> {
+    if ![old, new].into_iter().any(has_idle_blocks) {
+        return Vec::new();
+    }
     let [was, is] = sides(old, new);
     let has_words = |side: &ProgramSide<'_>, index: usize| !words(&side.text(index)).is_empty();
     let with_words = |side: &ProgramSide<'_>| (0..side.count()).any(|index| has_words(side, index));
